@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangle meshes: validation at the door, and the geometry that everything else reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from .errors import MeshError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["TriangleMesh"]
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """A surface made of triangles.
+
+    The arrays are copied, converted and made read-only, so that whatever is computed from them stays true.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array_like of float
+        Positions.
+    triangles : (m, 3) array_like of int
+        Corners of each triangle, indices into `vertices`, counter-clockwise seen from outside.
+
+    Raises
+    ------
+    MeshError
+        If the arrays do not describe a surface; the message names the fault.
+
+    Notes
+    -----
+    Triangles of zero area, open boundaries, edges with more than two triangles, several components and vertices
+    without a triangle are allowed: real meshes have them.
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        vertices = _as_vertices(self.vertices)
+        triangles = _as_triangles(self.triangles, len(vertices))
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "triangles", triangles)
+        if not self.area > 0:
+            raise MeshError(
+                "Every triangle of the mesh has zero area: the mesh has no surface. "
+                "Check its scale and whether its vertices all lie on one line or in one point."
+            )
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices, n."""
+        return len(self.vertices)
+
+    @property
+    def triangle_count(self) -> int:
+        """Number of triangles, m."""
+        return len(self.triangles)
+
+    @cached_property
+    def _area_vectors(self) -> NDArray[np.float64]:
+        """Triangle normals times area, (m, 3)."""
+        a, b, c = (self.vertices[self.triangles[:, i]] for i in range(3))
+        return np.cross(b - a, c - a) / 2
+
+    @cached_property
+    def triangle_areas(self) -> NDArray[np.float64]:
+        """Area of each triangle, (m,)."""
+        return np.linalg.norm(self._area_vectors, axis=1)
+
+    @cached_property
+    def area(self) -> float:
+        """Area of the whole surface."""
+        return float(self.triangle_areas.sum())
+
+    @cached_property
+    def triangle_normals(self) -> NDArray[np.float64]:
+        """Unit normal of each triangle, (m, 3); zero for a triangle without area."""
+        return _unit(self._area_vectors)
+
+    @cached_property
+    def vertex_areas(self) -> NDArray[np.float64]:
+        """A third of the area of the triangles around each vertex, (n,); they sum to `area`."""
+        return self.sum_at_vertices(self.triangle_areas / 3)
+
+    @cached_property
+    def vertex_normals(self) -> NDArray[np.float64]:
+        """Unit normal at each vertex, weighted by triangle area, (n, 3); zero at a vertex without a triangle."""
+        return _unit(np.stack([self.sum_at_vertices(component) for component in self._area_vectors.T], axis=1))
+
+    def sum_at_vertices(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Sum a value per triangle, (m,), over the triangles around each vertex, (n,)."""
+        sums: NDArray[Any] = np.bincount(self.triangles.ravel(), np.repeat(values, 3), self.vertex_count)
+        return sums
+
+    @cached_property
+    def _edge_table(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Edges (e, 2), each once with its smaller index first, and how many triangles each has (e,)."""
+        a, b = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
+        # One integer per edge: far faster to sort than rows.
+        keys, counts = np.unique(np.minimum(a, b) * self.vertex_count + np.maximum(a, b), return_counts=True)
+        return np.stack(np.divmod(keys, self.vertex_count), axis=1), counts
+
+    @property
+    def edges(self) -> NDArray[np.int64]:
+        """Each edge once, smaller vertex index first, (e, 2)."""
+        return self._edge_table[0]
+
+    @cached_property
+    def edge_lengths(self) -> NDArray[np.float64]:
+        """Length of each of `edges`, (e,)."""
+        return np.linalg.norm(self.vertices[self.edges[:, 0]] - self.vertices[self.edges[:, 1]], axis=1)
+
+    @cached_property
+    def boundary_edges(self) -> NDArray[np.int64]:
+        """The edges with exactly one triangle, (b, 2)."""
+        edges, counts = self._edge_table
+        return edges[counts == 1]
+
+    @cached_property
+    def is_closed(self) -> bool:
+        """Whether every edge has exactly two triangles."""
+        return bool((self._edge_table[1] == 2).all())
+
+    @cached_property
+    def component_labels(self) -> NDArray[np.int64]:
+        """Number of the edge-connected component of each vertex, (n,); the largest by area is 0, and so on down.
+
+        Vertices without a triangle are components of their own, at the end.
+        """
+        n, (a, b) = self.vertex_count, self.edges.T
+        _, labels = connected_components(coo_array((np.ones(len(a), bool), (a, b)), shape=(n, n)), directed=False)
+        areas = np.bincount(labels, self.vertex_areas)
+        # Ties by the first vertex, so that the numbering never depends on how the graph search walks.
+        first = np.full(len(areas), n)
+        np.minimum.at(first, labels, np.arange(n))
+        rank = np.empty(len(areas), np.int64)
+        rank[np.lexsort((first, -areas))] = np.arange(len(areas))
+        return rank[labels]
+
+    @property
+    def component_count(self) -> int:
+        """Number of edge-connected components, vertices without a triangle included."""
+        return int(self.component_labels.max()) + 1
+
+    def submesh(self, keep: NDArray[np.bool_]) -> tuple[TriangleMesh, NDArray[np.int64], NDArray[np.int64]]:
+        """Return the part of the mesh on some of its vertices.
+
+        Parameters
+        ----------
+        keep : (n,) array of bool
+            Which vertices to keep; a triangle stays if all three of its corners do.
+
+        Returns
+        -------
+        mesh : TriangleMesh
+            The part.
+        vertices : (n',) array of int
+            For each vertex of the part, its index in this mesh.
+        triangles : (m',) array of int
+            For each triangle of the part, its index in this mesh.
+
+        Raises
+        ------
+        MeshError
+            If no triangle is left.
+        """
+        vertices = np.flatnonzero(keep)
+        triangles = np.flatnonzero(keep[self.triangles].all(axis=1))
+        renumber = np.cumsum(keep) - 1
+        return TriangleMesh(self.vertices[vertices], renumber[self.triangles[triangles]]), vertices, triangles
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale vectors to length one, leaving zero vectors alone."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+
+
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    array.flags.writeable = False
+    return array
+
+
+def _as_vertices(vertices: ArrayLike) -> NDArray[np.float64]:
+    try:
+        array = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise MeshError(f"The vertex positions are not an (n, 3) array of numbers: {error}.") from error
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise MeshError(f"The vertex positions should have the shape (n, 3), but have {array.shape}.")
+    if not len(array):
+        raise MeshError("The mesh has no vertices.")
+    bad = ~np.isfinite(array).all(axis=1)
+    if bad.any():
+        raise MeshError(
+            f"{bad.sum()} of {len(array)} vertices have a position that is not a finite number, "
+            f"vertex {np.flatnonzero(bad)[0]} first. Delete these vertices or repair them."
+        )
+    return _read_only(array)
+
+
+def _as_triangles(triangles: ArrayLike, vertex_count: int) -> NDArray[np.int64]:
+    array = np.array(triangles)
+    if array.size == 0:
+        raise MeshError("The mesh has no faces. A surface is needed, not only vertices or edges.")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise MeshError(f"The triangles should have the shape (m, 3), but have {array.shape}.")
+    if not np.issubdtype(array.dtype, np.integer):
+        raise MeshError(f"The triangles should be vertex indices (integers), but are of type {array.dtype}.")
+    array = array.astype(np.int64)
+    bad = ((array < 0) | (array >= vertex_count)).any(axis=1)
+    if bad.any():
+        first = np.flatnonzero(bad)[0]
+        raise MeshError(
+            f"Triangle {first} has the corners {array[first].tolist()}, "
+            f"but the vertices are numbered 0 to {vertex_count - 1}."
+        )
+    repeated = (array == np.roll(array, 1, axis=1)).any(axis=1)
+    if repeated.any():
+        first = np.flatnonzero(repeated)[0]
+        raise MeshError(
+            f"Triangle {first} is degenerate: it uses a vertex twice ({array[first].tolist()}). "
+            "Remove such faces (in Blender: Mesh > Clean Up > Degenerate Dissolve)."
+        )
+    return _read_only(array)

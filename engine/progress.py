@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Progress of long work, and the generators that report it.
+
+A long computation is a generator that yields `Progress` in short steps and returns its result; whoever drives it
+(a modal operator, a script, a test) may stop between two steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import TypeVar
+
+__all__ = ["Progress", "Steps", "run", "within"]
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a computation is.
+
+    Attributes
+    ----------
+    fraction : float
+        Part of the work that is done, 0 to 1; never decreases within one computation.
+    label : str
+        What is being done, for a person to read.
+    """
+
+    fraction: float
+    label: str
+
+
+Steps = Generator[Progress, None, Result]
+"""A computation in steps: yields `Progress`, returns its result."""
+
+
+def run(steps: Steps[Result]) -> Result:
+    """Drive a computation to its end and return its result."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as stop:
+            return stop.value
+
+
+def within(steps: Steps[Result], start: float, end: float) -> Steps[Result]:
+    """Run a computation as the part from `start` to `end` of a longer one.
+
+    Parameters
+    ----------
+    steps : generator
+        The computation, with fractions from 0 to 1.
+    start, end : float
+        Where its fractions 0 and 1 lie in the longer computation.
+
+    Yields
+    ------
+    Progress
+        The computation's progress, rescaled.
+
+    Returns
+    -------
+    object
+        The computation's result.
+    """
+    try:
+        while True:
+            try:
+                progress = next(steps)
+            except StopIteration as stop:
+                return stop.value
+            yield Progress(start + (end - start) * progress.fraction, progress.label)
+    finally:
+        steps.close()

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points on a surface, not necessarily at its vertices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+
+__all__ = ["SurfacePoints"]
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePoints:
+    """Points on a triangle mesh.
+
+    Attributes
+    ----------
+    triangles : (k,) array of int
+        The triangle in which each point lies.
+    barycentric : (k, 3) array of float
+        Its barycentric coordinates there: not negative, summing to one.
+    corners : (k, 3) array of int
+        The vertices of that triangle, in the order of `barycentric`.
+    nearest_vertices : (k,) array of int
+        The corner with the largest coordinate.
+    positions : (k, 3) array of float
+        Where the points are.
+    """
+
+    triangles: NDArray[np.int64]
+    barycentric: NDArray[np.float64]
+    corners: NDArray[np.int64]
+    nearest_vertices: NDArray[np.int64]
+    positions: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.triangles)
+
+    @classmethod
+    def from_barycentric(
+        cls, mesh: TriangleMesh, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
+    ) -> SurfacePoints:
+        """Make points from triangles (k,) and barycentric coordinates (k, 3)."""
+        corners = mesh.triangles[triangles]
+        nearest = np.take_along_axis(corners, barycentric.argmax(axis=1)[:, None], axis=1)[:, 0]
+        positions = np.einsum("kc,kcd->kd", barycentric, mesh.vertices[corners])
+        return cls(triangles, barycentric, corners, nearest, positions)
+
+    @classmethod
+    def at_vertices(cls, mesh: TriangleMesh, vertices: NDArray[np.int64]) -> SurfacePoints:
+        """Make points at vertices (k,), each in the first triangle around it that has one.
+
+        Every vertex must have a triangle.
+        """
+        first_corner = np.full(mesh.vertex_count, -1)
+        flat = mesh.triangles.ravel()
+        first_corner[flat[::-1]] = np.arange(len(flat))[::-1]
+        triangles, corner = np.divmod(first_corner[vertices], 3)
+        return cls.from_barycentric(mesh, triangles, np.eye(3)[corner])
+
+    def interpolate(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Evaluate a function given at the vertices, linear inside triangles.
+
+        Parameters
+        ----------
+        values : (n, ...) array of float
+            Values at the vertices of the mesh.
+
+        Returns
+        -------
+        (k, ...) array of float
+            Values at the points.
+        """
+        return np.einsum("kc,kc...->k...", self.barycentric, values[self.corners])
