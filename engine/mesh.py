@@ -211,7 +211,10 @@ def _as_vertices(vertices: ArrayLike) -> NDArray[np.float64]:
 
 
 def _as_triangles(triangles: ArrayLike, vertex_count: int) -> NDArray[np.int64]:
-    array = np.array(triangles)
+    try:
+        array = np.array(triangles)
+    except ValueError as error:
+        raise MeshError(f"The triangles are not an (m, 3) array of vertex indices: {error}.") from error
     if array.size == 0:
         raise MeshError("The mesh has no faces. A surface is needed, not only vertices or edges.")
     if array.ndim != 2 or array.shape[1] != 3:

@@ -51,14 +51,27 @@ class MatchSettings:
         200,
         "Among how many of the target samples around its present match each point looks for a better one",
     )
-    target_samples: int = _setting(
-        512, "Target Samples", 16, 4096, "How many samples of the target the matched points can choose from"
+    samples: int = _setting(
+        512,
+        "Samples",
+        16,
+        4096,
+        "How many samples of each surface describe it; the points are matched to the samples of the target. "
+        "At least twice as many as points are taken",
+    )
+    hypotheses: int = _setting(
+        6,
+        "Hypotheses",
+        1,
+        32,
+        "How many distinct coarse matchings are followed up before the best is chosen. "
+        "Nearly symmetric shapes have several that are almost equally good",
     )
     histogram_bins: int = _setting(
         32, "Histogram Bins", 4, 256, "Number of bins of the distance histograms that describe a point"
     )
     node_limit: int = _setting(
-        1_000_000,
+        100_000,
         "Search Limit",
         1,
         1_000_000_000,

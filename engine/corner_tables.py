@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of a triangle mesh that fast marching reads: its unfolded corners and the graph of its edges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+
+__all__ = ["CornerTables", "corner_tables"]
+
+# Lengths below this part of the largest length of a triangle count as this part: keeps triangles without area finite.
+_FLAT = 1e-8
+
+# A line across an edge joins the graph if it is shorter than this times the edge: those bring most of the accuracy.
+# Above one, so that both diagonals of the squares of a grid count.
+_SHORT = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class CornerTables:
+    """What an update of a vertex c from two others, a and b, needs; lengths in units of `unit`.
+
+    A corner is a triangle c, a, b laid out in the plane with a at the origin, b at (l, 0) and c at (x, y), y > 0.
+
+    Attributes
+    ----------
+    unit : float
+        Mean length of the edges, in units of the mesh.
+    c, a, b : (k,) array of int
+        The vertices of each corner, sorted by `c`.
+    slope : (k,) array of float
+        y / l.
+    height : (k,) array of float
+        y l.
+    along : (k,) array of float
+        x / l.
+    bend : (k,) array of float
+        |c - a|^2 - x l.
+    length_a, length_b : (k,) array of float
+        |c - a| and |c - b|.
+    graph : (n, n) csr_array
+        Lengths of the edges, and of the straight lines that cross one edge from one triangle to its neighbour.
+    """
+
+    unit: float
+    c: NDArray[np.int64]
+    a: NDArray[np.int64]
+    b: NDArray[np.int64]
+    slope: NDArray[np.float64]
+    height: NDArray[np.float64]
+    along: NDArray[np.float64]
+    bend: NDArray[np.float64]
+    length_a: NDArray[np.float64]
+    length_b: NDArray[np.float64]
+    graph: csr_array
+
+
+@dataclass(frozen=True, eq=False)
+class _Corners:
+    """Corners in the plane: a at the origin, b at (l, 0), c at (x, y)."""
+
+    c: NDArray[np.int64]
+    a: NDArray[np.int64]
+    b: NDArray[np.int64]
+    l: NDArray[np.float64]  # noqa: E741 -- the letter of the formulas
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+
+    def __getitem__(self, index: NDArray[np.int64] | NDArray[np.bool_]) -> _Corners:
+        return _Corners(self.c[index], self.a[index], self.b[index], self.l[index], self.x[index], self.y[index])
+
+    def is_obtuse(self) -> NDArray[np.bool_]:
+        # The slack puts right angles, the rule on regular grids, on one side whatever the rounding.
+        return self.x * (self.x - self.l) + self.y**2 < 1e-9 * self.l**2
+
+
+def corner_tables(mesh: TriangleMesh) -> CornerTables:
+    """Build the tables of a mesh.
+
+    Notes
+    -----
+    An obtuse corner cannot be updated in the order of the distances, as the front may reach c before a or b.  Where
+    the triangle behind a b can be unfolded into the plane so that c sees its third vertex d through a b, the corner is
+    split into c, a, d and c, d, b [1]_.
+
+    References
+    ----------
+    .. [1] R. Kimmel, J. A. Sethian, "Computing geodesic paths on manifolds", PNAS 95 (1998).
+    """
+    unit = float(mesh.edge_lengths.mean())
+    corners = _corners(mesh, unit)
+    d, dx, dy = _behind(corners)
+    sees = _crossing_inside(corners, dx, dy) & (d >= 0)
+    flip_lengths = np.hypot(corners.x - dx, corners.y - dy)
+    flips = np.flatnonzero(sees & (flip_lengths < _SHORT * corners.l))
+    graph = _graph(mesh, unit, corners.c[flips], d[flips], flip_lengths[flips])
+
+    obtuse = corners.is_obtuse()
+    split = np.flatnonzero(obtuse & sees)
+    near, d, dx, dy = corners[split], d[split], dx[split], dy[split]
+    zero = np.zeros_like(dx)
+    at_c, at_a, at_b, at_d = (np.stack(at, axis=1) for at in ((near.x, near.y), (zero, zero), (near.l, zero), (dx, dy)))
+    left = _laid_out((near.c, near.a, d), at_c, at_a, at_d)
+    right = _laid_out((near.c, d, near.b), at_c, at_d, at_b)
+    kept = corners[np.flatnonzero(~(obtuse & sees))]
+    parts = [kept, left, right]
+
+    fields = ("c", "a", "b", "l", "x", "y")
+    c, a, b, length, x, y = (np.concatenate([getattr(part, name) for part in parts]) for name in fields)
+    order = np.argsort(c, kind="stable")
+    c, a, b, length, x, y = (array[order] for array in (c, a, b, length, x, y))
+    return CornerTables(
+        unit=unit,
+        c=c,
+        a=a,
+        b=b,
+        slope=y / length,
+        height=y * length,
+        along=x / length,
+        bend=x**2 + y**2 - x * length,
+        length_a=np.hypot(x, y),
+        length_b=np.hypot(x - length, y),
+        graph=graph,
+    )
+
+
+def _corners(mesh: TriangleMesh, unit: float) -> _Corners:
+    """Return the three corners of every triangle, (3m,), those at the first vertices of the triangles first."""
+    c, a, b = (np.roll(mesh.triangles, -shift, axis=1).T.ravel() for shift in range(3))
+    positions = mesh.vertices / unit
+    return _laid_out((c, a, b), positions[c], positions[a], positions[b])
+
+
+def _laid_out(
+    vertices: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
+    at_c: NDArray[np.float64],
+    at_a: NDArray[np.float64],
+    at_b: NDArray[np.float64],
+) -> _Corners:
+    """Lay triangles of the vertices c, a and b, (k,) each, at positions (k, d) out in the plane."""
+    ab, ac = at_b - at_a, at_c - at_a
+    ab_square, ac_square = (np.einsum("kd,kd->k", side, side) for side in (ab, ac))
+    smallest = np.maximum(_FLAT * np.sqrt(np.maximum(ab_square, ac_square)), _FLAT**2)
+    length = np.maximum(np.sqrt(ab_square), smallest)
+    # The projection on a b itself, not the law of cosines, which loses all digits in needles.
+    x = np.einsum("kd,kd->k", ab, ac) / length
+    y = np.sqrt(np.maximum(ac_square - x * x, 0))
+    return _Corners(*vertices, length, x, np.maximum(y, smallest))
+
+
+def _behind(corners: _Corners) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """For each corner, the vertex d across a b and its position (x, y) in the plane of the corner; d = -1 if none.
+
+    There is none at the boundary and at edges of more than two triangles.
+    """
+    a, b = corners.a, corners.b
+    key = np.minimum(a, b) * (int(max(a.max(), b.max())) + 1) + np.maximum(a, b)
+    order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    same = ordered[1:] == ordered[:-1]
+    first = np.flatnonzero(same & ~np.append(False, same[:-1]) & ~np.append(same[1:], False))
+    behind = np.full(len(key), -1)
+    behind[order[first]], behind[order[first + 1]] = order[first + 1], order[first]
+    there = corners[behind]
+    x = np.where(there.a == a, there.x, corners.l - there.x)
+    return np.where(behind >= 0, there.c, -1), x, -there.y
+
+
+def _crossing_inside(corners: _Corners, dx: NDArray[np.float64], dy: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether the straight line from c to d crosses the inside of a b."""
+    depth = corners.y - dy
+    crossing = corners.x * -dy + dx * corners.y
+    return (crossing > 0) & (crossing < corners.l * depth)
+
+
+def _graph(
+    mesh: TriangleMesh, unit: float, c: NDArray[np.int64], d: NDArray[np.int64], flip_lengths: NDArray[np.float64]
+) -> csr_array:
+    """Join the edges of the mesh and the lines c d into one symmetric graph; the shorter counts where both exist."""
+    n = mesh.vertex_count
+    tail = np.concatenate([mesh.edges[:, 0], mesh.edges[:, 1], c])
+    head = np.concatenate([mesh.edges[:, 1], mesh.edges[:, 0], d])
+    # An edge of length zero is no edge for a sparse graph.
+    edge_lengths = np.maximum(mesh.edge_lengths / unit, _FLAT**2)
+    lengths = np.concatenate([edge_lengths, edge_lengths, np.maximum(flip_lengths, _FLAT**2)])
+    order = np.lexsort((lengths, tail * n + head))
+    key = (tail * n + head)[order]
+    shortest = order[np.append(True, key[1:] != key[:-1])]
+    return csr_array(coo_array((lengths[shortest], (tail[shortest], head[shortest])), shape=(n, n)))

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a correspondence keeps the orientation of the surface or mirrors it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+
+__all__ = ["orientation_agreement", "signed_areas", "tangent_gradient"]
+
+
+def tangent_gradient(mesh: TriangleMesh, vertices: NDArray[np.int64]) -> csr_array:
+    """Build the operator that takes the gradient of a function at some vertices, in a tangent frame.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    vertices : (k,) array of int
+        Where the gradient is wanted; distinct.
+
+    Returns
+    -------
+    (2 k, n) csr_array of float
+        Times the values of a function at the vertices of the mesh, it gives the two components of the gradient at
+        vertex i in rows 2 i and 2 i + 1: the area-weighted mean over the triangles around it, in an orthonormal frame
+        (e1, e2) of the tangent plane with e1 x e2 along the outward normal.  The choice of e1 is arbitrary.
+    """
+    number = np.full(mesh.vertex_count, -1)
+    number[vertices] = np.arange(len(vertices))
+    owner = number[mesh.triangles.ravel()]  # the wanted vertex at each corner of each triangle, or -1
+    corner = np.flatnonzero(owner >= 0)
+    owner, triangle = owner[corner], corner // 3
+    corners = mesh.triangles[triangle]
+    a, b, c = (mesh.vertices[corners[:, i]] for i in range(3))
+    # Twice the area times the gradient of a linear function: sum over corners of its value times (normal x the
+    # opposite edge).
+    opposite = np.stack([c - b, a - c, b - a], axis=1)  # (t, 3 corners, 3)
+    rotated = np.cross(mesh.triangle_normals[triangle][:, None, :], opposite)
+    weight = np.bincount(owner, mesh.triangle_areas[triangle], len(vertices))
+    rotated /= np.maximum(2 * weight[owner], np.finfo(float).tiny)[:, None, None]
+    normal = mesh.vertex_normals[vertices]
+    e1 = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
+    e1 /= np.maximum(np.linalg.norm(e1, axis=1, keepdims=True), np.finfo(float).tiny)
+    frame = np.stack([e1, np.cross(normal, e1)], axis=1)  # (k, 2, 3)
+    entries = np.einsum("tcd,tfd->tfc", rotated, frame[owner])  # (t, 2, 3 corners)
+    rows = np.broadcast_to((2 * owner[:, None] + np.arange(2))[:, :, None], entries.shape)
+    columns = np.broadcast_to(corners[:, None, :], entries.shape)
+    shape = (2 * len(vertices), mesh.vertex_count)
+    return csr_array((entries.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
+
+
+def signed_areas(directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Signed area of the parallelogram of each pair of directions.
+
+    Parameters
+    ----------
+    directions : (k, s, 2) array of float
+        Directions at k points.
+
+    Returns
+    -------
+    (k, s (s - 1) / 2) array of float
+        u_j x u_l for j < l: independent of the tangent frame but for its orientation, so a mirrored surface shows the
+        negative.
+    """
+    first, second = np.triu_indices(directions.shape[1], 1)
+    u, v = directions[:, first], directions[:, second]
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
+def orientation_agreement(
+    source_directions: NDArray[np.float64], target_directions: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    r"""Measure at each point whether a correspondence keeps or mirrors the surface.
+
+    The directions u_j to the same places, seen from corresponding points, turn the same way on both surfaces if
+    orientation is kept.  With the signed areas :math:`s_{jl} = u_j \times u_l` this is their correlation
+
+    .. math:: \frac{\sum_{j<l} s_{jl} s'_{jl}}{\sqrt{\sum s_{jl}^2 \sum s'^2_{jl}}}
+        = \frac{\det U^T U'}{\sqrt{\det U^T U \; \det U'^T U'}}
+
+    (Cauchy-Binet), which needs no sum over pairs.
+
+    Parameters
+    ----------
+    source_directions, target_directions : (k, s, 2) array of float
+        Directions at each of k corresponding points towards the same s places.
+
+    Returns
+    -------
+    (k,) array of float
+        From -1 (mirrored) to 1 (kept); 0 where the directions say nothing.
+    """
+    u, v = source_directions, target_directions
+    cross = np.linalg.det(np.einsum("ksf,ksg->kfg", u, v))
+    size = np.linalg.det(np.einsum("ksf,ksg->kfg", u, u)) * np.linalg.det(np.einsum("ksf,ksg->kfg", v, v))
+    root = np.sqrt(np.maximum(size, 0))
+    return np.divide(cross, root, out=np.zeros_like(cross), where=root > 0)

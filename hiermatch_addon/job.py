@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A match of two objects as a piece of work: the operator, scripts and tests drive it alike."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..engine import MatchSettings, Progress, SettingsError, match_steps
+from . import writing
+from .access import mesh_of, view_layer_of
+from .errors import ObjectError
+from .mesh_io import read_mesh
+from .pair import check_pair
+
+if TYPE_CHECKING:
+    from ..engine import MatchResult
+
+__all__ = ["JobOptions", "MatchJob", "Outcome"]
+
+
+@dataclass(frozen=True)
+class JobOptions:
+    """What to match and what to write.
+
+    Attributes
+    ----------
+    settings : MatchSettings
+        The engine's settings.
+    use_modifiers : bool
+        Whether to match the meshes as shape keys and modifiers show them.
+    use_mirrored : bool
+        Whether to write the mirrored answer, if there is one.
+    prefix : str
+        What all names written start with.
+    vertex_groups, match_colors, distortion : bool
+        Which kinds to write.
+    """
+
+    settings: MatchSettings
+    use_modifiers: bool = False
+    use_mirrored: bool = False
+    prefix: str = "HM"
+    vertex_groups: bool = True
+    match_colors: bool = True
+    distortion: bool = True
+
+    def __post_init__(self) -> None:
+        if not self.prefix.strip():
+            raise SettingsError("The Prefix is empty. Enter what the names of the vertex groups shall start with.")
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A finished match.
+
+    Attributes
+    ----------
+    source, target : str
+        Names of the objects.
+    result : MatchResult
+        What was written.
+    has_mirrored : bool
+        Whether there are two answers.
+    seconds : float
+        How long it took, from reading to writing.
+    notes : tuple of str
+        What the user should know.
+    """
+
+    source: str
+    target: str
+    result: MatchResult
+    has_mirrored: bool
+    seconds: float
+    notes: tuple[str, ...]
+
+
+class MatchJob:
+    """The match of two objects, from reading them to writing on them.
+
+    Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
+    them up again, and ends with an error if they are not what they were.  Nothing is written before `finish`.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the objects are.
+    source, target : bpy.types.Object
+        The objects.
+    options : JobOptions
+        What to match and to write.
+
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
+
+    Raises
+    ------
+    HierMatchError
+        If the objects or settings do not allow a match.
+    """
+
+    def __init__(
+        self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, options: JobOptions
+    ) -> None:
+        self._start = time.perf_counter()
+        self._options = options
+        depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
+        check_pair(view_layer_of(context), source, target)
+        for obj in (source, target):
+            _check_points(obj, options.settings.points)
+        self._uids = (source.session_uid, target.session_uid)
+        self._names = (source.name, target.name)
+        meshes = [read_mesh(obj, depsgraph, use_modifiers=options.use_modifiers) for obj in (source, target)]
+        self._sizes = tuple(mesh.vertex_count for mesh in meshes)
+        self._steps = match_steps(meshes[0], meshes[1], options.settings)
+        self._result: MatchResult | None = None
+        self.progress = Progress(0.0, "Starting")
+
+    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
+        """Work for about so long, but for one step at least; return whether the result is there.
+
+        Raises
+        ------
+        HierMatchError
+            If the engine or a change of the objects ends the match.
+        """
+        self._objects(view_layer)
+        end = time.perf_counter() + seconds
+        while self._result is None:
+            try:
+                self.progress = next(self._steps)
+            except StopIteration as stop:
+                self._result = stop.value
+            if time.perf_counter() >= end:
+                break
+        return self._result is not None
+
+    def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
+        """Write the result on both objects.
+
+        Raises
+        ------
+        HierMatchError
+            If the objects have changed, or the user's own vertex groups or attributes are in the way.
+        """
+        if self._result is None:
+            raise RuntimeError("The match has not come to its end yet.")
+        result, notes, options = self._result, list(self._result.notes), self._options
+        has_mirrored = result.mirrored is not None
+        if options.use_mirrored and result.mirrored is not None:
+            result = result.mirrored
+        elif options.use_mirrored:
+            notes.append("There is no mirrored match, so the only one was written.")
+        prepared = writing.contents(
+            result,
+            options.prefix,
+            vertex_groups=options.vertex_groups,
+            match_colors=options.match_colors,
+            distortion=options.distortion,
+        )
+        plan = list(zip(self._objects(view_layer), prepared, strict=True))
+        for obj, content in plan:
+            writing.check_names(obj, content)
+        writing.write(plan, options.prefix)
+        names = [obj.name for obj, _ in plan]
+        seconds = time.perf_counter() - self._start
+        return Outcome(names[0], names[1], result, has_mirrored, seconds, tuple(notes))
+
+    def close(self) -> None:
+        """Drop the work; nothing has been written."""
+        self._steps.close()
+
+    def _objects(self, view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
+        """Look the objects up again and make sure that they are still what was read."""
+        found = {obj.session_uid: obj for obj in bpy.data.objects if obj.session_uid in self._uids}
+        for uid, name in zip(self._uids, self._names, strict=True):
+            if uid not in found:
+                raise ObjectError(f'"{name}" was deleted while it was being matched. Nothing was written.')
+        objects = [found[uid] for uid in self._uids]
+        try:
+            check_pair(view_layer, *objects)
+        except ObjectError as error:
+            raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
+        for obj, size in zip(objects, self._sizes, strict=True):
+            if len(mesh_of(obj).vertices) != size:
+                raise ObjectError(
+                    f'"{obj.name}" got another number of vertices while it was being matched. Nothing was written.'
+                )
+        return objects
+
+
+def _check_points(obj: bpy.types.Object, points: int) -> None:
+    """Make sure that there are vertices enough."""
+    count = len(mesh_of(obj).vertices)
+    if points > count:
+        raise ObjectError(
+            f'"{obj.name}" has {count} vertices, too few for {points} Points. Set Points to {count} or fewer, '
+            "or subdivide the mesh."
+        )

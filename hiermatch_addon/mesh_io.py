@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Arrays from and to Blender's meshes: the only place that reads vertices and writes attributes and weights.
+
+Blender's bulk access wants flat, contiguous buffers of exactly its own number type: float32 and int32.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..engine import MeshError, TriangleMesh
+from .access import mesh_of
+from .errors import ObjectError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import bpy
+    from numpy.typing import NDArray
+
+__all__ = ["add_colors", "add_values", "add_vertex_group", "read_mesh"]
+
+_TOPOLOGY_MODIFIERS = frozenset(
+    {
+        "ARRAY",
+        "BEVEL",
+        "BOOLEAN",
+        "BUILD",
+        "DECIMATE",
+        "EDGE_SPLIT",
+        "EXPLODE",
+        "FLUID",
+        "MASK",
+        "MESH_SEQUENCE_CACHE",
+        "MIRROR",
+        "MULTIRES",
+        "NODES",
+        "OCEAN",
+        "PARTICLE_INSTANCE",
+        "REMESH",
+        "SCREW",
+        "SKIN",
+        "SOLIDIFY",
+        "SUBSURF",
+        "VOLUME_TO_MESH",
+        "WELD",
+        "WIREFRAME",
+    }
+)
+"""Types of modifier that add, remove or renumber vertices."""
+
+
+def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modifiers: bool) -> TriangleMesh:
+    """Read the surface of an object as it stands in the world.
+
+    Parameters
+    ----------
+    obj : bpy.types.Object
+        A mesh object, not in Edit Mode.
+    depsgraph : bpy.types.Depsgraph
+        The evaluated dependency graph.
+    use_modifiers : bool
+        Whether to read the mesh after its shape keys and modifiers.
+
+    Returns
+    -------
+    TriangleMesh
+        World-space vertices, numbered as in the object's own mesh, and the triangles that Blender draws, with their
+        normals outward even where the object's scale mirrors it.
+
+    Raises
+    ------
+    ObjectError
+        If the mesh is no surface, or its modifiers change the number of vertices.
+    """
+    with _shown_mesh(obj, depsgraph, use_modifiers=use_modifiers) as mesh:
+        positions = np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.vertices.foreach_get("co", positions)
+        mesh.calc_loop_triangles()
+        corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+        mesh.loop_triangles.foreach_get("vertices", corners)
+    matrix = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=np.float64)
+    vertices = positions.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    triangles = corners.reshape(-1, 3).astype(np.int64)
+    if np.linalg.det(matrix[:3, :3]) < 0:
+        triangles = triangles[:, ::-1]
+    try:
+        return TriangleMesh(vertices, triangles)
+    except MeshError as error:
+        raise ObjectError(f'"{obj.name}": {error}') from error
+
+
+@contextmanager
+def _shown_mesh(
+    obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modifiers: bool
+) -> Iterator[bpy.types.Mesh]:
+    """Lend the object's own mesh or the evaluated one, which must have the same vertices."""
+    original = mesh_of(obj)
+    if not use_modifiers:
+        yield original
+        return
+    evaluated = obj.evaluated_get(depsgraph)
+    mesh = evaluated.to_mesh()
+    try:
+        if len(mesh.vertices) != len(original.vertices):
+            raise ObjectError(_modifier_message(obj, len(original.vertices), len(mesh.vertices)))
+        yield mesh
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def _modifier_message(obj: bpy.types.Object, before: int, after: int) -> str:
+    """Say which modifiers stand between the evaluated mesh and the one that is written to."""
+    active = [modifier for modifier in obj.modifiers if modifier.show_viewport]
+    culprits = [modifier for modifier in active if modifier.type in _TOPOLOGY_MODIFIERS] or active
+    names = ", ".join(f'"{modifier.name}"' for modifier in culprits)
+    return (
+        f'The modifiers of "{obj.name}" change its vertices from {before} to {after} ({names}). '
+        "Apply or disable these modifiers, or turn Use Modifiers off."
+    )
+
+
+def add_vertex_group(
+    obj: bpy.types.Object, name: str, vertices: NDArray[np.int64], weights: NDArray[np.float64]
+) -> None:
+    """Add a vertex group with a few weighted vertices."""
+    group = obj.vertex_groups.new(name=name)
+    for vertex, weight in zip(vertices.tolist(), weights.tolist(), strict=True):
+        group.add([vertex], weight, "REPLACE")
+
+
+def add_colors(mesh: bpy.types.Mesh, name: str, colors: NDArray[np.float32]) -> None:
+    """Add a color attribute with a linear colour (n, 4) per vertex."""
+    attribute: Any = mesh.attributes.new(name, "FLOAT_COLOR", "POINT")
+    attribute.data.foreach_set("color", np.ascontiguousarray(colors, np.float32).ravel())
+
+
+def add_values(mesh: bpy.types.Mesh, name: str, values: NDArray[np.float64]) -> None:
+    """Add an attribute with a number (n,) per vertex."""
+    attribute: Any = mesh.attributes.new(name, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Remove what matches have written."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...engine import HierMatchError
+from ..access import mesh_of, state_of, view_layer_of
+from ..pair import check_writable, named_object, selected_meshes
+from ..running import can_start
+from ..writing import clear, is_marked, prefixes
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+__all__ = ["HIERMATCH_OT_clear"]
+
+
+class HIERMATCH_OT_clear(bpy.types.Operator):
+    """Remove what matches have written on some objects."""
+
+    bl_idname = "hiermatch.clear"
+    bl_label = "Clear"
+    bl_description = "Remove what HierMatch has written on Source, Target and the selected meshes, and nothing else"
+    bl_options = {"REGISTER", "UNDO"}
+
+    object: bpy.props.StringProperty(
+        name="Object",
+        description="Name of the object to clear; if empty, the picked Source and Target and all selected meshes",
+    )
+    prefix: bpy.props.StringProperty(
+        name="Prefix", description="Remove only what was written with this prefix; if empty, everything"
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it in Object Mode, when there is something to remove."""
+        if not can_start(cls, context):
+            return False
+        if not any(obj.type == "MESH" and is_marked(mesh_of(obj)) for obj in view_layer_of(context).objects):
+            cls.poll_message_set("There is nothing here that HierMatch has written")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
+        """Remove it."""
+        try:
+            objects = [obj for obj in self._objects(context) if self._prefixes(obj)]
+            for obj in objects:
+                check_writable(obj)
+        except HierMatchError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if not objects:
+            self.report({"WARNING"}, "None of these objects carries anything that HierMatch has written.")
+            return {"CANCELLED"}
+        for obj in objects:
+            for prefix in reversed(self._prefixes(obj)):  # each restores what was active before it
+                clear(obj, prefix)
+        names = [obj.name for obj in objects]
+        summary = state_of(context).summary
+        if summary.source in names or summary.target in names:
+            state_of(context).property_unset("summary")
+        self.report({"INFO"}, f"Cleared {', '.join(names)}")
+        return {"FINISHED"}
+
+    def _objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Find the meshes to clear, each once."""
+        if self.object:
+            candidates = [named_object(self.object)]
+        else:
+            state = state_of(context)
+            picked = [obj for obj in (state.source, state.target) if obj is not None]
+            candidates = [*picked, *selected_meshes(context)]
+        return [obj for obj in dict.fromkeys(candidates) if obj.type == "MESH"]
+
+    def _prefixes(self, obj: bpy.types.Object) -> tuple[str, ...]:
+        """Return which of the results on an object are to go, oldest first."""
+        return tuple(prefix for prefix in prefixes(obj) if self.prefix in ("", prefix))

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Add something to try the matching on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..demo_pair import add_demo_pair
+from ..running import can_start
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+__all__ = ["HIERMATCH_OT_add_demo_pair"]
+
+
+class HIERMATCH_OT_add_demo_pair(bpy.types.Operator):
+    """Add a standing and a walking cat to match, with different meshes."""
+
+    bl_idname = "hiermatch.add_demo_pair"
+    bl_label = "Add Demo Pair"
+    bl_description = "Add the same cat twice, in two poses and with two different meshes, to try the matching on"
+    bl_options = {"REGISTER", "UNDO"}
+
+    source_vertices: bpy.props.IntProperty(
+        name="Source Vertices",
+        description="About how many vertices the standing cat gets; its faces are mostly quads",
+        default=5500,
+        min=1000,
+        max=15_000,
+    )
+    target_vertices: bpy.props.IntProperty(
+        name="Target Vertices",
+        description="About how many vertices the walking cat gets; its faces are triangles",
+        default=4000,
+        min=1000,
+        max=15_000,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it in Object Mode."""
+        return can_start(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
+        """Build the cats."""
+        add_demo_pair(context, source_vertices=self.source_vertices, target_vertices=self.target_vertices)
+        return {"FINISHED"}

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar, 3D Viewport > Sidebar > HierMatch: it shows stored state and computes nothing."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from .access import layout_of, progress_of, state_of, window_manager_of
+from .pair import selected_meshes
+from .properties import SETTING_NAMES, copy_options
+from .running import is_running
+
+if TYPE_CHECKING:
+    from .properties import HIERMATCH_PG_scene, HIERMATCH_PG_summary
+
+__all__ = ["HIERMATCH_PT_match"]
+
+_PIXELS_PER_LETTER = 7
+"""Rough width of a letter at normal interface scale, to wrap sentences."""
+
+_CLEAR_ORIENTATION = 0.3
+"""From which agreement on a match is called to keep or to mirror the orientation."""
+
+
+class HIERMATCH_PT_match(bpy.types.Panel):
+    """Choose two meshes, match them, and read how it went."""
+
+    bl_label = "HierMatch"
+    bl_idname = "HIERMATCH_PT_match"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "HierMatch"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the panel from top to bottom in the order of work."""
+        layout = layout_of(self)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        state = state_of(context)
+        _draw_pair(layout, context, state)
+        layout.prop(state, "points")
+        layout.prop(state, "use_modifiers")
+        _draw_output(layout, state)
+        _draw_advanced(layout, state)
+        _draw_run(layout, context, state)
+        if state.summary.points:
+            _draw_summary(layout, context, state.summary)
+        column = layout.column()
+        column.operator("hiermatch.clear", icon="TRASH")
+        column.operator("hiermatch.add_demo_pair", icon="ADD")
+
+
+def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_scene) -> None:
+    """Draw the pickers, and say what an empty one stands for."""
+    row = layout.row(align=True)
+    names, pickers, swap = row.column(), row.column(), row.column()
+    names.ui_units_x = 3.0  # narrower than a property split leaves it: names of objects are long
+    for name in ("source", "target"):
+        names.label(text=name.title())
+        pickers.prop(state, name, text="")
+    swap.scale_y = 2.0
+    swap.operator("hiermatch.swap", text="", icon="UV_SYNC_SELECT")
+    if state.source is None or state.target is None:
+        selected = len(selected_meshes(context))
+        picked = (state.source is not None) + (state.target is not None)
+        if selected + picked < 2:
+            _draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
+
+
+def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
+    """Draw what is written."""
+    header, body = cast("Any", layout).panel("hiermatch_output", default_closed=True)
+    header.label(text="Output")
+    if body is not None:
+        body.prop(state, "prefix")
+        column = body.column(heading="Write")
+        column.prop(state, "write_vertex_groups")
+        column.prop(state, "write_colors")
+        column.prop(state, "write_distortion")
+        body.prop(state, "use_mirrored")
+
+
+def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
+    """Draw the settings that usually stay as they are."""
+    header, body = cast("Any", layout).panel("hiermatch_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is not None:
+        column = body.column()
+        for name in SETTING_NAMES:
+            if name != "points":
+                column.prop(state, name)
+
+
+def _draw_run(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_scene) -> None:
+    """Draw the button, or how far the running match is."""
+    if is_running(window_manager_of(context)):
+        progress = progress_of(context)
+        layout.progress(text=progress.label, factor=progress.fraction)
+        layout.operator("hiermatch.cancel", icon="CANCEL")
+        return
+    row = layout.row()
+    row.scale_y = 1.5
+    match: Any = row.operator("hiermatch.match", icon="PLAY")
+    copy_options(state, match)
+
+
+def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summary: HIERMATCH_PG_summary) -> None:
+    """Draw how the last match went."""
+    box = layout.box().column()
+    box.label(text=f"{summary.points} points matched", icon="CHECKMARK")
+    rows = (
+        ("Source", summary.source),
+        ("Target", summary.target),
+        ("Distortion", f"{summary.distortion:.4g}"),
+        ("Worst Point", f"{summary.worst_distortion:.3f}"),
+        ("Coarse Match", "optimum proven" if summary.proven else f"within {summary.gap:.0%} of the optimum"),
+        ("Left and Right", _orientation_text(summary)),
+        ("Mirrored Match", "available, see Output" if summary.has_mirrored else "none"),
+        ("Time", f"{summary.seconds:.1f} s"),
+    )
+    for name, text in rows:
+        split = box.split(factor=0.4)
+        split.label(text=name)
+        split.label(text=text)
+    for note in summary.notes.splitlines():
+        _draw_text(box, context, note, "ERROR")
+    shading = cast("bpy.types.SpaceView3D", context.space_data).shading
+    if shading.type == "SOLID":
+        box.prop(shading, "color_type", text="Viewport Color")
+
+
+def _orientation_text(summary: HIERMATCH_PG_summary) -> str:
+    """Say whether the match keeps left and right."""
+    if abs(summary.orientation) < _CLEAR_ORIENTATION:
+        verdict = "unclear"
+    else:
+        verdict = "kept" if summary.orientation > 0 else "exchanged"
+    return f"{verdict} ({summary.orientation:+.2f})"
+
+
+def _draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
+    """Draw a sentence over as many lines as the width of the sidebar asks for."""
+    region, preferences = cast("Any", context.region), cast("Any", context.preferences)
+    width = region.width / (_PIXELS_PER_LETTER * preferences.system.ui_scale)
+    column: Any = layout.column()
+    column.scale_y = 0.8
+    for number, line in enumerate(textwrap.wrap(text, max(16, int(width) - 6))):
+        column.label(text=line, icon="BLANK1" if number else icon)

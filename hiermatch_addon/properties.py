@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Properties: the options of a match, on the scene and on the operator alike, and what the panel remembers."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ..engine import MatchSettings
+
+__all__ = [
+    "OPTION_NAMES",
+    "SETTING_NAMES",
+    "MatchOptions",
+    "copy_options",
+    "match_settings",
+]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+_PREFIX_LENGTH = 32
+"""Longest prefix, in bytes: with the longest ending it stays below the 63 that Blender allows a name."""
+
+
+def _setting_property(setting: Any) -> Any:  # noqa: ANN401 - a dataclass field and a deferred property have no public type
+    """Declare the Blender property of a field of `MatchSettings`."""
+    make = _props.FloatProperty if isinstance(setting.default, float) else _props.IntProperty
+    about = setting.metadata
+    return make(
+        name=about["label"],
+        description=about["description"],
+        default=setting.default,
+        min=about["minimum"],
+        max=about["maximum"],
+    )
+
+
+_SETTINGS: dict[str, Any] = {setting.name: _setting_property(setting) for setting in fields(MatchSettings)}
+
+_OPTIONS: dict[str, Any] = {
+    "use_modifiers": _props.BoolProperty(
+        name="Use Modifiers",
+        description="Match the meshes as their shape keys and modifiers show them. "
+        "Possible unless a modifier adds or removes vertices",
+    ),
+    "use_mirrored": _props.BoolProperty(
+        name="Mirrored Match",
+        description="For a symmetric shape, write the second answer, in which left and right are exchanged",
+    ),
+    "prefix": _props.StringProperty(
+        name="Prefix",
+        description="What the names of everything that is written start with. "
+        "Another prefix keeps the results of other matches",
+        default="HM",
+        maxlen=_PREFIX_LENGTH,
+    ),
+    "write_vertex_groups": _props.BoolProperty(
+        name="Vertex Groups",
+        description="Write a vertex group for each matched point; groups of the same name are the same point",
+        default=True,
+    ),
+    "write_colors": _props.BoolProperty(
+        name="Match Colors",
+        description="Write a color attribute that gives corresponding places of both meshes the same color",
+        default=True,
+    ),
+    "write_distortion": _props.BoolProperty(
+        name="Distortion",
+        description="Write how much distances differ around each place, as a color attribute from dark blue (none) to "
+        "yellow (the most), and as an attribute of numbers in units of the square root of the surface area",
+        default=True,
+    ),
+}
+
+SETTING_NAMES = tuple(_SETTINGS)
+"""The options that mirror `MatchSettings`."""
+
+OPTION_NAMES = (*SETTING_NAMES, *_OPTIONS)
+"""All options of a match."""
+
+
+class MatchOptions:
+    """The options of a match, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {**_SETTINGS, **_OPTIONS}
+
+    if TYPE_CHECKING:
+        points: int
+        use_modifiers: bool
+        use_mirrored: bool
+        prefix: str
+        write_vertex_groups: bool
+        write_colors: bool
+        write_distortion: bool
+
+
+def match_settings(options: MatchOptions) -> MatchSettings:
+    """Make the engine's settings of the options.
+
+    Raises
+    ------
+    SettingsError
+        If they contradict each other.
+    """
+    return MatchSettings(**{name: getattr(options, name) for name in SETTING_NAMES})
+
+
+def copy_options(source: MatchOptions, target: MatchOptions) -> None:
+    """Copy all options."""
+    for name in OPTION_NAMES:
+        setattr(target, name, getattr(source, name))
+
+
+def _is_mesh(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
+    return obj.type == "MESH"
+
+
+class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
+    """What the panel tells about the last match; it is there if `points` is not zero."""
+
+    points: _props.IntProperty(name="Points", description="How many points were matched")
+    source: _props.StringProperty(name="Source", description="Name of the source object")
+    target: _props.StringProperty(name="Target", description="Name of the target object")
+    distortion: _props.FloatProperty(name="Distortion", description="Distortion of the whole match")
+    worst_distortion: _props.FloatProperty(
+        name="Worst Point",
+        description="Largest distortion of a point, in units of the square root of the surface area; "
+        "yellow in the distortion colors",
+    )
+    proven: _props.BoolProperty(name="Optimum Proven", description="Whether no coarse match has less distortion")
+    gap: _props.FloatProperty(
+        name="Gap",
+        description="By how much, at most, the coarse match can be worse than the best one",
+        subtype="FACTOR",
+    )
+    orientation: _props.FloatProperty(
+        name="Orientation", description="From 1, left stays left, to -1, the match mirrors the shape"
+    )
+    has_mirrored: _props.BoolProperty(
+        name="Has Mirrored", description="Whether there is a second answer with left and right exchanged"
+    )
+    seconds: _props.FloatProperty(name="Seconds", description="How long the match took")
+    notes: _props.StringProperty(
+        name="Notes", description="What should be known about the match, one sentence per line"
+    )
+
+
+class HIERMATCH_PG_scene(MatchOptions, bpy.types.PropertyGroup):
+    """The panel's state on a scene."""
+
+    source: _props.PointerProperty(
+        name="Source",
+        description="Mesh whose points are matched; if empty, the active object",
+        type=bpy.types.Object,
+        poll=_is_mesh,
+    )
+    target: _props.PointerProperty(
+        name="Target",
+        description="Mesh on which the corresponding points are sought; if empty, the other selected mesh",
+        type=bpy.types.Object,
+        poll=_is_mesh,
+    )
+    summary: _props.PointerProperty(name="Summary", description="The last match", type=HIERMATCH_PG_summary)
+
+
+class HIERMATCH_PG_progress(bpy.types.PropertyGroup):
+    """How far the match is that runs in the window manager, and whether to cancel it."""
+
+    fraction: _props.FloatProperty(name="Fraction", description="Part of the match that is done", min=0, max=1)
+    label: _props.StringProperty(name="Label", description="What is being done")
+    cancel: _props.BoolProperty(name="Cancel", description="Whether the running match is to end")

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Load the extension from its source folder, as Blender loads it, and give each test an empty file."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+HAS_BLENDER = importlib.util.find_spec("bpy") is not None
+
+if not HAS_BLENDER:
+    collect_ignore_glob = ["test_*.py"]
+
+
+def load_extension():
+    """Import the checkout, whatever its folder is called, as the package `hiermatch`."""
+    if "hiermatch" not in sys.modules:
+        spec = importlib.util.spec_from_file_location(
+            "hiermatch", ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
+        )
+        package = importlib.util.module_from_spec(spec)
+        sys.modules["hiermatch"] = package
+        spec.loader.exec_module(package)
+    return sys.modules["hiermatch"]
+
+
+if HAS_BLENDER:
+    load_extension()
+
+
+@pytest.fixture(scope="session")
+def extension():
+    """The extension, registered."""
+    package = load_extension()
+    package.register()
+    yield package
+    package.unregister()
+
+
+@pytest.fixture(autouse=True)
+def empty_file(extension):
+    """A new, empty file for each test."""
+    import bpy
+
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert not bpy.data.objects
+    return extension

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects to match, results to write, and a record of everything that a run may not change."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from hiermatch.engine import CoarseMatch, MatchResult, SurfacePoints
+
+QUICK = {"points": 12, "coarse_points": 4, "coarse_candidates": 8, "samples": 48, "hypotheses": 2}
+"""Settings with which a small mesh is matched in some tenths of a second."""
+
+
+def add_blob(name, segments=20, rings=14):
+    """Add a lopsided ball of triangles and quads, without symmetry."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=rings)
+    obj = bpy.context.object
+    obj.name = name
+    obj.data.name = name
+    co = np.empty(3 * len(obj.data.vertices), np.float32)
+    obj.data.vertices.foreach_get("co", co)
+    x, y, z = co.reshape(-1, 3).T.astype(float)
+    moved = np.stack([x * (1 + 0.6 * x) + 0.3 * y * z, 0.8 * y * (1 + 0.5 * z), z * (1 + 0.4 * y + 0.3 * x)], axis=1)
+    obj.data.vertices.foreach_set("co", moved.astype(np.float32).ravel())
+    obj.data.update()
+    return obj
+
+
+def add_pair():
+    """Add a source and a target, alike up to place and size, and select nothing."""
+    source, target = add_blob("Source"), add_blob("Target")
+    target.location.x, target.scale = 4, (2, 2, 2)
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = None
+    bpy.context.view_layer.update()
+    return source, target
+
+
+def made_up_result(source_mesh, target_mesh, points=5, seed=1):
+    """Make a result of random points, with straight-line distances."""
+    random = np.random.default_rng(seed)
+    sides = []
+    for mesh in (source_mesh, target_mesh):
+        triangles = random.choice(mesh.triangle_count, points, replace=False)
+        barycentric = random.dirichlet([1, 1, 1], points)
+        barycentric[0] = [0, 1, 0]
+        surface = SurfacePoints.from_barycentric(mesh, triangles, barycentric)
+        distances = np.linalg.norm(surface.positions[:, None] - mesh.vertices[None], axis=2)
+        sides.append((surface, distances))
+    (source, source_distances), (target, target_distances) = sides
+    coarse = CoarseMatch(source.nearest_vertices, target.nearest_vertices, 8, 1.0, 0.9, proven=False, nodes=7)
+    return MatchResult(
+        source_points=source,
+        target_points=target,
+        distortion=0.5,
+        linear=0.2,
+        quadratic=0.3,
+        point_distortion=np.linspace(0, 0.1, points),
+        orientation=0.8,
+        levels=(),
+        coarse=coarse,
+        mirrored=None,
+        source_distances=source_distances,
+        target_distances=target_distances,
+        notes=(),
+        seconds={},
+    )
+
+
+def weights_of(obj):
+    """For each vertex group, its vertices and their weights."""
+    groups = {group.name: {} for group in obj.vertex_groups}
+    names = [group.name for group in obj.vertex_groups]
+    for vertex in obj.data.vertices:
+        for element in vertex.groups:
+            groups[names[element.group]][vertex.index] = element.weight
+    return groups
+
+
+def values_of(attribute):
+    """Values of an attribute, as bytes."""
+    member, dtype, width = {
+        "FLOAT": ("value", np.float32, 1),
+        "INT": ("value", np.int32, 1),
+        "BOOLEAN": ("value", bool, 1),
+        "FLOAT_VECTOR": ("vector", np.float32, 3),
+        "FLOAT2": ("vector", np.float32, 2),
+        "INT32_2D": ("value", np.int32, 2),
+        "FLOAT_COLOR": ("color", np.float32, 4),
+        "BYTE_COLOR": ("color", np.float32, 4),
+    }[attribute.data_type]
+    values = np.empty(len(attribute.data) * width, dtype)
+    attribute.data.foreach_get(member, values)
+    return values
+
+
+def snapshot():
+    """Everything about the scene that a user could see changed."""
+    return {
+        "objects": {
+            obj.name: (obj.type, [list(row) for row in obj.matrix_world], obj.mode, obj.select_get(), dict(obj.items()))
+            for obj in bpy.context.view_layer.objects
+        },
+        "active": getattr(bpy.context.view_layer.objects.active, "name", None),
+        "meshes": {obj.name: mesh_snapshot(obj) for obj in bpy.data.objects if obj.type == "MESH"},
+        "summary": {
+            name: getattr(bpy.context.scene.hiermatch.summary, name)
+            for name in bpy.context.scene.hiermatch.summary.bl_rna.properties.keys()  # noqa: SIM118 - not a dict
+            if name != "rna_type"
+        },
+    }
+
+
+def mesh_snapshot(obj):
+    """Everything that a match could change on an object's mesh."""
+    mesh = obj.data
+    return {
+        "groups": [(group.name, group.lock_weight) for group in obj.vertex_groups],
+        "active_group": obj.vertex_groups.active_index,
+        "weights": weights_of(obj),
+        "attributes": [
+            (attribute.name, attribute.data_type, attribute.domain, values_of(attribute).tobytes())
+            for attribute in mesh.attributes
+        ],
+        "active_attribute": getattr(mesh.attributes.active, "name", None),
+        "active_color": mesh.attributes.active_color_name,
+        "render_color": mesh.attributes.default_color_name,
+        "properties": {name: value.to_dict() if hasattr(value, "to_dict") else value for name, value in mesh.items()},
+        "vertices": [tuple(vertex.co) for vertex in mesh.vertices],
+        "name": mesh.name,
+    }

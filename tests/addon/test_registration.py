@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What stands in Blender while the add-on is registered, and that nothing stays behind."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import fields
+
+import bpy
+import pytest
+from hiermatch.engine import MatchSettings
+from hiermatch.hiermatch_addon.properties import OPTION_NAMES, SETTING_NAMES
+from hiermatch.hiermatch_addon.registration import CLASSES
+
+OPERATORS = [cls for cls in CLASSES if issubclass(cls, bpy.types.Operator)]
+
+
+def rna_of(cls):
+    """Blender's description of a class, as registered."""
+    if issubclass(cls, bpy.types.Operator):
+        group, name = cls.bl_idname.split(".")
+        return getattr(getattr(bpy.ops, group), name).get_rna_type()
+    return cls.bl_rna
+
+
+def own_properties(cls):
+    """The properties that the class itself declares."""
+    annotations = {}
+    for base in cls.__mro__:
+        annotations |= inspect.get_annotations(base)
+    rna = rna_of(cls).properties
+    return {name: rna[name] for name in annotations if name in rna}
+
+
+def test_unregister_leaves_nothing_and_register_comes_back(extension):
+    extension.unregister()
+    try:
+        assert not hasattr(bpy.types.Scene, "hiermatch")
+        assert not hasattr(bpy.types.WindowManager, "hiermatch")
+        assert not [name for name in dir(bpy.types) if name.startswith("HIERMATCH_")]
+        assert not dir(bpy.ops.hiermatch)
+    finally:
+        extension.register()
+    assert bpy.context.scene.hiermatch.points == MatchSettings().points
+    assert {cls.bl_idname.split(".")[1] for cls in OPERATORS} == set(dir(bpy.ops.hiermatch))
+
+
+@pytest.mark.parametrize("owner", ["hiermatch.match", "scene"])
+@pytest.mark.parametrize("setting", fields(MatchSettings), ids=lambda setting: setting.name)
+def test_every_setting_is_mirrored(owner, setting):
+    rna = bpy.context.scene.hiermatch.bl_rna if owner == "scene" else bpy.ops.hiermatch.match.get_rna_type()
+    mirror = rna.properties[setting.name]
+    assert mirror.type == {int: "INT", float: "FLOAT"}[type(setting.default)]
+    assert mirror.name == setting.metadata["label"]
+    assert mirror.description == setting.metadata["description"]
+    assert mirror.default == pytest.approx(setting.default)
+    assert mirror.hard_min == pytest.approx(setting.metadata["minimum"])
+    assert mirror.hard_max == pytest.approx(setting.metadata["maximum"])
+
+
+def test_nothing_else_calls_itself_a_setting():
+    assert set(SETTING_NAMES) == {setting.name for setting in fields(MatchSettings)}
+
+
+def test_scene_and_operator_have_the_same_options():
+    scene, match = bpy.context.scene.hiermatch.bl_rna, bpy.ops.hiermatch.match.get_rna_type()
+    for name in OPTION_NAMES:
+        one, other = scene.properties[name], match.properties[name]
+        assert (one.type, one.name, one.description, one.default) == (
+            other.type,
+            other.name,
+            other.description,
+            other.default,
+        )
+
+
+@pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
+def test_every_property_is_described(cls):
+    for name, described in own_properties(cls).items():
+        assert described.name, name
+        assert len(described.description) > 10, name
+        assert not described.description.endswith("."), f"{name}: Blender adds the full stop"
+
+
+def test_properties_are_found_where_they_are():
+    assert len(own_properties(next(cls for cls in CLASSES if cls.__name__ == "HIERMATCH_OT_match"))) > len(OPTION_NAMES)
+
+
+@pytest.mark.parametrize("cls", OPERATORS, ids=lambda cls: cls.__name__)
+def test_every_operator_is_described(cls):
+    assert len(rna_of(cls).description) > 10
+    assert not rna_of(cls).description.endswith(".")
+
+
+def test_the_operators_can_be_undone():
+    assert bpy.types.HIERMATCH_OT_match.bl_options == {"REGISTER", "UNDO"}
+    assert bpy.types.HIERMATCH_OT_clear.bl_options == {"REGISTER", "UNDO"}

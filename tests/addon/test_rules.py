@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Who may import what."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from tests.addon.conftest import ROOT
+
+ENGINE = sorted((ROOT / "engine").rglob("*.py"))
+ADDON = sorted((ROOT / "hiermatch_addon").rglob("*.py"))
+BLENDER = {"bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "bpy_extras", "blf", "idprop", "aud", "freestyle"}
+OURS = {"engine", "hiermatch_addon", "hiermatch"}
+STANDARD = {"__future__", "collections", "contextlib", "dataclasses", "functools", "itertools", "math", "heapq", "time"}
+ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator"}
+
+
+def imported(path):
+    """Roots of the modules that a file imports absolutely, with the relative ones left out."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield node.module.split(".")[0]
+
+
+def name(path):
+    return str(path.relative_to(ROOT))
+
+
+def test_there_are_files_to_look_at():
+    assert len(ENGINE) > 5
+    assert len(ADDON) > 5
+
+
+@pytest.mark.parametrize("path", ENGINE, ids=name)
+def test_the_engine_knows_numpy_and_scipy_and_no_blender(path):
+    assert set(imported(path)) <= ENGINE_MAY
+
+
+@pytest.mark.parametrize("path", ENGINE, ids=name)
+def test_the_engine_never_reaches_out_of_itself(path):
+    depth = len(path.relative_to(ROOT / "engine").parts)
+    levels = [node.level for node in ast.walk(ast.parse(path.read_text("utf8"))) if isinstance(node, ast.ImportFrom)]
+    assert max(levels, default=0) <= depth
+
+
+@pytest.mark.parametrize("path", [*ENGINE, *ADDON, ROOT / "__init__.py"], ids=name)
+def test_what_is_ours_is_imported_relatively(path):
+    assert not OURS & set(imported(path))
+
+
+@pytest.mark.parametrize("path", [*ENGINE, *ADDON, ROOT / "__init__.py"], ids=name)
+def test_no_threads_no_print_and_no_search_path(path):
+    tree = ast.parse(path.read_text(encoding="utf8"))
+    assert not {"threading", "_thread", "concurrent", "multiprocessing", "asyncio", "sys"} & set(imported(path))
+    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+    assert not {"print", "eval", "exec", "open", "__import__"} & called
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in ADDON if path.name != "mesh_io.py" and "demo" not in path.name], ids=name
+)
+def test_only_mesh_io_moves_arrays_and_writes_weights(path):
+    attributes = {node.attr for node in ast.walk(ast.parse(path.read_text("utf8"))) if isinstance(node, ast.Attribute)}
+    assert not {"foreach_get", "foreach_set"} & attributes
+
+
+def test_the_colours_are_computed_without_blender():
+    assert not BLENDER & set(imported(ROOT / "hiermatch_addon" / "colors.py"))
+
+
+def test_importing_the_root_needs_nothing():
+    body = ast.parse((ROOT / "__init__.py").read_text(encoding="utf8")).body
+    assert not [node for node in body if isinstance(node, ast.Import | ast.ImportFrom)]
