@@ -10,7 +10,6 @@ can speak.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,12 +22,13 @@ from .progress import Progress, Steps, within
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Hypothesis", "choose_steps"]
+__all__ = ["Hypothesis", "choose_steps", "coarse_steps"]
 
 _DISTINCT = 0.2  # two coarse matchings are distinct if half the points lie farther apart than this, in sqrt(area)
 _SCREEN_POINTS = 20  # all hypotheses are refined up to this many points,
 _DECISION_POINTS = 64  # the best of them up to this many,
 _KEPT = 4  # which are so many of each orientation.
+_DISTINCT_SHARE = 0.1  # part of the points that has to differ (by half of _DISTINCT) for two refined ones to be kept
 _CURVATURE_WEIGHT = 6.0
 _LANDMARKS = 20  # the first matched points, to which the orientation of the others is measured
 
@@ -63,8 +63,33 @@ class Hypothesis:
         return self.levels[-1].assignment
 
 
-def choose_steps(pair: Pair) -> Steps[tuple[Hypothesis, Hypothesis | None]]:
-    """Match the coarse points exactly, follow up the best distinct matchings, and choose.
+@dataclass(frozen=True, eq=False)
+class _Lead:
+    """A coarse matching on its way to a hypothesis, with the orientation that it is to have."""
+
+    coarse: BoundedMatching
+    orientation_term: NDArray[np.float64]  # (S, T)
+    levels: list[Refined]
+    cost: float
+
+    @property
+    def assignment(self) -> NDArray[np.int64]:
+        return self.levels[-1].assignment
+
+
+def coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
+    """Match the coarse points exactly: the best matchings that are distinct from each other, best first."""
+    settings = pair.settings
+    points = min(settings.coarse_points, settings.points)
+    candidates = min(settings.coarse_candidates, pair.target.sample_count)
+    problem = pair.problem(points, candidates)
+    return (
+        yield from distinct_matchings_steps(problem, settings.hypotheses, _DISTINCT, node_limit=settings.node_limit)
+    )
+
+
+def choose_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[tuple[Hypothesis, Hypothesis | None]]:
+    """Follow up coarse matchings, each with either orientation, and choose.
 
     Returns
     -------
@@ -73,63 +98,45 @@ def choose_steps(pair: Pair) -> Steps[tuple[Hypothesis, Hypothesis | None]]:
     mirrored : Hypothesis or None
         The most credible one of the opposite orientation.
     """
-    settings = pair.settings
-    points = min(settings.points, _DECISION_POINTS)
-    sizes = level_sizes(min(settings.coarse_points, points), points)
-    candidates = min(settings.coarse_candidates, len(pair.target.samples))
-    coarse = yield from within(
-        distinct_matchings_steps(
-            pair.problem(sizes[0], candidates), settings.hypotheses, _DISTINCT, node_limit=settings.node_limit
-        ),
-        0.0,
-        0.4,
-    )
-    starts = [(matching, sign) for matching in coarse for sign in (1, -1)]
+    sizes = level_sizes(len(coarse[0].assignment), min(pair.settings.points, _DECISION_POINTS))
     screen = [size for size in sizes if size <= _SCREEN_POINTS] or sizes[:1]
-    screened = []
-    for number, (matching, sign) in enumerate(starts):
-        term = pair.orientation_term(matching.assignment, sign)
-        levels = yield from _relabel(
-            refine_steps(pair, matching.assignment, screen, term),
-            Progress(0.4 + 0.2 * number / len(starts), "Comparing matchings"),
-        )
-        problem = pair.problem(screen[-1], extra=term[: screen[-1]])
-        screened.append((problem.cost(levels[-1].assignment), number, levels, term))
-    kept = [
-        entry
-        for sign in (1, -1)
-        for entry in _distinct(pair, sorted((e for e in screened if starts[e[1]][1] == sign), key=itemgetter(0, 1)))
-    ]
+    further = sizes[len(screen) :]
+    leads: list[_Lead] = []
+    for sign in (1, -1):
+        screened = []
+        for number, matching in enumerate(coarse):
+            here = Progress(((sign < 0) + number / len(coarse)) / 4, "Comparing matchings")
+            term = pair.orientation_term(matching.assignment, sign)
+            levels = yield from _at(here, refine_steps(pair, matching.assignment, screen, term))
+            cost = pair.problem(screen[-1], extra=term[: screen[-1]]).cost(levels[-1].assignment)
+            screened.append(_Lead(matching, term, levels, cost))
+        leads += _best_distinct(pair, screened)
     hypotheses = []
-    for number, (_, start, levels, term) in enumerate(kept):
-        here = Progress(0.6 + 0.4 * number / len(kept), "Comparing matchings")
-        further = [size for size in sizes if size > screen[-1]]
-        more = yield from _relabel(refine_steps(pair, levels[-1].assignment, further, term), here)
-        refined = levels + more
+    for number, lead in enumerate(leads):
+        here = Progress((1 + number / len(leads)) / 2, "Comparing matchings")
+        more = yield from _at(here, refine_steps(pair, lead.assignment, further, lead.orientation_term))
+        levels = lead.levels + more
         # Once more without the orientation term: the result is a minimum of the distortion alone.
-        last = yield from _relabel(refine_steps(pair, refined[-1].assignment, sizes[-1:]), here)
-        hypotheses.append(_assess(pair, starts[start][0], refined[:-1] + last))
+        last = yield from _at(here, refine_steps(pair, levels[-1].assignment, sizes[-1:]))
+        hypotheses.append(_assess(pair, lead.coarse, levels[:-1] + last))
     hypotheses.sort(key=lambda hypothesis: hypothesis.score)
     chosen = next((h for h in hypotheses if h.orientation > 0), hypotheses[0])
     mirrored = next((h for h in hypotheses if h.orientation * chosen.orientation < 0), None)
     return chosen, mirrored
 
 
-def _relabel(steps: Steps[list[Refined]], progress: Progress) -> Steps[list[Refined]]:
+def _at(here: Progress, steps: Steps[list[Refined]]) -> Steps[list[Refined]]:
     """Report one fixed progress for every step of a short computation."""
-    return (yield from within(steps, progress.fraction, progress.fraction))
+    return (yield from within(steps, here.fraction, here.fraction, here.label))
 
 
-def _distinct(
-    pair: Pair, ranked: list[tuple[float, int, list[Refined], NDArray[np.float64]]]
-) -> list[tuple[float, int, list[Refined], NDArray[np.float64]]]:
-    """Keep the best few matchings, leaving out those that have become the same as a better one."""
-    kept: list[tuple[float, int, list[Refined], NDArray[np.float64]]] = []
-    for entry in ranked:
-        assignment = entry[2][-1].assignment
-        moved = [pair.target.sample_distances[assignment, other[2][-1].assignment] for other in kept]
-        if all((distance > _DISTINCT / 2).mean() > 0.1 for distance in moved):
-            kept.append(entry)
+def _best_distinct(pair: Pair, leads: list[_Lead]) -> list[_Lead]:
+    """Keep the best few, leaving out those that have become the same as a better one."""
+    kept: list[_Lead] = []
+    for lead in sorted(leads, key=lambda lead: lead.cost):
+        moves = [pair.target.sample_distances[lead.assignment, other.assignment] for other in kept]
+        if all((move > _DISTINCT / 2).mean() > _DISTINCT_SHARE for move in moves):
+            kept.append(lead)
         if len(kept) == _KEPT:
             break
     return kept

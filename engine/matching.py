@@ -11,8 +11,8 @@ import numpy as np
 
 from .errors import MatchError
 from .hierarchy import Pair, Refined, level_sizes, refine_steps
-from .hypotheses import Hypothesis, choose_steps
-from .progress import Steps, run, within
+from .hypotheses import Hypothesis, choose_steps, coarse_steps
+from .progress import Progress, Steps, run, within
 from .result import CoarseMatch, Level, MatchResult
 from .settings import MatchSettings
 from .shape import Shape
@@ -95,14 +95,16 @@ def match_steps(
     clock.lap("geodesics")
     pair = Pair(x, y, settings)
     clock.lap("descriptors")
-    chosen, mirrored = yield from within(choose_steps(pair), 0.7, 0.9)
-    clock.lap("coarse and comparison")
+    coarse = yield from within(coarse_steps(pair), 0.7, 0.8, "Matching the coarse points exactly")
+    clock.lap("coarse")
+    chosen, mirrored = yield from within(choose_steps(pair, coarse), 0.8, 0.9)
     answers = []
     for number, hypothesis in enumerate(filter(None, (chosen, mirrored))):
         start = 0.9 + 0.05 * number
         levels = yield from within(_finish_steps(pair, hypothesis), start, start + 0.05)
         answers.append((hypothesis, levels))
     clock.lap("hierarchy")
+    yield Progress(1.0, "Done")
     notes = [note for shape, name in ((x, "source"), (y, "target")) for note in _notes(shape, name)]
     results = [_result(pair, hypothesis, levels, tuple(notes), clock.laps) for hypothesis, levels in answers]
     return replace(results[0], mirrored=results[1]) if len(results) > 1 else results[0]

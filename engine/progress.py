@@ -45,7 +45,7 @@ def run(steps: Steps[Result]) -> Result:
             return stop.value
 
 
-def within(steps: Steps[Result], start: float, end: float) -> Steps[Result]:
+def within(steps: Steps[Result], start: float, end: float, label: str | None = None) -> Steps[Result]:
     """Run a computation as the part from `start` to `end` of a longer one.
 
     Parameters
@@ -54,6 +54,8 @@ def within(steps: Steps[Result], start: float, end: float) -> Steps[Result]:
         The computation, with fractions from 0 to 1.
     start, end : float
         Where its fractions 0 and 1 lie in the longer computation.
+    label : str, optional
+        Shown instead of the computation's own labels.
 
     Yields
     ------
@@ -71,6 +73,6 @@ def within(steps: Steps[Result], start: float, end: float) -> Steps[Result]:
                 progress = next(steps)
             except StopIteration as stop:
                 return stop.value
-            yield Progress(start + (end - start) * progress.fraction, progress.label)
+            yield Progress(start + (end - start) * progress.fraction, label or progress.label)
     finally:
         steps.close()
