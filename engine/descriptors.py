@@ -10,7 +10,13 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["distance_histograms", "earth_movers_distance"]
+__all__ = [
+    "bin_difference",
+    "distance_histograms",
+    "earth_movers_distance",
+    "squared_differences",
+    "weighted_correlation",
+]
 
 
 def distance_histograms(
@@ -73,8 +79,41 @@ def earth_movers_distance(
     (n, m) array of float
         Distance of every first from every second histogram.
     """
-    cumulative_first, cumulative_second = np.cumsum(first, axis=1), np.cumsum(second, axis=1)
+    return bin_difference(np.cumsum(first, axis=1), np.cumsum(second, axis=1)) * bin_width
+
+
+def bin_difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Compare descriptors entry by entry: histograms bin to bin, or signatures scale by scale.
+
+    Parameters
+    ----------
+    first : (n, d) array of float
+        Descriptors.
+    second : (m, d) array of float
+        Descriptors with the same entries.
+
+    Returns
+    -------
+    (n, m) array of float
+        Sum of the absolute differences of every first from every second descriptor.
+    """
     result = np.zeros((len(first), len(second)))
-    for f, g in zip(cumulative_first.T, cumulative_second.T, strict=True):  # one bin at a time keeps memory at n x m
-        result += np.abs(f[:, None] - g[None, :])
-    return result * bin_width
+    for f, g in zip(first.T, second.T, strict=True):  # one entry at a time keeps memory at n x m
+        result += np.abs(f[:, None] - g)
+    return result
+
+
+def squared_differences(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Squared Euclidean distance of every row of `first` (n, d) from every row of `second` (m, d): (n, m)."""
+    square = np.square(first).sum(axis=1)[:, None] + np.square(second).sum(axis=1) - 2 * first @ second.T
+    return np.maximum(square, 0)
+
+
+def weighted_correlation(
+    first: NDArray[np.float64], second: NDArray[np.float64], weights: NDArray[np.float64]
+) -> float:
+    """Pearson correlation of two functions (n,) at points that stand for some area each; 0 where one is constant."""
+    weights = weights / weights.sum()
+    first, second = first - weights @ first, second - weights @ second
+    size = np.sqrt((weights @ np.square(first)) * (weights @ np.square(second)))
+    return float(weights @ (first * second) / size) if size > 0 else 0.0

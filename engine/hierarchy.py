@@ -9,84 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .descriptors import earth_movers_distance
-from .orientation import orientation_agreement, signed_areas
-from .problem import MatchingProblem
 from .progress import Progress, Steps
 from .relaxation import RelaxedMatching, descend, project
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .settings import MatchSettings
-    from .shape import Shape
+    from .pair import Pair
+    from .problem import MatchingProblem
 
-__all__ = ["Pair", "Refined", "level_sizes", "refine_steps"]
+__all__ = ["Refined", "level_sizes", "refine_steps"]
 
-# Weight of the orientation term beside the descriptors.  Its mean square difference of signed areas is about 0.5
-# between unrelated places, the descriptors' earth mover's distance some hundredths.
-_ORIENTATION_WEIGHT = 0.1
 _MAX_ITERATIONS = 8
-
-
-class Pair:
-    """Two sampled shapes, and the terms of the distortion between their samples.
-
-    Parameters
-    ----------
-    source, target : Shape
-        The shapes X and Y, sampled.
-    settings : MatchSettings
-        Descriptor and weights.
-
-    Attributes
-    ----------
-    linear : (S, T) array of float
-        d_F between every sample of X and every sample of Y.
-    """
-
-    def __init__(self, source: Shape, target: Shape, settings: MatchSettings) -> None:
-        self.source, self.target, self.settings = source, target, settings
-        bins, reach = settings.histogram_bins, max(source.diameter, target.diameter)
-        self.linear = earth_movers_distance(
-            source.histograms(bins, reach), target.histograms(bins, reach), reach / bins
-        )
-
-    def problem(
-        self, points: int, candidates: int | None = None, extra: NDArray[np.float64] | None = None
-    ) -> MatchingProblem:
-        """Match the first `points` samples of X to the first `candidates` samples of Y (all by default).
-
-        `extra`, (points, T), is added to the linear term.
-        """
-        linear = self.linear[:points, :candidates]
-        return MatchingProblem(
-            linear if extra is None else linear + extra,
-            self.source.sample_distances[:points, :points],
-            self.target.sample_distances[:candidates, :candidates],
-            self.settings.quadratic_weight,
-        )
-
-    def orientation_term(self, coarse: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
-        """Penalise matches that do not keep (sign 1) or do not mirror (sign -1) the surface, (S, T).
-
-        Seen from corresponding points, the directions to the coarse points turn the same way.  The term compares the
-        signed areas of all pairs of these directions; it is what tells the front of a flat body from its back, which
-        distances cannot.
-        """
-        first = signed_areas(self.source.directions[:, : len(coarse)])
-        second = sign * signed_areas(self.target.directions[:, coarse])
-        squares = np.square(first).sum(axis=1)[:, None] + np.square(second).sum(axis=1) - 2 * first @ second.T
-        return _ORIENTATION_WEIGHT * squares / first.shape[1]
-
-    def orientation(self, assignment: NDArray[np.int64]) -> float:
-        """Mean agreement of orientation at the matched points, see `orientation_agreement`."""
-        count = len(assignment)
-        return float(
-            orientation_agreement(
-                self.source.directions[:count, :count], self.target.directions[np.ix_(assignment, assignment)]
-            ).mean()
-        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,19 +10,23 @@ can speak.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from .branch_and_bound import BoundedMatching, distinct_matchings_steps
-from .hierarchy import Pair, Refined, level_sizes, refine_steps
+from .descriptors import squared_differences, weighted_correlation
+from .hierarchy import Refined, level_sizes, refine_steps
 from .orientation import orientation_agreement, signed_areas
+from .pair import Pair
 from .progress import Progress, Steps, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Hypothesis", "choose_steps", "coarse_steps"]
+__all__ = ["Coarse", "Hypothesis", "choose_steps", "coarse_candidates", "coarse_steps"]
+
+Result = TypeVar("Result")
 
 _DISTINCT = 0.2  # two coarse matchings are distinct if half the points lie farther apart than this, in sqrt(area)
 _SCREEN_POINTS = 20  # all hypotheses are refined up to this many points,
@@ -30,7 +34,24 @@ _DECISION_POINTS = 64  # the best of them up to this many,
 _KEPT = 4  # which are so many of each orientation.
 _DISTINCT_SHARE = 0.1  # part of the points that has to differ (by half of _DISTINCT) for two refined ones to be kept
 _CURVATURE_WEIGHT = 6.0
+_SYMMETRIES = 2  # so many self-matchings of the source, beside the identity, are tried for the mirror image
 _LANDMARKS = 20  # the first matched points, to which the orientation of the others is measured
+
+
+@dataclass(frozen=True, eq=False)
+class Coarse:
+    """An exactly matched coarse problem.
+
+    Attributes
+    ----------
+    pair : Pair
+        The pair, with the signs of eigenfunctions under which it was matched.
+    matching : BoundedMatching
+        The matching of the first samples.
+    """
+
+    pair: Pair
+    matching: BoundedMatching
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +60,7 @@ class Hypothesis:
 
     Attributes
     ----------
-    coarse : BoundedMatching
+    coarse : Coarse
         Where it started.
     levels : list of Refined
         The levels since then.
@@ -51,7 +72,7 @@ class Hypothesis:
         Smaller is more credible; comparable between hypotheses of one pair.
     """
 
-    coarse: BoundedMatching
+    coarse: Coarse
     levels: list[Refined]
     cost: float
     orientation: float
@@ -67,7 +88,7 @@ class Hypothesis:
 class _Lead:
     """A coarse matching on its way to a hypothesis, with the orientation that it is to have."""
 
-    coarse: BoundedMatching
+    coarse: Coarse
     orientation_term: NDArray[np.float64]  # (S, T)
     levels: list[Refined]
     cost: float
@@ -77,18 +98,39 @@ class _Lead:
         return self.levels[-1].assignment
 
 
-def coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
-    """Match the coarse points exactly: the best matchings that are distinct from each other, best first."""
+def coarse_candidates(pair: Pair) -> int:
+    """Count the samples of the target that are offered to the coarse points."""
+    settings = pair.settings
+    if settings.constraint == "bijective":
+        return min(settings.coarse_points, settings.points)
+    return min(settings.coarse_candidates, pair.target.sample_count)
+
+
+def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
+    """Match the coarse points exactly.
+
+    Returns
+    -------
+    list of Coarse
+        The best matchings that are distinct from each other; with eigenfunctions as descriptors, the best matching
+        for each of the most consistent sign sequences.
+    """
     settings = pair.settings
     points = min(settings.coarse_points, settings.points)
-    candidates = min(settings.coarse_candidates, pair.target.sample_count)
-    problem = pair.problem(points, candidates)
-    return (
-        yield from distinct_matchings_steps(problem, settings.hypotheses, _DISTINCT, node_limit=settings.node_limit)
-    )
+    candidates = coarse_candidates(pair)
+    variants = pair.variants(settings.hypotheses)
+    each = -(-settings.hypotheses // len(variants))
+    found = []
+    for number, variant in enumerate(variants):
+        search = distinct_matchings_steps(
+            variant.problem(points, candidates), each, _DISTINCT, node_limit=settings.node_limit
+        )
+        matchings = yield from within(search, number / len(variants), (number + 1) / len(variants))
+        found += [Coarse(variant, matching) for matching in matchings]
+    return found
 
 
-def choose_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[tuple[Hypothesis, Hypothesis | None]]:
+def choose_steps(coarse: list[Coarse]) -> Steps[tuple[Hypothesis, Hypothesis | None]]:
     """Follow up coarse matchings, each with either orientation, and choose.
 
     Returns
@@ -98,43 +140,81 @@ def choose_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[tuple[Hypot
     mirrored : Hypothesis or None
         The most credible one of the opposite orientation.
     """
-    sizes = level_sizes(len(coarse[0].assignment), min(pair.settings.points, _DECISION_POINTS))
+    points = min(coarse[0].pair.settings.points, _DECISION_POINTS)
+    sizes = level_sizes(len(coarse[0].matching.assignment), points)
     screen = [size for size in sizes if size <= _SCREEN_POINTS] or sizes[:1]
     further = sizes[len(screen) :]
     leads: list[_Lead] = []
     for sign in (1, -1):
         screened = []
-        for number, matching in enumerate(coarse):
-            here = Progress(((sign < 0) + number / len(coarse)) / 4, "Comparing matchings")
-            term = pair.orientation_term(matching.assignment, sign)
-            levels = yield from _at(here, refine_steps(pair, matching.assignment, screen, term))
-            cost = pair.problem(screen[-1], extra=term[: screen[-1]]).cost(levels[-1].assignment)
-            screened.append(_Lead(matching, term, levels, cost))
-        leads += _best_distinct(pair, screened)
-    hypotheses = []
+        for number, start in enumerate(coarse):
+            here = Progress(0.25 * ((sign < 0) + number / len(coarse)), "Comparing matchings")
+            term = start.pair.orientation_term(start.matching.assignment, sign)
+            levels = yield from _at(here, refine_steps(start.pair, start.matching.assignment, screen, term))
+            cost = start.pair.problem(screen[-1], extra=term[: screen[-1]]).cost(levels[-1].assignment)
+            screened.append(_Lead(start, term, levels, cost))
+        leads += _best_distinct(screened)
+    hypotheses: list[Hypothesis] = []
     for number, lead in enumerate(leads):
-        here = Progress((1 + number / len(leads)) / 2, "Comparing matchings")
-        more = yield from _at(here, refine_steps(pair, lead.assignment, further, lead.orientation_term))
-        levels = lead.levels + more
-        # Once more without the orientation term: the result is a minimum of the distortion alone.
-        last = yield from _at(here, refine_steps(pair, levels[-1].assignment, sizes[-1:]))
-        hypotheses.append(_assess(pair, lead.coarse, levels[:-1] + last))
+        here = Progress(0.5 + 0.35 * number / len(leads), "Comparing matchings")
+        hypotheses.append((yield from _at(here, _follow_steps(lead, further))))
     hypotheses.sort(key=lambda hypothesis: hypothesis.score)
+    reflected = yield from _at(Progress(0.85, "Comparing matchings"), _reflected_steps(hypotheses, sizes))
+    hypotheses = sorted(hypotheses + reflected, key=lambda hypothesis: hypothesis.score)
     chosen = next((h for h in hypotheses if h.orientation > 0), hypotheses[0])
     mirrored = next((h for h in hypotheses if h.orientation * chosen.orientation < 0), None)
     return chosen, mirrored
 
 
-def _at(here: Progress, steps: Steps[list[Refined]]) -> Steps[list[Refined]]:
+def _follow_steps(lead: _Lead, further: list[int]) -> Steps[Hypothesis]:
+    """Refine a lead to its last level, and there once more without the orientation term.
+
+    So the result is a minimum of the distortion alone.
+    """
+    pair = lead.coarse.pair
+    more = yield from refine_steps(pair, lead.assignment, further, lead.orientation_term)
+    levels = lead.levels + more
+    last = yield from refine_steps(pair, levels[-1].assignment, [len(levels[-1].assignment)])
+    return _assess(lead.coarse, levels[:-1] + last)
+
+
+def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int]) -> Steps[list[Hypothesis]]:
+    """Make of the best matching of each orientation its mirror image, by the symmetries of the source.
+
+    A symmetry of the source, followed by a matching, is another matching.  So where only one of the true and the
+    mirrored one is among the best coarse matchings, the other is found from it.
+    """
+    pair = hypotheses[0].coarse.pair
+    mirror = Pair(pair.source, pair.source, pair.settings)
+    problem = mirror.problem(sizes[0], min(pair.settings.coarse_candidates, len(hypotheses[0].assignment)))
+    # The best self-matching is the identity.
+    selves = yield from distinct_matchings_steps(
+        problem, 1 + _SYMMETRIES, _DISTINCT, node_limit=pair.settings.node_limit
+    )
+    found = []
+    for sign in (1, -1):
+        best = next((h for h in hypotheses if h.orientation * sign > 0), None)
+        if best is None:
+            continue
+        for symmetry in selves[1:]:
+            start = best.assignment[symmetry.assignment]
+            term = best.coarse.pair.orientation_term(start, -sign)
+            levels = yield from refine_steps(best.coarse.pair, start, sizes[:1], term)
+            found.append((yield from _follow_steps(_Lead(best.coarse, term, levels, 0.0), sizes[1:])))
+    return found
+
+
+def _at(here: Progress, steps: Steps[Result]) -> Steps[Result]:
     """Report one fixed progress for every step of a short computation."""
     return (yield from within(steps, here.fraction, here.fraction, here.label))
 
 
-def _best_distinct(pair: Pair, leads: list[_Lead]) -> list[_Lead]:
+def _best_distinct(leads: list[_Lead]) -> list[_Lead]:
     """Keep the best few, leaving out those that have become the same as a better one."""
     kept: list[_Lead] = []
     for lead in sorted(leads, key=lambda lead: lead.cost):
-        moves = [pair.target.sample_distances[lead.assignment, other.assignment] for other in kept]
+        target = lead.coarse.pair.target
+        moves = [target.sample_distances[lead.assignment, other.assignment] for other in kept]
         if all((move > _DISTINCT / 2).mean() > _DISTINCT_SHARE for move in moves):
             kept.append(lead)
         if len(kept) == _KEPT:
@@ -142,7 +222,7 @@ def _best_distinct(pair: Pair, leads: list[_Lead]) -> list[_Lead]:
     return kept
 
 
-def _assess(pair: Pair, coarse: BoundedMatching, levels: list[Refined]) -> Hypothesis:
+def _assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
     """Carry a matching to all samples, and see how well the surfaces agree there.
 
     Two things are asked of the lifted map: that it keeps the distances to the matched points, and that the surface
@@ -151,35 +231,23 @@ def _assess(pair: Pair, coarse: BoundedMatching, levels: list[Refined]) -> Hypot
     """
     assignment = levels[-1].assignment
     count = len(assignment)
+    pair = coarse.pair
     source, target = pair.source, pair.target
     known, offered = source.sample_distances[:, :count], target.sample_distances[:, assignment]
-    misfit = _squared_differences(known, offered) / count
+    misfit = squared_differences(known, offered) / count
     landmarks = min(count, _LANDMARKS)
     here, there = source.directions[:, :landmarks], target.directions[:, assignment[:landmarks]]
     first, second = signed_areas(here), signed_areas(there)
     # The sides must agree as the matching itself says, whichever it says.
     sign = 1 if pair.orientation(assignment) >= 0 else -1
-    sides = _squared_differences(first, sign * second) / first.shape[1]
+    sides = squared_differences(first, sign * second) / first.shape[1]
     lifted = (misfit + 0.01 * sides).argmin(axis=1)
     residual = float(misfit[np.arange(len(lifted)), lifted].mean())
     agreements = [
-        _correlation(x, y[lifted], source.cell_areas) for x, y in zip(source.curvatures, target.curvatures, strict=True)
+        weighted_correlation(x, y[lifted], source.cell_areas)
+        for x, y in zip(source.curvatures, target.curvatures, strict=True)
     ]
     orientation = float(orientation_agreement(here, there[lifted]).mean())
     score = float(np.log(max(residual, float(np.finfo(float).tiny))) - _CURVATURE_WEIGHT * np.mean(agreements))
     cost = pair.problem(count).cost(assignment)
     return Hypothesis(coarse, levels, cost, orientation, score)
-
-
-def _squared_differences(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Squared distance between every row of `first` (s, d) and every row of `second` (t, d): (s, t)."""
-    square = np.square(first).sum(axis=1)[:, None] + np.square(second).sum(axis=1) - 2 * first @ second.T
-    return np.maximum(square, 0)
-
-
-def _correlation(first: NDArray[np.float64], second: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
-    """Weighted Pearson correlation; 0 where one of the two is constant."""
-    weights = weights / weights.sum()
-    first, second = first - weights @ first, second - weights @ second
-    size = np.sqrt((weights @ np.square(first)) * (weights @ np.square(second)))
-    return float(weights @ (first * second) / size) if size > 0 else 0.0

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .errors import MatchError
-from .hierarchy import Pair, Refined, level_sizes, refine_steps
-from .hypotheses import Hypothesis, choose_steps, coarse_steps
+from .hierarchy import Refined, level_sizes, refine_steps
+from .hypotheses import Hypothesis, choose_steps, coarse_candidates, coarse_steps
+from .pair import Pair
 from .progress import Progress, Steps, run, within
 from .result import CoarseMatch, Level, MatchResult
 from .settings import MatchSettings
@@ -90,23 +91,27 @@ def match_steps(
                 "Use fewer points or subdivide the mesh."
             )
     samples = max(settings.samples, 2 * settings.points)
-    yield from within(x.sample_steps(samples), 0.0, 0.35)
-    yield from within(y.sample_steps(samples), 0.35, 0.7)
+    yield from within(x.sample_steps(samples), 0.0, 0.3)
+    yield from within(y.sample_steps(samples), 0.3, 0.6)
     clock.lap("geodesics")
-    pair = Pair(x, y, settings)
+    if Pair.needs_spectrum(settings):
+        yield from within(x.spectrum_steps(settings.eigenpairs), 0.6, 0.65)
+        yield from within(y.spectrum_steps(settings.eigenpairs), 0.65, 0.7)
+        clock.lap("eigenpairs")
+    pair = Pair(x.limited(samples), y.limited(samples), settings)
     clock.lap("descriptors")
     coarse = yield from within(coarse_steps(pair), 0.7, 0.8, "Matching the coarse points exactly")
     clock.lap("coarse")
-    chosen, mirrored = yield from within(choose_steps(pair, coarse), 0.8, 0.9)
+    chosen, mirrored = yield from within(choose_steps(coarse), 0.8, 0.9)
     answers = []
     for number, hypothesis in enumerate(filter(None, (chosen, mirrored))):
         start = 0.9 + 0.05 * number
-        levels = yield from within(_finish_steps(pair, hypothesis), start, start + 0.05)
+        levels = yield from within(_finish_steps(hypothesis), start, start + 0.05)
         answers.append((hypothesis, levels))
     clock.lap("hierarchy")
     yield Progress(1.0, "Done")
     notes = [note for shape, name in ((x, "source"), (y, "target")) for note in _notes(shape, name)]
-    results = [_result(pair, hypothesis, levels, tuple(notes), clock.laps) for hypothesis, levels in answers]
+    results = [_result(hypothesis, levels, tuple(notes), clock.laps) for hypothesis, levels in answers]
     return replace(results[0], mirrored=results[1]) if len(results) > 1 else results[0]
 
 
@@ -123,8 +128,9 @@ class _Clock:
         self._last = now
 
 
-def _finish_steps(pair: Pair, hypothesis: Hypothesis) -> Steps[list[Refined]]:
+def _finish_steps(hypothesis: Hypothesis) -> Steps[list[Refined]]:
     """Go on from the level at which the hypotheses were compared to the finest."""
+    pair = hypothesis.coarse.pair
     reached = len(hypothesis.assignment)
     sizes = level_sizes(reached, pair.settings.points)[1:]
     return hypothesis.levels + (yield from refine_steps(pair, hypothesis.assignment, sizes))
@@ -140,13 +146,13 @@ def _notes(shape: Shape, name: str) -> list[str]:
 
 
 def _result(
-    pair: Pair, hypothesis: Hypothesis, levels: list[Refined], notes: tuple[str, ...], seconds: dict[str, float]
+    hypothesis: Hypothesis, levels: list[Refined], notes: tuple[str, ...], seconds: dict[str, float]
 ) -> MatchResult:
+    pair, coarse = hypothesis.coarse.pair, hypothesis.coarse.matching
     x, y, assignment = pair.source, pair.target, levels[-1].assignment
     count = len(assignment)
     problem = pair.problem(count)
     difference = problem.source_distances - problem.target_distances[np.ix_(assignment, assignment)]
-    coarse = hypothesis.coarse
     return MatchResult(
         source_points=_points(x, np.arange(count)),
         target_points=_points(y, assignment),
@@ -154,7 +160,7 @@ def _result(
         linear=problem.linear_cost(assignment),
         quadratic=problem.quadratic_cost(assignment),
         point_distortion=np.sqrt(np.square(difference).sum(axis=1) / max(count - 1, 1)),
-        orientation=pair.orientation(assignment),
+        orientation=hypothesis.orientation,
         levels=tuple(
             Level(
                 len(level.assignment),
@@ -167,7 +173,7 @@ def _result(
         coarse=CoarseMatch(
             x.vertices[x.samples[: len(coarse.assignment)]],
             y.vertices[y.samples[coarse.assignment]],
-            min(pair.settings.coarse_candidates, y.sample_count),
+            coarse_candidates(pair),
             coarse.cost,
             coarse.lower_bound,
             coarse.proven,

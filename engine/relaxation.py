@@ -5,11 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment, minimize
+from scipy.optimize import linear_sum_assignment
 from scipy.sparse import csr_array
+
+from .quasi_newton import minimize_lbfgs
+from .small_products import product
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,10 +67,10 @@ class RelaxedMatching:
         source_squared, target_squared = self._squares
         weight = self.problem.quadratic_weight
         rows = csr_array((mixture.ravel(), column.ravel(), np.arange(0, j * k + 1, k)), shape=(j, len(used)))
-        mass = np.bincount(column.ravel(), mixture.ravel(), len(used))
-        cross = np.take_along_axis(self.problem.source_distances @ (rows @ self._target), column, axis=1)
+        mass: NDArray[Any] = np.bincount(column.ravel(), mixture.ravel(), len(used))
+        cross = np.take_along_axis(product(self.problem.source_distances, rows @ self._target), column, axis=1)
         row_sums = mixture.sum(axis=1)
-        interaction = (source_squared @ row_sums)[:, None] - 2 * cross + (target_squared @ mass)[column]
+        interaction = product(source_squared, row_sums)[:, None] - 2 * cross + product(target_squared, mass)[column]
         value = np.vdot(self._linear, mixture) + weight * np.vdot(interaction, mixture)
         return float(value), self._linear + 2 * weight * interaction
 
@@ -94,10 +97,9 @@ class RelaxedMatching:
             gradient -= (gradient * mixture).sum(axis=1, keepdims=True)
             return value, (mixture * gradient).ravel()
 
-        solution = minimize(
-            objective, np.zeros(self.candidates.size), jac=True, method="L-BFGS-B", options={"maxiter": max_iterations}
-        )
-        return softmax(solution.x.reshape(shape))
+        # The mixture is projected to integers next; more digits were not seen to give better matchings.
+        logits, _ = minimize_lbfgs(objective, np.zeros(self.candidates.size), max_iterations, tolerance=1e-5)
+        return softmax(logits.reshape(shape))
 
 
 def project(mixture: NDArray[np.float64], candidates: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -157,7 +159,7 @@ def descend(problem: MatchingProblem, assignment: NDArray[np.int64], max_sweeps:
         for i in range(len(current)):
             # The square expanded, so that a point costs one matrix-vector product; the point's distance to itself is
             # zero wherever it goes, so it is taken out.
-            misfit = squares - np.square(to_matched[:, i]) - 2 * (to_matched @ source[i]) + source[i] @ source[i]
+            misfit = squares - np.square(to_matched[:, i]) - 2 * product(to_matched, source[i]) + source[i] @ source[i]
             cost = linear[i] + 2 * problem.quadratic_weight * misfit
             here = cost[current[i]]
             cost[~free] = np.inf

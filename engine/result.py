@@ -84,8 +84,8 @@ class MatchResult:
         For each point, the root mean square difference of its distances to all others on the two surfaces, in units
         of the square root of the area.
     orientation : float
-        Agreement of the orientation of the surfaces under the correspondence, -1 to 1: near 1 if left stays left,
-        near -1 if the correspondence mirrors.
+        Agreement of the orientation of the surfaces under the correspondence, averaged over the samples, -1 to 1:
+        near 1 if left stays left, near -1 if the correspondence mirrors.
     levels : tuple of Level
         The hierarchy, coarse to fine.
     coarse : CoarseMatch

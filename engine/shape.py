@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import copy
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from .descriptors import distance_histograms
+from .eigenpairs import Spectrum, eigenpairs_steps
 from .geodesics import GeodesicSolver
 from .integral_invariants import smoothed_mean_curvature
 from .orientation import tangent_gradient
@@ -54,6 +55,8 @@ class Shape:
         self.scale = float(np.sqrt(self.mesh.area))
         self.solver = GeodesicSolver(self.mesh)
         self._rows = np.empty((0, self.mesh.vertex_count), np.float32)
+        self._spectrum: Spectrum | None = None
+        self._views: dict[int, Shape] = {}
 
     @cached_property
     def _sampler(self) -> FarthestPointSampler:
@@ -84,8 +87,46 @@ class Shape:
             rows[self.sample_count + first : self.sample_count + first + len(block)] = block / self.scale
             yield Progress((first + len(block)) / missing, "Measuring distances")
         self._rows = rows
+        self._forget_samples()
+
+    def spectrum_steps(self, count: int) -> Steps[None]:
+        """Compute the first `count` eigenpairs of the Laplace-Beltrami operator (as many as the mesh has, at most)."""
+        count = min(count, self.mesh.vertex_count)
+        # Not more either: a match must not depend on what was asked of the shape before.
+        if self._spectrum is None or len(self._spectrum) != count:
+            self._spectrum = yield from eigenpairs_steps(self.mesh, count)
+
+    def limited(self, count: int) -> Shape:
+        """Return the shape with only the first `count` of its samples, sharing all that was computed.
+
+        A match uses this, so that its result does not depend on how many samples other matches took before.
+        """
+        if count >= self.sample_count:
+            return self
+        view = self._views.get(count)
+        if view is None:
+            view = self._views[count] = copy.copy(self)
+            view._forget_samples()  # noqa: SLF001
+            view._rows = self._rows[:count]  # noqa: SLF001
+        view._spectrum = self._spectrum  # noqa: SLF001
+        return view
+
+    def _forget_samples(self) -> None:
         for name in ("samples", "cell_areas", "sample_distances", "directions", "curvatures"):
             self.__dict__.pop(name, None)
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """The eigenpairs.
+
+        Raises
+        ------
+        RuntimeError
+            If `spectrum_steps` was not run before.
+        """
+        if self._spectrum is None:
+            raise RuntimeError("The spectrum was not computed: run spectrum_steps first.")
+        return self._spectrum
 
     @cached_property
     def samples(self) -> NDArray[np.int64]:
@@ -100,7 +141,8 @@ class Shape:
     @cached_property
     def cell_areas(self) -> NDArray[np.float64]:
         """Area of each sample's Voronoi cell as a part of the whole, (S,)."""
-        return np.bincount(self._sampler.nearest, self.mesh.vertex_areas, self.sample_count) / self.mesh.area
+        nearest = self._rows.argmin(axis=0)
+        return np.bincount(nearest, self.mesh.vertex_areas, self.sample_count) / self.mesh.area
 
     @cached_property
     def sample_distances(self) -> NDArray[np.float64]:
@@ -109,15 +151,6 @@ class Shape:
         square = (square + square.T) / 2
         np.fill_diagonal(square, 0)
         return square
-
-    @cached_property
-    def diameter(self) -> float:
-        """Largest distance between two samples; the two ends of the surface are among them."""
-        return float(self.sample_distances.max())
-
-    def histograms(self, bins: int, reach: float) -> NDArray[np.float64]:
-        """Histogram the distances from each sample to the surface, (S, bins); see `distance_histograms`."""
-        return distance_histograms(self.sample_distances, self.cell_areas, bins, reach)
 
     @cached_property
     def directions(self) -> NDArray[np.float64]:

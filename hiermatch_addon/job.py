@@ -13,8 +13,9 @@ from ..engine import MatchSettings, Progress, SettingsError, match_steps
 from . import writing
 from .access import mesh_of, view_layer_of
 from .errors import ObjectError
-from .mesh_io import read_mesh
+from .mesh_io import read_mesh, topology
 from .pair import check_pair
+from .stored_match import Answer, CornerPoints, StoredMatch, Written
 
 if TYPE_CHECKING:
     from ..engine import MatchResult
@@ -63,20 +64,17 @@ class Outcome:
         Names of the objects.
     result : MatchResult
         What was written.
-    has_mirrored : bool
-        Whether there are two answers.
+    stored : StoredMatch
+        What is kept of it in the file: both answers.
     seconds : float
         How long it took, from reading to writing.
-    notes : tuple of str
-        What the user should know.
     """
 
     source: str
     target: str
     result: MatchResult
-    has_mirrored: bool
+    stored: StoredMatch
     seconds: float
-    notes: tuple[str, ...]
 
 
 class MatchJob:
@@ -118,6 +116,7 @@ class MatchJob:
         self._names = (source.name, target.name)
         meshes = [read_mesh(obj, depsgraph, use_modifiers=options.use_modifiers) for obj in (source, target)]
         self._sizes = tuple(mesh.vertex_count for mesh in meshes)
+        self._topologies = (topology(mesh_of(source)), topology(mesh_of(target)))
         self._steps = match_steps(meshes[0], meshes[1], options.settings)
         self._result: MatchResult | None = None
         self.progress = Progress(0.0, "Starting")
@@ -151,12 +150,14 @@ class MatchJob:
         """
         if self._result is None:
             raise RuntimeError("The match has not come to its end yet.")
-        result, notes, options = self._result, list(self._result.notes), self._options
-        has_mirrored = result.mirrored is not None
-        if options.use_mirrored and result.mirrored is not None:
-            result = result.mirrored
-        elif options.use_mirrored:
-            notes.append("There is no mirrored match, so the only one was written.")
+        objects = self._objects(view_layer)
+        for obj, read in zip(objects, self._topologies, strict=True):
+            if topology(mesh_of(obj)) != read:
+                raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
+        names = (objects[0].name, objects[1].name)
+        options = self._options
+        stored = self._stored(self._result, names)
+        result = self._result.mirrored if stored.mirrored and self._result.mirrored is not None else self._result
         prepared = writing.contents(
             result,
             options.prefix,
@@ -164,13 +165,26 @@ class MatchJob:
             match_colors=options.match_colors,
             distortion=options.distortion,
         )
-        plan = list(zip(self._objects(view_layer), prepared, strict=True))
-        for obj, content in plan:
+        for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
             writing.check_names(obj, content)
-        writing.write(plan, options.prefix)
-        names = [obj.name for obj, _ in plan]
-        seconds = time.perf_counter() - self._start
-        return Outcome(names[0], names[1], result, has_mirrored, seconds, tuple(notes))
+            content.keep.update(kept)
+        writing.write(list(zip(objects, prepared, strict=True)), options.prefix)
+        return Outcome(*names, result, stored, time.perf_counter() - self._start)
+
+    def _stored(self, result: MatchResult, names: tuple[str, str]) -> StoredMatch:
+        """Collect what is kept of the match in the file."""
+        options, notes = self._options, list(result.notes)
+        if options.use_mirrored and result.mirrored is None:
+            notes.append("There is no mirrored match, so the only one was written.")
+        return StoredMatch(
+            names=names,
+            topologies=self._topologies,
+            written=Written(options.use_modifiers, options.vertex_groups, options.match_colors, options.distortion),
+            source_points=CornerPoints.of(result.source_points),
+            answers=tuple(Answer.of(answer) for answer in (result, result.mirrored) if answer is not None),
+            mirrored=options.use_mirrored and result.mirrored is not None,
+            notes=tuple(notes),
+        )
 
     def close(self) -> None:
         """Drop the work; nothing has been written."""

@@ -6,6 +6,7 @@ Blender's bulk access wants flat, contiguous buffers of exactly its own number t
 
 from __future__ import annotations
 
+import hashlib
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["add_colors", "add_values", "add_vertex_group", "read_mesh"]
+__all__ = ["add_colors", "add_values", "add_vertex_group", "read_mesh", "topology"]
 
 _TOPOLOGY_MODIFIERS = frozenset(
     {
@@ -91,6 +92,18 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
         return TriangleMesh(vertices, triangles)
     except MeshError as error:
         raise ObjectError(f'"{obj.name}": {error}') from error
+
+
+def topology(mesh: bpy.types.Mesh) -> str:
+    """Return a text that is the same as long as the vertices and faces of a mesh are numbered and connected alike."""
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    digest = hashlib.blake2b(len(mesh.vertices).to_bytes(8, "little"), digest_size=16)
+    for numbers in (starts, corners):
+        digest.update(numbers.astype("<i4").tobytes())
+    return digest.hexdigest()
 
 
 @contextmanager

@@ -10,8 +10,10 @@ import bpy
 
 from .access import layout_of, progress_of, state_of, window_manager_of
 from .pair import selected_meshes
-from .properties import SETTING_NAMES, copy_options
+from .properties import copy_options
 from .running import is_running
+from .setting_groups import shown_groups
+from .setups import current_setup
 
 if TYPE_CHECKING:
     from .properties import HIERMATCH_PG_scene, HIERMATCH_PG_summary
@@ -20,6 +22,12 @@ __all__ = ["HIERMATCH_PT_match"]
 
 _PIXELS_PER_LETTER = 7
 """Rough width of a letter at normal interface scale, to wrap sentences."""
+
+_NAME_WIDTH = 3.0
+"""Width of the names at the top, narrower than a property split makes them: what they stand before is long."""
+
+_LABEL_SHARE = 0.4
+"""Part of the width for the names in the summary, as in a property split."""
 
 _CLEAR_ORIENTATION = 0.3
 """From which agreement on a match is called to keep or to mirror the orientation."""
@@ -41,6 +49,7 @@ class HIERMATCH_PT_match(bpy.types.Panel):
         layout.use_property_decorate = False
         state = state_of(context)
         _draw_pair(layout, context, state)
+        _draw_setup(layout, state)
         layout.prop(state, "points")
         layout.prop(state, "use_modifiers")
         _draw_output(layout, state)
@@ -57,7 +66,7 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
     """Draw the pickers, and say what an empty one stands for."""
     row = layout.row(align=True)
     names, pickers, swap = row.column(), row.column(), row.column()
-    names.ui_units_x = 3.0  # narrower than a property split leaves it: names of objects are long
+    names.ui_units_x = _NAME_WIDTH
     for name in ("source", "target"):
         names.label(text=name.title())
         pickers.prop(state, name, text="")
@@ -68,6 +77,15 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
         picked = (state.source is not None) + (state.target is not None)
         if selected + picked < 2:
             _draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
+
+
+def _draw_setup(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
+    """Draw the menu of setups, with the one that the settings make."""
+    row = layout.row(align=True)
+    name = row.column()
+    name.ui_units_x = _NAME_WIDTH
+    name.label(text="Setup")
+    row.operator_menu_enum("hiermatch.use_setup", "setup", text=current_setup(state) or "Custom")
 
 
 def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
@@ -84,13 +102,15 @@ def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
 
 
 def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
-    """Draw the settings that usually stay as they are."""
+    """Draw the settings that usually stay as they are, as far as they matter."""
     header, body = cast("Any", layout).panel("hiermatch_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is not None:
-        column = body.column()
-        for name in SETTING_NAMES:
-            if name != "points":
+        for title, names in shown_groups(state):
+            column = body.column()
+            if title:
+                column.label(text=title)
+            for name in names:
                 column.prop(state, name)
 
 
@@ -118,13 +138,17 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         ("Worst Point", f"{summary.worst_distortion:.3f}"),
         ("Coarse Match", "optimum proven" if summary.proven else f"within {summary.gap:.0%} of the optimum"),
         ("Left and Right", _orientation_text(summary)),
-        ("Mirrored Match", "available, see Output" if summary.has_mirrored else "none"),
-        ("Time", f"{summary.seconds:.1f} s"),
+        ("Mirrored Match", "" if summary.has_mirrored else "none"),
+        ("Time", f"{summary.seconds:.1f} s" if summary.seconds else ""),
     )
     for name, text in rows:
-        split = box.split(factor=0.4)
+        if not text:
+            continue
+        split = box.split(factor=_LABEL_SHARE)
         split.label(text=name)
         split.label(text=text)
+    if summary.has_mirrored:
+        box.operator("hiermatch.flip", icon="MOD_MIRROR", depress=summary.mirrored)
     for note in summary.notes.splitlines():
         _draw_text(box, context, note, "ERROR")
     shading = cast("bpy.types.SpaceView3D", context.space_data).shading

@@ -11,12 +11,19 @@ import bpy
 
 from ..engine import MatchSettings
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 __all__ = [
     "OPTION_NAMES",
+    "OUTPUT_NAMES",
     "SETTING_NAMES",
     "MatchOptions",
     "copy_options",
     "match_settings",
+    "set_settings",
+    "setting_of",
+    "to_identifier",
 ]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
@@ -25,10 +32,22 @@ _PREFIX_LENGTH = 32
 """Longest prefix, in bytes: with the longest ending it stays below the 63 that Blender allows a name."""
 
 
+def to_identifier(word: str) -> str:
+    """Return how Blender writes one of the engine's words: in capitals."""
+    return word.upper()
+
+
 def _setting_property(setting: Any) -> Any:  # noqa: ANN401 - a dataclass field and a deferred property have no public type
     """Declare the Blender property of a field of `MatchSettings`."""
-    make = _props.FloatProperty if isinstance(setting.default, float) else _props.IntProperty
     about = setting.metadata
+    if "choices" in about:
+        return _props.EnumProperty(
+            name=about["label"],
+            description=about["description"],
+            default=to_identifier(setting.default),
+            items=[(to_identifier(word), *described) for word, described in about["choices"].items()],
+        )
+    make = _props.FloatProperty if isinstance(setting.default, float) else _props.IntProperty
     return make(
         name=about["label"],
         description=about["description"],
@@ -39,6 +58,11 @@ def _setting_property(setting: Any) -> Any:  # noqa: ANN401 - a dataclass field 
 
 
 _SETTINGS: dict[str, Any] = {setting.name: _setting_property(setting) for setting in fields(MatchSettings)}
+_CHOICES = {
+    setting.name: {to_identifier(word): word for word in setting.metadata["choices"]}
+    for setting in fields(MatchSettings)
+    if "choices" in setting.metadata
+}
 
 _OPTIONS: dict[str, Any] = {
     "use_modifiers": _props.BoolProperty(
@@ -48,7 +72,8 @@ _OPTIONS: dict[str, Any] = {
     ),
     "use_mirrored": _props.BoolProperty(
         name="Mirrored Match",
-        description="For a symmetric shape, write the second answer, in which left and right are exchanged",
+        description="For a symmetric shape, let the match write the second answer, in which left and right are "
+        "exchanged",
     ),
     "prefix": _props.StringProperty(
         name="Prefix",
@@ -78,7 +103,10 @@ _OPTIONS: dict[str, Any] = {
 SETTING_NAMES = tuple(_SETTINGS)
 """The options that mirror `MatchSettings`."""
 
-OPTION_NAMES = (*SETTING_NAMES, *_OPTIONS)
+OUTPUT_NAMES = tuple(_OPTIONS)
+"""The options that the engine knows nothing of."""
+
+OPTION_NAMES = (*SETTING_NAMES, *OUTPUT_NAMES)
 """All options of a match."""
 
 
@@ -105,7 +133,19 @@ def match_settings(options: MatchOptions) -> MatchSettings:
     SettingsError
         If they contradict each other.
     """
-    return MatchSettings(**{name: getattr(options, name) for name in SETTING_NAMES})
+    return MatchSettings(**{name: setting_of(options, name) for name in SETTING_NAMES})
+
+
+def setting_of(options: MatchOptions, name: str) -> Any:  # noqa: ANN401 - a number or a word
+    """Return one of the options as the engine writes it."""
+    value = getattr(options, name)
+    return _CHOICES[name][value] if name in _CHOICES else value
+
+
+def set_settings(options: MatchOptions, values: Mapping[str, Any]) -> None:
+    """Set some of the options to values as the engine writes them."""
+    for name, value in values.items():
+        setattr(options, name, to_identifier(value) if name in _CHOICES else value)
 
 
 def copy_options(source: MatchOptions, target: MatchOptions) -> None:
@@ -142,9 +182,16 @@ class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
     has_mirrored: _props.BoolProperty(
         name="Has Mirrored", description="Whether there is a second answer with left and right exchanged"
     )
-    seconds: _props.FloatProperty(name="Seconds", description="How long the match took")
+    mirrored: _props.BoolProperty(
+        name="Mirrored", description="Whether the second answer is the one that is written on the meshes"
+    )
+    seconds: _props.FloatProperty(name="Seconds", description="How long the match took; zero if that is not known")
     notes: _props.StringProperty(
         name="Notes", description="What should be known about the match, one sentence per line"
+    )
+    prefix: _props.StringProperty(name="Prefix", description="What the names of everything that was written start with")
+    key: _props.StringProperty(
+        name="Key", description="By what the two meshes are recognised as the pair of this match"
     )
 
 

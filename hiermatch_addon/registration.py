@@ -10,8 +10,10 @@ import bpy
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
+from .operators.flip import HIERMATCH_OT_flip
 from .operators.match import HIERMATCH_OT_match
 from .operators.swap import HIERMATCH_OT_swap
+from .operators.use_setup import HIERMATCH_OT_use_setup
 from .panels import HIERMATCH_PT_match
 from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 
@@ -23,6 +25,8 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PG_progress,
     HIERMATCH_OT_match,
     HIERMATCH_OT_cancel,
+    HIERMATCH_OT_use_setup,
+    HIERMATCH_OT_flip,
     HIERMATCH_OT_swap,
     HIERMATCH_OT_clear,
     HIERMATCH_OT_add_demo_pair,

@@ -5,14 +5,15 @@ Everything new is built beside what is there under a temporary name; only when a
 old is removed and the new takes its name.  So a failure half way leaves the objects as they were.
 
 What was written is recorded on the mesh (where Blender keeps vertex groups and attributes alike), in the custom
-property `MARKER`: per prefix, the names and what was active before.  Nothing else is ever removed.
+property `MARKER`: per prefix, the names, what was active before, and whatever else is to be kept with them.  Nothing
+else is ever removed.
 """
 
 from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -26,9 +27,19 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ..engine import MatchResult, SurfacePoints
-
-__all__ = ["MARKER", "Content", "check_names", "clear", "contents", "is_marked", "prefixes", "write"]
+__all__ = [
+    "MARKER",
+    "Content",
+    "Correspondence",
+    "Points",
+    "check_names",
+    "clear",
+    "contents",
+    "is_marked",
+    "kept",
+    "prefixes",
+    "write",
+]
 
 MARKER = "hiermatch"
 """Name of the custom property on a mesh that records what was written."""
@@ -40,6 +51,52 @@ _GROUP, _ATTRIBUTE = "group", "attribute"
 
 UNREACHED = -1.0
 """Value of the distortion where no matched point has a path to."""
+
+
+class Points(Protocol):
+    """What of points on a surface is needed to write them; see `SurfacePoints`."""
+
+    @property
+    def corners(self) -> NDArray[np.int64]:
+        """Vertices of the triangle of each point, (k, 3)."""
+
+    @property
+    def barycentric(self) -> NDArray[np.float64]:
+        """Barycentric coordinates there, (k, 3)."""
+
+    @property
+    def nearest_vertices(self) -> NDArray[np.int64]:
+        """The corner with the largest coordinate, (k,)."""
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Where the points are, (k, 3)."""
+
+    def __len__(self) -> int: ...
+
+
+class Correspondence(Protocol):
+    """What of a match is needed to write it; see `MatchResult`."""
+
+    @property
+    def source_points(self) -> Points:
+        """Matched points of the source, k."""
+
+    @property
+    def target_points(self) -> Points:
+        """The corresponding points of the target, k."""
+
+    @property
+    def point_distortion(self) -> NDArray[np.float64]:
+        """Distortion of each point, (k,)."""
+
+    @property
+    def source_distances(self) -> NDArray[np.float64]:
+        """Geodesic distance from each point to every vertex of the source, (k, n)."""
+
+    @property
+    def target_distances(self) -> NDArray[np.float64]:
+        """The same on the target, (k, m)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,11 +111,14 @@ class Content:
         For each color attribute its linear colours, (n, 4).
     values : dict
         For each attribute of numbers its values, (n,).
+    keep : dict
+        Plain data to keep with it: numbers, texts, lists of numbers, and such dicts; see `kept`.
     """
 
     groups: dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]] = field(default_factory=dict)
     colors: dict[str, NDArray[np.float32]] = field(default_factory=dict)
     values: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    keep: dict[str, Any] = field(default_factory=dict)
 
     @property
     def shown(self) -> str | None:
@@ -73,14 +133,14 @@ class Content:
 
 
 def contents(
-    result: MatchResult, prefix: str, *, vertex_groups: bool, match_colors: bool, distortion: bool
+    result: Correspondence, prefix: str, *, vertex_groups: bool, match_colors: bool, distortion: bool
 ) -> tuple[Content, Content]:
     """Prepare what a match writes on the source and on the target.
 
     Parameters
     ----------
-    result : MatchResult
-        The match.
+    result : MatchResult or other Correspondence
+        The match; its distances are used for colors and distortion only.
     prefix : str
         What every name starts with.
     vertex_groups, match_colors, distortion : bool
@@ -91,19 +151,20 @@ def contents(
     source, target : Content
         What to write on each.
     """
+    prepared = (Content(), Content())
     sides = ((result.source_points, result.source_distances), (result.target_points, result.target_distances))
+    if vertex_groups:
+        for content, (points, _) in zip(prepared, sides, strict=True):
+            content.groups.update(_groups(points, prefix))
+    if not (match_colors or distortion):
+        return prepared
     pairs = [distances[:, points.nearest_vertices] for points, distances in sides]
     reaches = colors.bandwidths(*pairs)
     # Red, green, blue and the distortion of each point, (k, 4): spread in one go.
     shown = np.column_stack([colors.match_colors(result.source_points.positions), result.point_distortion])
     worst = float(result.point_distortion.max())
-    prepared = []
-    for (points, distances), reach in zip(sides, reaches, strict=True):
-        content = Content()
-        if vertex_groups:
-            content.groups.update(_groups(points, prefix))
-        if match_colors or distortion:
-            mixed = colors.spread(shown, distances, reach)
+    for content, (_, distances), reach in zip(prepared, sides, reaches, strict=True):
+        mixed = colors.spread(shown, distances, reach)
         if match_colors:
             content.colors[f"{prefix} Match"] = colors.opaque(colors.to_linear(mixed[:, :3]))
         if distortion:
@@ -111,11 +172,10 @@ def contents(
             shades = colors.to_linear(colors.distortion_colors(values, worst))
             content.colors[f"{prefix} Distortion"] = colors.opaque(shades)
             content.values[f"{prefix} Distortion Value"] = np.where(np.isnan(values), UNREACHED, values)
-        prepared.append(content)
-    return prepared[0], prepared[1]
+    return prepared
 
 
-def _groups(points: SurfacePoints, prefix: str) -> dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]]:
+def _groups(points: Points, prefix: str) -> dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]]:
     """Name a vertex group for each point: its corners with a positive barycentric coordinate, weighted by it."""
     groups = {}
     for number, (corners, weights) in enumerate(zip(points.corners, points.barycentric, strict=True), start=1):
@@ -144,11 +204,11 @@ def check_names(obj: bpy.types.Object, content: Content) -> None:
             )
 
 
-def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str) -> None:
+def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str, *, show: bool = True) -> None:
     """Write on several objects: all of it, or nothing if anything fails.
 
     Whatever was written with the same prefix before is replaced.  What is active in the lists of vertex groups and
-    attributes stays so, except for the color attribute to be shown.
+    attributes stays so, except for the color attribute to be shown, if one is to `show`.
     """
     before = [_Active.of(obj) for obj, _ in plan]
     with ExitStack() as undo:
@@ -159,6 +219,8 @@ def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str) -> None
         undo.pop_all()
     for (obj, content), active in zip(plan, before, strict=True):
         _replace(obj, content, prefix, active)
+        (active.showing(content.shown) if show else active).restore(obj)
+        mesh_of(obj).update()
 
 
 def is_marked(mesh: bpy.types.Mesh) -> bool:
@@ -169,7 +231,17 @@ def is_marked(mesh: bpy.types.Mesh) -> bool:
 
 def prefixes(obj: bpy.types.Object) -> tuple[str, ...]:
     """Return the prefixes under which something was written on an object, oldest first."""
-    return tuple(_records(mesh_of(obj)))
+    properties: Any = mesh_of(obj)
+    return tuple(properties[MARKER].keys()) if is_marked(mesh_of(obj)) else ()
+
+
+def kept(obj: bpy.types.Object, prefix: str) -> dict[str, Any]:
+    """Return the plain data that was kept on an object with what was written with a prefix; empty if there is none."""
+    properties: Any = mesh_of(obj)
+    if not is_marked(mesh_of(obj)) or prefix not in properties[MARKER]:
+        return {}
+    found = properties[MARKER][prefix].get("kept")
+    return {} if found is None else found.to_dict()
 
 
 def clear(obj: bpy.types.Object, prefix: str) -> bool:
@@ -210,12 +282,15 @@ def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Acti
         owner: Any = obj.vertex_groups if kind == _GROUP else mesh.attributes
         owner[name + _TEMPORARY].name = name
     if content.kinds:
-        records[prefix] = {"written": content.kinds, "color": before.color, "render_color": before.render_color}
+        records[prefix] = {
+            "written": content.kinds,
+            "color": before.color,
+            "render_color": before.render_color,
+            "kept": content.keep,
+        }
     else:
         records.pop(prefix, None)
     _set_records(mesh, records)
-    active.showing(content.shown).restore(obj)
-    mesh.update()
 
 
 def _remove(obj: bpy.types.Object, kinds: dict[str, str]) -> None:

@@ -240,7 +240,7 @@ def creature(pose=0.0, resolution=18, turn=0.0):
         value = _body(rest)
         gradient = np.stack([_body(rest + step * axis) - value for axis in np.eye(3)], axis=1) / step
         rest -= gradient * (value / np.maximum((gradient**2).sum(axis=1), 0.1))[:, None]
-    return _posed(rest, pose), triangles, rest
+    return posed(rest, pose), triangles, rest
 
 
 # Ends, radii at the ends: torso, neck, head, snout, two unequal ears, tail, four legs of different lengths, a hump.
@@ -286,7 +286,7 @@ def _body(points):
     return -softness * np.log(total)
 
 
-def _posed(rest, pose):
+def posed(rest, pose):
     """Bend the limbs, the outer joints first, so that each joint carries what is already bent beyond it."""
     points = rest.copy()
     for leg, start, *directions, length, angle in _JOINTS:

@@ -10,7 +10,7 @@ extension from this source tree, installed nowhere.
 from __future__ import annotations
 
 import argparse
-import importlib.util
+import importlib
 import sys
 import time
 from pathlib import Path
@@ -19,13 +19,11 @@ from typing import TYPE_CHECKING, Any
 import bpy
 import numpy as np
 from demo_picture import add_beads, paint, render, set_stage
+from source_extension import PACKAGE, ROOT, registered_extension
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from types import ModuleType
 
-ROOT = Path(__file__).resolve().parent.parent
-PACKAGE = "hiermatch"
 
 # Where the camera stands (degrees from the front of the scene to the left of the cats, and up), how much white is mixed
 # into the cats so that the beads stand out, how dark the beads are, and their radius over the source's height.
@@ -65,18 +63,6 @@ class Display:
         elif percent // 10 > self._shown:
             self._shown = percent // 10
             print(f"          {percent:3d}%  {label}", flush=True)
-
-
-def load_extension() -> ModuleType:
-    """Register the extension from the source tree, under its own name whatever the folder is called."""
-    spec = importlib.util.spec_from_file_location(PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)])
-    if spec is None or spec.loader is None:
-        raise DemoError(f"{ROOT / '__init__.py'} cannot be loaded.")
-    extension = importlib.util.module_from_spec(spec)
-    sys.modules[PACKAGE] = extension
-    spec.loader.exec_module(extension)
-    extension.register()
-    return extension
 
 
 def module(name: str) -> Any:  # noqa: ANN401 - the type of a module has none of its names
@@ -184,7 +170,7 @@ def run_demo(output: Path, points: int, width: int, samples: int) -> None:
         old.unlink(missing_ok=True)
     display = Display()
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    load_extension()
+    registered_extension()
     source, target, outcome = match_pair(points, display)
     display.stage("Measuring against the truth")
     depsgraph = bpy.context.evaluated_depsgraph_get()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture of a matched pair: both objects in the colours of the match, the matched points as beads."""
+"""Pictures of a matched pair: the objects in colours, the matched points as beads, lines between them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["add_beads", "paint", "render", "set_stage"]
+__all__ = ["add_beads", "add_lines", "paint", "paint_plain", "render", "set_stage", "sheet"]
 
 _FLOOR = (0.62, 0.63, 0.65)
 _SKY = (0.95, 0.97, 1.0)
@@ -70,6 +70,57 @@ def add_beads(name: str, places: NDArray[np.float64], colors: NDArray[np.float64
     bpy.context.scene.collection.objects.link(beads)
     paint(beads, "Color", roughness=0.25)
     return beads
+
+
+def add_lines(
+    name: str, starts: NDArray[np.float64], ends: NDArray[np.float64], colors: NDArray[np.float64], radius: float
+) -> bpy.types.Object:
+    """Add an object of thin bars from places (k, 3) to places (k, 3) in the world, in linear colours (k, 4)."""
+    along = ends - starts
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
+    side = np.cross(along, np.eye(3)[np.abs(along).argmin(axis=1)])
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    angle = np.arange(3) * 2 * np.pi / 3
+    ring = radius * (np.cos(angle)[:, None] * side[:, None] + np.sin(angle)[:, None] * np.cross(along, side)[:, None])
+    vertices = np.concatenate([starts[:, None] + ring, ends[:, None] + ring], axis=1)  # (k, 6, 3)
+    quads = np.array([[i, (i + 1) % 3, 3 + (i + 1) % 3, 3 + i] for i in range(3)])
+    faces = 6 * np.arange(len(starts))[:, None, None] + quads
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices.reshape(-1, 3).tolist(), [], faces.reshape(-1, 4).tolist())
+    attribute = mesh.attributes.new("Color", "FLOAT_COLOR", "POINT")
+    attribute.data.foreach_set("color", np.repeat(colors, 6, axis=0).astype(np.float32).ravel())
+    bars = bpy.data.objects.new(name, mesh)
+    bars.visible_shadow = False
+    bpy.context.scene.collection.objects.link(bars)
+    paint(bars, "Color", roughness=1.0)
+    return bars
+
+
+def paint_plain(thing: bpy.types.Object, color: tuple[float, float, float, float]) -> None:
+    """Give an object one colour."""
+    thing.data.materials.clear()
+    _fill(thing, color[:3])
+
+
+def sheet(rows: list[list[Path]], path: Path) -> None:
+    """Put pictures of one size together, row by row, and save them as one."""
+    made = []
+    for row in rows:
+        pictures = []
+        for image_path in row:
+            image = bpy.data.images.load(str(image_path))
+            width, height = image.size
+            pixels = np.empty(4 * width * height, np.float32)
+            image.pixels.foreach_get(pixels)
+            pictures.append(pixels.reshape(height, width, 4))
+            bpy.data.images.remove(image)
+        made.append(np.concatenate(pictures, axis=1))
+    whole = np.concatenate(made[::-1], axis=0)  # Blender's pictures start at the bottom
+    image = bpy.data.images.new(path.stem, whole.shape[1], whole.shape[0])
+    image.pixels.foreach_set(np.ascontiguousarray(whole).ravel())
+    image.filepath_raw, image.file_format = str(path), "PNG"
+    image.save()
+    bpy.data.images.remove(image)
 
 
 def set_stage(things: list[bpy.types.Object], direction: tuple[float, float], width: int, height: int) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from types import ModuleType
 
-__all__ = ["PACKAGE", "ROOT", "load_extension"]
+__all__ = ["PACKAGE", "ROOT", "load_extension", "registered_extension"]
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "hiermatch"
@@ -33,3 +33,13 @@ def load_extension() -> ModuleType:
         sys.modules[PACKAGE] = package
         spec.loader.exec_module(package)
     return sys.modules[PACKAGE]
+
+
+def registered_extension() -> ModuleType:
+    """Import the source tree as the package `hiermatch` and register it, once for all who ask."""
+    import bpy  # noqa: PLC0415 - what only imports the engine needs no Blender
+
+    package = load_extension()
+    if not hasattr(bpy.types, "HIERMATCH_PT_match"):
+        package.register()
+    return package

@@ -12,7 +12,7 @@ from ...engine import HierMatchError
 from ..access import mesh_of, state_of, view_layer_of
 from ..pair import check_writable, named_object, selected_meshes
 from ..running import can_start
-from ..writing import clear, is_marked, prefixes
+from ..writing import clear, is_marked, kept, prefixes
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -58,12 +58,13 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
         if not objects:
             self.report({"WARNING"}, "None of these objects carries anything that HierMatch has written.")
             return {"CANCELLED"}
+        summary, cleared = state_of(context).summary, set()
         for obj in objects:
             for prefix in reversed(self._prefixes(obj)):  # each restores what was active before it
+                cleared.add((prefix, kept(obj, prefix).get("key")))
                 clear(obj, prefix)
         names = [obj.name for obj in objects]
-        summary = state_of(context).summary
-        if summary.source in names or summary.target in names:
+        if (summary.prefix, summary.key) in cleared:
             state_of(context).property_unset("summary")
         self.report({"INFO"}, f"Cleared {', '.join(names)}")
         return {"FINISHED"}

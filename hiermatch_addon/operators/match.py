@@ -12,14 +12,14 @@ from ...engine import HierMatchError
 from ..access import layout_of, progress_of, state_of, view_layer_of, window_manager_of
 from ..job import JobOptions, MatchJob
 from ..pair import find_pair
-from ..properties import OPTION_NAMES, MatchOptions, match_settings
+from ..properties import OUTPUT_NAMES, MatchOptions, match_settings
 from ..running import can_start
+from ..setting_groups import shown_groups
+from ..summary import remember
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-    from ..job import Outcome
-    from ..properties import HIERMATCH_PG_summary
 
 __all__ = ["HIERMATCH_OT_match"]
 
@@ -134,7 +134,8 @@ class HIERMATCH_OT_match(MatchOptions, bpy.types.Operator):
         """Show the options in the Adjust Last Operation panel."""
         layout = layout_of(self)
         layout.use_property_split = True
-        for name in ("source", "target", *OPTION_NAMES):
+        settings = [name for _, names in shown_groups(self) for name in names]
+        for name in ("source", "target", "points", *settings, *OUTPUT_NAMES):
             layout.prop(self, name)
 
     def _start(self, context: bpy.types.Context) -> MatchJob:
@@ -158,8 +159,10 @@ class HIERMATCH_OT_match(MatchOptions, bpy.types.Operator):
     def _finish(self, context: bpy.types.Context, job: MatchJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
         outcome = job.finish(view_layer_of(context))
-        _remember(state_of(context).summary, outcome)
-        for note in outcome.notes:
+        remember(
+            state_of(context).summary, outcome.stored, (outcome.source, outcome.target), self.prefix, outcome.seconds
+        )
+        for note in outcome.stored.notes:
             self.report({"WARNING"}, note)
         points, seconds = len(outcome.result.source_points), outcome.seconds
         pair = f'"{outcome.source}" and "{outcome.target}"'
@@ -182,18 +185,3 @@ def _redraw(context: bpy.types.Context) -> None:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
-
-
-def _remember(summary: HIERMATCH_PG_summary, outcome: Outcome) -> None:
-    """Keep what the panel tells about a match."""
-    result, coarse = outcome.result, outcome.result.coarse
-    summary.points = len(result.source_points)
-    summary.source, summary.target = outcome.source, outcome.target
-    summary.distortion = result.distortion
-    summary.worst_distortion = float(result.point_distortion.max())
-    summary.proven = coarse.proven
-    summary.gap = 1 - coarse.lower_bound / coarse.cost if coarse.cost > 0 else 0.0
-    summary.orientation = result.orientation
-    summary.has_mirrored = outcome.has_mirrored
-    summary.seconds = outcome.seconds
-    summary.notes = "\n".join(outcome.notes)

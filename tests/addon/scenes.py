@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 from hiermatch.engine import CoarseMatch, MatchResult, SurfacePoints
+from hiermatch.hiermatch_addon import job
 
 QUICK = {"points": 12, "coarse_points": 4, "coarse_candidates": 8, "samples": 48, "hypotheses": 2}
 """Settings with which a small mesh is matched in some tenths of a second."""
@@ -30,6 +33,28 @@ def add_pair():
     """Add a source and a target, alike up to place and size, and select nothing."""
     source, target = add_blob("Source"), add_blob("Target")
     target.location.x, target.scale = 4, (2, 2, 2)
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = None
+    bpy.context.view_layer.update()
+    return source, target
+
+
+def add_symmetric(name, segments=24, rings=16):
+    """Add a long body with two equal sides, y and -y, and different ends, top and bottom."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=rings)
+    obj = bpy.context.object
+    obj.name = name
+    obj.data.name = name
+    for vertex in obj.data.vertices:
+        x, y, z = vertex.co
+        vertex.co = 1.6 * x * (1 + 0.6 * x), y * (1 + 0.5 * z) * (1 + 0.5 * x * x), (1.2 if z > 0 else 0.3) * z
+    return obj
+
+
+def add_symmetric_pair():
+    """Add two alike bodies with different meshes, which match in two ways, and select nothing."""
+    source, target = add_symmetric("Source"), add_symmetric("Target", 28, 18)
+    target.location.x = 5
     bpy.ops.object.select_all(action="DESELECT")
     bpy.context.view_layer.objects.active = None
     bpy.context.view_layer.update()
@@ -65,6 +90,16 @@ def made_up_result(source_mesh, target_mesh, points=5, seed=1):
         notes=(),
         seconds={},
     )
+
+
+def without_mirrored(monkeypatch):
+    """Let all matches have one answer only."""
+    real = job.match_steps
+
+    def steps(*arguments):
+        return replace((yield from real(*arguments)), mirrored=None)
+
+    monkeypatch.setattr(job, "match_steps", steps)
 
 
 def weights_of(obj):

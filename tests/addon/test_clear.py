@@ -65,12 +65,20 @@ def test_clearing_several_results_restores_what_was_shown_before_the_first(pair)
     assert snapshot() == before
 
 
-def test_the_summary_of_another_pair_stays(pair):
+def test_the_summary_stays_until_its_own_match_goes(pair):
+    match(prefix="Other")
     match()
-    bpy.context.scene.hiermatch.summary.source = "Somebody"
-    bpy.context.scene.hiermatch.summary.target = "Else"
-    bpy.ops.hiermatch.clear(object=pair[0].name)
+    bpy.ops.hiermatch.clear(object=pair[0].name, prefix="Other")
     assert bpy.context.scene.hiermatch.summary.points == QUICK["points"]
+    bpy.ops.hiermatch.clear(object=pair[0].name)
+    assert bpy.context.scene.hiermatch.summary.points == 0
+
+
+def test_the_summary_goes_when_a_renamed_object_is_cleared(pair):
+    match()
+    pair[1].name = "Renamed"
+    bpy.ops.hiermatch.clear(object="Renamed")
+    assert bpy.context.scene.hiermatch.summary.points == 0
 
 
 def test_says_why_it_cannot(pair):

@@ -129,6 +129,17 @@ def test_changes_end_the_job_with_a_sentence(pair, change, at_the_end):
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
+def test_other_faces_of_the_same_vertices_are_noticed_at_the_end(pair):
+    job = start(pair)
+    while not advance(job, 1.0):
+        pass
+    pair[1].data.flip_normals()
+    before = snapshot()
+    with pytest.raises(ObjectError, match='The faces of "Target" changed'):
+        job.finish(bpy.context.view_layer)
+    assert snapshot() == before
+
+
 def test_an_object_of_the_same_name_is_not_the_same(pair):
     job = start(pair)
     bpy.data.objects.remove(pair[1])
@@ -145,7 +156,7 @@ class Modal:
 
     def __init__(self, job):
         manager = bpy.context.window_manager
-        self._job, self._workspace = job, bpy.context.workspace.name
+        self._job, self._workspace, self.prefix = job, bpy.context.workspace.name, "HM"
         self._timer = manager.event_timer_add(0.01, window=bpy.context.window)
         manager.hiermatch.cancel = False
         self.reports = []

@@ -8,7 +8,17 @@ import pytest
 from hiermatch import engine
 from hiermatch.hiermatch_addon import mesh_io
 
-from tests.addon.scenes import QUICK, add_blob, add_pair, mesh_snapshot, snapshot, values_of, weights_of
+from tests.addon.scenes import (
+    QUICK,
+    add_blob,
+    add_pair,
+    add_symmetric_pair,
+    mesh_snapshot,
+    snapshot,
+    values_of,
+    weights_of,
+    without_mirrored,
+)
 
 
 @pytest.fixture
@@ -99,17 +109,32 @@ class TestResult:
         assert len(weights_of(pair[1])) == QUICK["points"]
 
     def test_the_mirrored_answer(self):
-        ball, other = add_blob("Ball"), add_blob("Other")
-        for obj in (ball, other):  # made symmetric: the second answer exchanges left and right
-            for vertex in obj.data.vertices:
-                vertex.co.y, vertex.co.z = vertex.co.y / (1 + 0.5 * vertex.co.z), vertex.co.z
-        match(source="Ball", target="Other")
-        first, there_are_two = matched_vertices(other), summary().has_mirrored
-        match(source="Ball", target="Other", use_mirrored=True)
-        if there_are_two:
-            assert matched_vertices(other) != first
-        else:
-            assert "no mirrored match" in summary().notes
+        _, target = add_symmetric_pair()
+        match(source="Source", target="Target")
+        first = matched_vertices(target)
+        assert summary().has_mirrored
+        assert not summary().mirrored
+        assert summary().orientation > 0.5
+        match(source="Source", target="Target", use_mirrored=True)
+        assert matched_vertices(target) != first
+        assert summary().mirrored
+        assert summary().orientation < -0.5
+        assert not summary().notes
+
+    def test_no_mirrored_answer_is_a_note(self, pair, monkeypatch):
+        assert pair
+        without_mirrored(monkeypatch)
+        match(source="Source", target="Target", use_mirrored=True)
+        assert not summary().has_mirrored
+        assert not summary().mirrored
+        assert "no mirrored match" in summary().notes
+
+    def test_choices_reach_the_engine(self):
+        add_symmetric_pair()
+        match(source="Source", target="Target")
+        earth_mover = summary().distortion
+        match(source="Source", target="Target", comparison="BIN_TO_BIN")
+        assert summary().distortion != pytest.approx(earth_mover, rel=1e-3)
 
     def test_several_parts_are_a_warning(self, pair):
         island = add_blob("Island", 8, 6)

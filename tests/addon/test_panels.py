@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from itertools import product
 from types import SimpleNamespace
 
 import bpy
 import pytest
 from hiermatch.hiermatch_addon import panels
 from hiermatch.hiermatch_addon.properties import OPTION_NAMES, SETTING_NAMES
+from hiermatch.hiermatch_addon.setting_groups import shown_groups
 
 from tests.addon.scenes import QUICK, add_pair, snapshot
 
@@ -35,13 +37,18 @@ class Layout:
         assert name in owner.bl_rna.properties, name
         self.drawn.append(("prop", name))
 
+    def operator_menu_enum(self, name, prop, *, text):
+        group, operator = name.split(".")
+        assert prop in getattr(getattr(bpy.ops, group), operator).get_rna_type().properties
+        self.drawn.append(("menu", name, text))
+
     def progress(self, *, text, factor):
         self.drawn.append(("progress", text, factor))
 
-    def operator(self, name, **_names):
+    def operator(self, name, **names):
         group, operator = name.split(".")
         assert operator in dir(getattr(bpy.ops, group)), name
-        self.drawn.append(("operator", name))
+        self.drawn.append(("operator", name) if "depress" not in names else ("switch", name, names["depress"]))
         return self.__dict__.setdefault("properties", SimpleNamespace())
 
 
@@ -69,17 +76,66 @@ def texts(drawn):
     return " ".join(entry[1] for entry in drawn if entry[0] == "label")
 
 
-def test_everything_that_can_be_set_is_there(context):
-    props = [entry[1] for entry in draw(context) if entry[0] == "prop"]
-    assert set(props) >= {"source", "target", *OPTION_NAMES}
-    assert len(props) == len(set(props))
+SPECTRAL = {"eigenfunctions": ("EIGENFUNCTIONS",), "eigenpairs": ("HEAT_KERNEL", "WAVE_KERNEL", "EIGENFUNCTIONS")}
+
+
+def shown_settings(context):
+    return [entry[1] for entry in draw(context) if entry[0] == "prop" and entry[1] in SETTING_NAMES]
+
+
+def test_everything_that_can_be_set_is_there_once(context):
+    state, seen = context.scene.hiermatch, set()
+    choices = [("metric", ("GEODESIC", "DIFFUSION")), ("descriptor", ("HISTOGRAM", "EIGENFUNCTIONS"))]
+    for values in product(*(values for _, values in choices)):
+        for (name, _), value in zip(choices, values, strict=True):
+            setattr(state, name, value)
+        props = [entry[1] for entry in draw(context) if entry[0] == "prop"]
+        assert len(props) == len(set(props))
+        seen.update(props)
+    assert seen >= {"source", "target", *OPTION_NAMES}
 
 
 def test_all_settings_but_the_points_are_tucked_away(context):
     drawn = draw(context)
     advanced = drawn.index(("panel", "hiermatch_advanced", True))
-    for name in SETTING_NAMES:
+    for name in shown_settings(context):
         assert (drawn.index(("prop", name)) > advanced) == (name != "points")
+
+
+def test_only_settings_that_matter_are_shown(context):
+    state = context.scene.hiermatch
+    always = {"points", "metric", "descriptor", "coarse_points", "samples", "neighbourhood", "linear_weight"}
+    metrics = [item.identifier for item in state.bl_rna.properties["metric"].enum_items]
+    descriptors = [item.identifier for item in state.bl_rna.properties["descriptor"].enum_items]
+    for state.metric, state.descriptor in product(metrics, descriptors):
+        shown = set(shown_settings(context))
+        assert shown >= always
+        diffusion, descriptor = state.metric == "DIFFUSION", state.descriptor
+        assert ("diffusion_time" in shown) == diffusion
+        assert {"comparison", "histogram_bins"} <= shown or descriptor in ("HEAT_KERNEL", "WAVE_KERNEL")
+        assert not {"comparison", "histogram_bins"} & shown or descriptor in ("HISTOGRAM", "EIGENFUNCTIONS")
+        assert ("eigenfunctions" in shown) == (descriptor in SPECTRAL["eigenfunctions"])
+        assert ("eigenpairs" in shown) == (diffusion or descriptor in SPECTRAL["eigenpairs"])
+
+
+def test_a_new_setting_is_shown_without_further_ado(context, monkeypatch):
+    monkeypatch.setattr("hiermatch.hiermatch_addon.setting_groups.SETTING_NAMES", (*SETTING_NAMES, "use_mirrored"))
+    assert shown_groups(context.scene.hiermatch)[0][1][-1] == "use_mirrored"
+
+
+def test_the_groups_have_headings(context):
+    shown = texts(draw(context))
+    for title in ("Metric and Descriptor", "Coarse Match", "Refinement"):
+        assert title in shown
+
+
+def test_the_setup_is_named(context):
+    state = context.scene.hiermatch
+    assert ("menu", "hiermatch.use_setup", "Geodesic Histograms") in draw(context)
+    state.metric, state.descriptor = "DIFFUSION", "HEAT_KERNEL"
+    assert ("menu", "hiermatch.use_setup", "Heat Kernel Signatures") in draw(context)
+    state.descriptor = "WAVE_KERNEL"
+    assert ("menu", "hiermatch.use_setup", "Custom") in draw(context)
 
 
 def test_all_buttons_are_there(context):
@@ -142,6 +198,27 @@ def test_what_is_not_proven_and_what_is_mirrored(context):
     assert "exchanged (-0.80)" in shown
     assert "The source has two parts." in shown
     assert "Mind the gap." in shown
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_the_switch_between_two_answers(context, mirrored):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.has_mirrored, summary.mirrored = 5, True, mirrored
+    drawn = draw(context)
+    assert ("switch", "hiermatch.flip", mirrored) in drawn
+    assert "Mirrored Match" not in texts(drawn)
+    summary.has_mirrored = False
+    drawn = draw(context)
+    assert not [entry for entry in drawn if entry[0] == "switch"]
+    assert "Mirrored Match none" in texts(drawn)
+
+
+def test_no_time_is_shown_if_none_is_known(context):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.seconds = 5, 0.0
+    assert "Time" not in texts(draw(context))
+    summary.seconds = 1.24
+    assert "Time 1.2 s" in texts(draw(context))
 
 
 def test_drawing_changes_nothing(context):

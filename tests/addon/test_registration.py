@@ -9,7 +9,7 @@ from dataclasses import fields
 import bpy
 import pytest
 from hiermatch.engine import MatchSettings
-from hiermatch.hiermatch_addon.properties import OPTION_NAMES, SETTING_NAMES
+from hiermatch.hiermatch_addon.properties import OPTION_NAMES, SETTING_NAMES, match_settings
 from hiermatch.hiermatch_addon.registration import CLASSES
 
 OPERATORS = [cls for cls in CLASSES if issubclass(cls, bpy.types.Operator)]
@@ -50,9 +50,16 @@ def test_unregister_leaves_nothing_and_register_comes_back(extension):
 def test_every_setting_is_mirrored(owner, setting):
     rna = bpy.context.scene.hiermatch.bl_rna if owner == "scene" else bpy.ops.hiermatch.match.get_rna_type()
     mirror = rna.properties[setting.name]
-    assert mirror.type == {int: "INT", float: "FLOAT"}[type(setting.default)]
     assert mirror.name == setting.metadata["label"]
     assert mirror.description == setting.metadata["description"]
+    if "choices" in setting.metadata:
+        assert mirror.type == "ENUM"
+        assert mirror.default == setting.default.upper()
+        items = [(item.identifier.lower(), (item.name, item.description)) for item in mirror.enum_items]
+        assert items == list(setting.metadata["choices"].items())
+        assert all(item.identifier.isupper() for item in mirror.enum_items)
+        return
+    assert mirror.type == {int: "INT", float: "FLOAT"}[type(setting.default)]
     assert mirror.default == pytest.approx(setting.default)
     assert mirror.hard_min == pytest.approx(setting.metadata["minimum"])
     assert mirror.hard_max == pytest.approx(setting.metadata["maximum"])
@@ -74,6 +81,19 @@ def test_scene_and_operator_have_the_same_options():
         )
 
 
+def test_options_become_settings():
+    state = bpy.context.scene.hiermatch
+    assert match_settings(state) == MatchSettings()
+    for setting in fields(MatchSettings):
+        for word in setting.metadata.get("choices", ()):
+            setattr(state, setting.name, word.upper())
+            assert getattr(match_settings(state), setting.name) == word
+            with pytest.raises(TypeError):  # not one of Blender's identifiers
+                setattr(state, setting.name, word.lower())
+    state.diffusion_time, state.points = 0.5, 33
+    assert (match_settings(state).diffusion_time, match_settings(state).points) == (0.5, 33)
+
+
 @pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
 def test_every_property_is_described(cls):
     for name, described in own_properties(cls).items():
@@ -93,5 +113,5 @@ def test_every_operator_is_described(cls):
 
 
 def test_the_operators_can_be_undone():
-    assert bpy.types.HIERMATCH_OT_match.bl_options == {"REGISTER", "UNDO"}
-    assert bpy.types.HIERMATCH_OT_clear.bl_options == {"REGISTER", "UNDO"}
+    for name in ("match", "flip", "use_setup", "clear"):
+        assert getattr(bpy.types, f"HIERMATCH_OT_{name}").bl_options == {"REGISTER", "UNDO"}

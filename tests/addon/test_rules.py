@@ -13,8 +13,8 @@ ENGINE = sorted((ROOT / "engine").rglob("*.py"))
 ADDON = sorted((ROOT / "hiermatch_addon").rglob("*.py"))
 BLENDER = {"bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "bpy_extras", "blf", "idprop", "aud", "freestyle"}
 OURS = {"engine", "hiermatch_addon", "hiermatch"}
-STANDARD = {"__future__", "collections", "contextlib", "dataclasses", "functools", "itertools", "math", "heapq", "time"}
-ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator"}
+STANDARD = {"__future__", "collections", "contextlib", "copy", "dataclasses", "functools", "heapq", "itertools", "math"}
+ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time"}
 
 
 def imported(path):

@@ -22,6 +22,7 @@ import potpourri3d
 
 from engine import TriangleMesh
 from engine.geodesics import GeodesicSolver
+from tests.benchmarks.common import read_off
 from tests.shapes import creature, icosphere, irregular, plane, subdivided
 
 REPEATS = 3
@@ -50,16 +51,6 @@ SOLVERS = {
     "fast marching": FastMarchingPeer,
     "heat": HeatPeer,
 }
-
-
-def read_off(path):
-    """Read an .off file of triangles."""
-    words = path.read_text().split()
-    count, faces = int(words[1]), int(words[2])
-    numbers = np.array(words[4:], float)
-    vertices = numbers[: 3 * count].reshape(count, 3)
-    triangles = numbers[3 * count : 3 * count + 4 * faces].reshape(faces, 4)[:, 1:]
-    return vertices, triangles.astype(np.int64)
 
 
 def straight(vertices, sources):

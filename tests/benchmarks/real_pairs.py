@@ -26,22 +26,14 @@ import numpy as np
 import potpourri3d
 from scipy.spatial import cKDTree
 
-from tools.source_extension import load_extension
+from tests.benchmarks.common import known, read_off
+from tools.source_extension import registered_extension
 
-load_extension().register()
+registered_extension()
 
 from hiermatch.hiermatch_addon import demo_truth  # noqa: E402
 
 PAIRS = "cat0:cat1,dog0:dog5,michael0:michael3"
-
-
-def read_off(path):
-    """Read an .off file of triangles."""
-    words = path.read_text().split()
-    count, faces = int(words[1]), int(words[2])
-    numbers = np.array(words[4:], float)
-    triangles = numbers[3 * count : 3 * count + 4 * faces].reshape(faces, 4)[:, 1:]
-    return numbers[: 3 * count].reshape(count, 3), triangles.astype(np.int64)
 
 
 def add_object(path):
@@ -52,10 +44,6 @@ def add_object(path):
     thing = bpy.data.objects.new(path.stem, mesh)
     bpy.context.scene.collection.objects.link(thing)
     return thing, vertices, triangles
-
-
-def known(path, suffix=""):
-    return np.loadtxt(path.parent / "corres" / f"{path.stem}{suffix}.vts", dtype=int) - 1
 
 
 def matched_vertices(thing):

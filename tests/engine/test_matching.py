@@ -113,6 +113,14 @@ def test_a_shape_is_measured_once_for_many_matches(bodies, result):
     np.testing.assert_array_equal(first.target_points.triangles, result.target_points.triangles)
 
 
+def test_a_match_does_not_depend_on_those_before_it(bodies, result):
+    source, target = Shape(bodies[0]), Shape(bodies[1])
+    match(source, target, replace(QUICK, samples=333, points=12))
+    again = match(source, target, QUICK)
+    np.testing.assert_array_equal(again.target_points.triangles, result.target_points.triangles)
+    assert again.distortion == pytest.approx(result.distortion, rel=1e-12)
+
+
 def test_a_body_matches_itself_exactly(bodies):
     result = match(bodies[0], bodies[0], QUICK)
     np.testing.assert_array_equal(result.target_points.nearest_vertices, result.source_points.nearest_vertices)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Distances between any points of a surface, not only its vertices."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from .descriptors import squared_differences
+from .progress import Progress, Steps, run
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+    from .shape import Shape
+    from .surface import SurfacePoints
+
+__all__ = ["EmbeddedDistances", "PointDistances", "SurfaceDistances", "squared_offsets", "symmetric_roots"]
+
+_MEMORY = 256_000_000  # bytes of rows that are kept
+
+
+class PointDistances(Protocol):
+    """A metric on a surface that can be asked about points anywhere on its triangles.
+
+    Inside a triangle, the squared distance to a fixed point is linear in the barycentric coordinates but for the term
+    of `squared_offsets`.
+    """
+
+    @property
+    def mesh(self) -> TriangleMesh:
+        """The surface."""
+
+    def prepare_steps(self, points: SurfacePoints) -> Steps[None]:
+        """Compute what the other methods need for some points, in short steps."""
+
+    def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Squared distances from points (k,), prepared, to vertices (v,): (k, v)."""
+
+    def squares_between(self, points: SurfacePoints) -> NDArray[np.float64]:
+        """Squared distances between points (k,), prepared: (k, k)."""
+
+    def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Squared lengths, in this metric, of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
+
+
+class SurfaceDistances:
+    r"""Distances between points inside triangles, interpolated from distances between vertices.
+
+    In the plane the squared distance to a fixed point is quadratic, and its deviation from linear inside a triangle is
+    known.  With barycentric coordinates b of p over the corners a, and the lengths l of the sides,
+
+    .. math:: d^2(p, q) = \sum_a b_a d^2(a, q) - e(p), \quad e(p) = \sum_{a < c} b_a b_c l_{ac}^2 ,
+
+    and likewise for q.  This is exact wherever the surface between the two points unfolds into the plane, for points
+    in one triangle or in neighbouring ones too, it is continuous across edges, and zero from a point to itself.
+
+    Distances are in the units of the shape, `Shape.scale`.
+
+    Parameters
+    ----------
+    shape : Shape
+        The surface.  The distances from its samples are used where they are needed; all other rows are computed on
+        demand.
+    memory : int
+        Bytes of rows that may be kept from one request to the next, beside those of the samples.  One request may
+        need more, and then gets it.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The part of the surface on which the points lie.
+    """
+
+    def __init__(self, shape: Shape, memory: int = _MEMORY) -> None:
+        self.mesh: TriangleMesh = shape.mesh
+        self._shape = shape
+        self._capacity = max(1, memory // (4 * shape.mesh.vertex_count))
+        self._unit = shape.scale**2
+        self._rows: dict[int, NDArray[np.float32]] = {}
+
+    def prepare_steps(self, points: SurfacePoints) -> Steps[None]:
+        """Compute the rows that distances from some points need, in short steps; see `prepare`."""
+        needed = np.unique(points.corners[points.barycentric > 0])
+        missing = np.setdiff1d(needed, [*self._rows, *self._shape.samples])
+        if len(self._rows) + len(missing) > self._capacity:
+            wanted = set(needed.tolist())
+            self._rows = {vertex: row for vertex, row in self._rows.items() if vertex in wanted}
+        for first, block in self._shape.solver.distances_in_blocks(missing):
+            last = first + len(block)
+            rows = (block / self._shape.scale).astype(np.float32)
+            self._rows.update(zip(missing[first:last].tolist(), rows, strict=True))
+            yield Progress(last / len(missing), "Measuring distances")
+
+    def prepare(self, points: SurfacePoints) -> None:
+        """Compute the rows that distances from some points need, if they are not there yet."""
+        run(self.prepare_steps(points))
+
+    def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Squared distances from points (k,), prepared, to vertices (v,) of the part: (k, v).
+
+        They can be slightly negative close to a point.
+        """
+        corners, weights = _weights(points)
+        rows = self._gather(corners, vertices)
+        return weights @ np.square(rows, out=rows) - self._offsets(points)[:, None]
+
+    def squares_between(self, points: SurfacePoints) -> NDArray[np.float64]:
+        """Squared distances between points (k,), prepared: (k, k).
+
+        Entry (i, j) follows the rows of point i; that of (j, i) differs by the error of fast marching.  Both can be
+        slightly negative for neighbouring points.
+        """
+        corners, weights = _weights(points)
+        offsets = self._offsets(points)
+        square = self._gather(corners, corners)
+        np.square(square, out=square)
+        return (weights @ (weights @ square).T).T - offsets[:, None] - offsets
+
+    def between(self, points: SurfacePoints) -> NDArray[np.float64]:
+        """Distances between points (k,), prepared: (k, k), symmetric with a zero diagonal."""
+        return symmetric_roots(self.squares_between(points))
+
+    def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Squared lengths of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
+        return _squared_sides(self.mesh.vertices, self.mesh.triangles[triangles]) / self._unit
+
+    def _offsets(self, points: SurfacePoints) -> NDArray[np.float64]:
+        return squared_offsets(points.barycentric, self.squared_sides(points.triangles))
+
+    def _gather(self, sources: NDArray[np.int64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Distances from prepared vertices (s,) to vertices (v,), (s, v)."""
+        number = dict(zip(self._shape.samples.tolist(), self._shape.sample_rows, strict=True))
+        block = np.empty((len(sources), len(vertices)))
+        for i, source in enumerate(sources.tolist()):
+            row = self._rows.get(source)
+            block[i] = (number[source] if row is None else row).take(vertices)
+        return block
+
+
+class EmbeddedDistances:
+    """Straight distances between points of a surface that lies in a space of any dimension.
+
+    Diffusion distances are of this kind, with the coordinates exp(-lambda_i t) phi_i.  Coordinates are linear inside
+    triangles, so distances between points anywhere are exact.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    coordinates : (n, d) array of float
+        Where its vertices lie.
+    """
+
+    def __init__(self, mesh: TriangleMesh, coordinates: NDArray[np.float64]) -> None:
+        self.mesh = mesh
+        self._coordinates = coordinates
+
+    def prepare_steps(self, points: SurfacePoints) -> Steps[None]:  # noqa: ARG002  (see PointDistances)
+        """Do nothing: the distances need no preparation."""
+        yield from ()
+
+    def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Squared distances from points (k,) to vertices (v,): (k, v)."""
+        return squared_differences(points.interpolate(self._coordinates), self._coordinates[vertices])
+
+    def squares_between(self, points: SurfacePoints) -> NDArray[np.float64]:
+        """Squared distances between points (k,): (k, k)."""
+        places = points.interpolate(self._coordinates)
+        return squared_differences(places, places)
+
+    def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Squared lengths of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
+        return _squared_sides(self._coordinates, self.mesh.triangles[triangles])
+
+
+def symmetric_roots(squares: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn squared distances (k, k) into distances, equal in both directions and zero from a point to itself."""
+    roots = np.sqrt(np.maximum((squares + squares.T) / 2, 0))
+    np.fill_diagonal(roots, 0)
+    return roots
+
+
+def squared_offsets(barycentric: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+    """By how much linear interpolation overestimates squared distances at barycentric coordinates (..., 3): (...).
+
+    `sides`, (..., 3), are the squared lengths of the sides 01, 02, 12.
+    """
+    a, b, c = (barycentric[..., i] for i in range(3))
+    return a * b * sides[..., 0] + a * c * sides[..., 1] + b * c * sides[..., 2]
+
+
+def _squared_sides(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Squared lengths of the sides 01, 02, 12 of triangles (q, 3) of vertices (n, d): (q, 3)."""
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    return np.stack([np.square(q - p).sum(axis=1) for p, q in ((a, b), (a, c), (b, c))], axis=1)
+
+
+def _weights(points: SurfacePoints) -> tuple[NDArray[np.int64], csr_array]:
+    """List the corners that have weight in some points (k,): vertices (u,), and the weights (k, u)."""
+    counts = points.barycentric > 0
+    corners, column = np.unique(points.corners[counts], return_inverse=True)
+    ends = np.append(0, np.cumsum(counts.sum(axis=1)))
+    return corners, csr_array((points.barycentric[counts], column, ends), shape=(len(points), len(corners)))

@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The intrinsic symmetry of a surface: matched to itself, the identity excluded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .branch_and_bound import Exclusion, branch_and_bound_steps
+from .descriptors import squared_differences, weighted_correlation
+from .errors import MatchError
+from .hierarchy import level_sizes, refine_steps
+from .orientation import orientation_agreement, signed_areas
+from .pair import Pair
+from .progress import Progress, Steps, run, within
+from .settings import MatchSettings
+from .shape import Shape
+from .surface import SurfacePoints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .branch_and_bound import BoundedMatching
+    from .mesh import TriangleMesh
+
+__all__ = ["SymmetryResult", "find_symmetry", "find_symmetry_steps"]
+
+_FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
+_MOVED_SHARE = 0.3  # part of the coarse points that has to be in another place: the others may lie on the axis
+_DISTINCT_SHARE = 0.5  # the same between two coarse matchings
+_LANDMARKS = 20  # the first matched points, to which the orientation of the others is measured
+_SIDE_WEIGHT = 0.01  # of the mean squared difference of signed areas beside that of distances
+_CURVATURE_WEIGHT = 6.0
+_INVOLUTION_SCALE = 0.1  # mean distance between a point and the image of its image that counts as far
+_OVERSAMPLING = 2  # times the hypotheses of a match: many swap left and right in a part of the body only
+_ROUNDS = 4  # of making the map its own inverse, and of placing the images; both settle in two or three
+_ALTERNATIVES = 3
+
+
+@dataclass(frozen=True, eq=False)
+class SymmetryResult:
+    """A map of a surface to itself that nearly keeps all distances and is not the identity.
+
+    Attributes
+    ----------
+    source_points, target_points : SurfacePoints
+        Points and their images, k each, on the same surface.
+    asymmetry : float
+        Root mean square change of the distance between two of the points under the map, in units of the square root
+        of the area: 0 for a perfectly symmetric surface.  It does not depend on units, and little on the number of
+        points.  For comparison: such distances are about 0.7, bodies that are symmetric at rest have 0.005 to 0.06,
+        more the more their pose stretches the skin.  Legs and ears whose lengths differ by a tenth make 0.015; up to
+        0.01 comes from errors of the distances where the triangulation itself is irregular.
+    orientation : float
+        Agreement of the orientation of the surface with that around the images, -1 to 1: near -1 if the map reverses
+        it, as that from left to right does, near 1 if it is a turn.
+    involution : float
+        Mean distance between a point and the image of its image, in units of the square root of the area: 0 if the
+        map is its own inverse.
+    curvature : float
+        Correlation of the mean curvature with that at the images, at most 1.  Distances cannot tell left-right from
+        front-back on a thin body; this can.
+    sides : (n,) array of float
+        For each vertex of the surface, on which side of the axis it lies: positive on one, negative on the other,
+        growing with the distance from the axis (in the units of the mesh, but no more than half the distance between
+        the vertex and its image); NaN on other parts of the surface than the largest.
+    axis_points : SurfacePoints
+        Where edges cross the fixed curve, the symmetry axis; none if the map keeps the orientation.
+    alternatives : tuple of SymmetryResult
+        Other symmetries, most credible first: of several, or of a nearly symmetric surface.  Those of a ball are
+        examples of infinitely many.
+    proven : bool
+        Whether the coarse matching from which the map was grown is known to be the optimum of its problem.
+    notes : tuple of str
+        What the user should know: one sentence each.
+    """
+
+    source_points: SurfacePoints
+    target_points: SurfacePoints
+    asymmetry: float
+    orientation: float
+    involution: float
+    curvature: float
+    sides: NDArray[np.float64]
+    axis_points: SurfacePoints
+    alternatives: tuple[SymmetryResult, ...]
+    proven: bool
+    notes: tuple[str, ...]
+
+    @property
+    def reverses_orientation(self) -> bool:
+        """Whether the map is a reflection."""
+        return self.orientation < 0
+
+
+@dataclass(frozen=True, eq=False)
+class _Candidate:
+    """A map of all samples, on its way to a result."""
+
+    coarse: BoundedMatching
+    images: NDArray[np.int64]  # (S,) sample numbers
+    orientation: float
+    involution: float
+    curvature: float
+    score: float  # smaller is more credible
+
+
+def find_symmetry(surface: TriangleMesh | Shape, settings: MatchSettings | None = None) -> SymmetryResult:
+    """Find the intrinsic symmetry of a surface, for bodies the map from left to right.
+
+    The surface is matched to itself, away from the identity [1]_ [2]_.  It need not be symmetric in space: a body in
+    any pose is as symmetric as at rest, as far as the pose keeps distances along its skin.
+
+    Parameters
+    ----------
+    surface : TriangleMesh or Shape
+        The surface; the largest part is used.
+    settings : MatchSettings, optional
+        How many points, and how hard to search.
+
+    Returns
+    -------
+    SymmetryResult
+        The most credible reflection, or turn if there is no reflection, however poor: see its `asymmetry`.
+
+    Raises
+    ------
+    MatchError
+        If the surface has too few vertices for the points, or is so small that nothing can move.
+
+    References
+    ----------
+    .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
+    .. [2] D. Raviv, A. M. Bronstein, M. M. Bronstein, R. Kimmel, "Full and partial symmetries of non-rigid shapes",
+       IJCV 89, 2010.
+    """
+    return run(find_symmetry_steps(surface, settings))
+
+
+def find_symmetry_steps(surface: TriangleMesh | Shape, settings: MatchSettings | None = None) -> Steps[SymmetryResult]:
+    """Find the intrinsic symmetry of a surface in short steps; see `find_symmetry`.
+
+    Yields
+    ------
+    Progress
+        About every tenth of a second for meshes of some thousand vertices.
+
+    Returns
+    -------
+    SymmetryResult
+        When the generator ends.
+    """
+    settings = settings or MatchSettings()
+    shape = surface if isinstance(surface, Shape) else Shape(surface)
+    if shape.mesh.vertex_count < settings.points:
+        raise MatchError(
+            f"No symmetry can be found with {settings.points} points: the mesh has only {shape.mesh.vertex_count} "
+            f"vertices{' in its largest part' if shape.mesh is not shape.original else ''}. "
+            "Use fewer points or subdivide the mesh."
+        )
+    yield from within(shape.sample_steps(max(settings.samples, 2 * settings.points)), 0.0, 0.5)
+    if Pair.needs_spectrum(settings):
+        yield from within(shape.spectrum_steps(settings.eigenpairs), 0.5, 0.55)
+    pair = Pair(shape, shape, settings)
+    coarse = yield from within(_coarse_steps(pair), 0.55, 0.7, "Matching the surface to itself")
+    candidates = yield from within(_candidate_steps(pair, coarse), 0.7, 0.9, "Comparing symmetries")
+    best = next((c for c in candidates if c.orientation < 0), candidates[0])
+    chosen = [best, *(c for c in candidates if c is not best)][: 1 + _ALTERNATIVES]
+    results = []
+    for number, candidate in enumerate(chosen):
+        yield Progress(0.9 + 0.1 * number / len(chosen), "Placing the points")
+        results.append(_result(shape, candidate, settings.points))
+    yield Progress(1.0, "Done")
+    return replace(results[0], alternatives=tuple(results[1:]))
+
+
+def _coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
+    """Match the coarse points to themselves exactly, away from the identity: the best distinct matchings."""
+    settings = pair.settings
+    points = min(settings.coarse_points, settings.points)
+    candidates = points if settings.constraint == "bijective" else settings.coarse_candidates
+    problem = pair.problem(points, min(candidates, pair.target.sample_count))
+    geodesic = pair.target.sample_distances[: problem.size[1], : problem.size[1]]
+    far = geodesic > _FAR * min(1.0, float(geodesic.max()))
+    exclusions = [Exclusion(far[:points], int(np.ceil(_MOVED_SHARE * points)))]
+    found: list[BoundedMatching] = []
+    count = _OVERSAMPLING * settings.hypotheses
+    for number in range(count):
+        search = branch_and_bound_steps(problem, node_limit=settings.node_limit, exclusions=exclusions)
+        matching = yield from within(search, number / count, (number + 1) / count)
+        if matching is None:
+            break
+        found.append(matching)
+        exclusions.append(Exclusion(far[matching.assignment], int(np.ceil(_DISTINCT_SHARE * points))))
+    if not found:
+        raise MatchError(
+            "The mesh is too coarse to be matched to anything but itself: use more Coarse Candidates or subdivide it."
+        )
+    return found
+
+
+def _candidate_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[list[_Candidate]]:
+    """Grow each coarse matching to maps of all samples, of either orientation; distinct ones, most credible first."""
+    sizes = level_sizes(len(coarse[0].assignment), pair.settings.points)
+    candidates = []
+    for number, matching in enumerate(coarse):
+        for sign in (-1, 1):
+            here = (number + (sign > 0) / 2) / len(coarse)
+            term = pair.orientation_term(matching.assignment, sign)
+            levels = yield from within(refine_steps(pair, matching.assignment, sizes, term), here, here)
+            candidates.append(_assess(pair.source, matching, levels[-1].assignment, sign))
+    distances = pair.source.sample_distances
+    identity = np.arange(pair.source.sample_count)
+    kept: list[_Candidate] = []
+    for candidate in sorted(candidates, key=lambda candidate: candidate.score):
+        others = [identity, *(other.images for other in kept)]
+        if all((distances[candidate.images, other] > _FAR / 2).mean() > _MOVED_SHARE for other in others):
+            kept.append(candidate)
+    return kept or [min(candidates, key=lambda candidate: candidate.score)]
+
+
+def _assess(shape: Shape, coarse: BoundedMatching, assignment: NDArray[np.int64], sign: int) -> _Candidate:
+    """Carry a matching to all samples, make the map its own inverse if it can be, and judge it."""
+    distances, count = shape.sample_distances, len(assignment)
+    everywhere = np.arange(len(distances))
+    misfit = _misfit(shape, np.arange(count), assignment, sign)
+    images = misfit.argmin(axis=1)
+    involution = float(distances[images[images], everywhere].mean())
+    for _ in range(_ROUNDS):
+        # An involution that keeps distances takes x to y and y to x: both have to fit.
+        before = images
+        images = (misfit + misfit.T).argmin(axis=1)
+        if np.array_equal(images, before):
+            break
+        misfit = _misfit(shape, np.arange(count), images[:count], sign)
+    landmarks = min(count, _LANDMARKS)
+    orientation = orientation_agreement(
+        shape.directions[:, :landmarks], shape.directions[np.ix_(images, images[:landmarks])]
+    ).mean()
+    change = distances[:, :count] - distances[np.ix_(images, images[:count])]
+    curvature = float(np.mean([weighted_correlation(c, c[images], shape.cell_areas) for c in shape.curvatures]))
+    # A map that moves points by little cannot change distances by much, as the flip of a thin body from front to back:
+    # what counts is the change for the way that the points go.
+    tiny = float(np.finfo(float).tiny)
+    way = float(np.square(distances[images, everywhere]).mean())
+    score = np.log(max(float(np.square(change).mean()), tiny) / max(way, tiny))
+    score += (involution / _INVOLUTION_SCALE) ** 2 - _CURVATURE_WEIGHT * curvature
+    return _Candidate(coarse, images, float(orientation), involution, curvature, float(score))
+
+
+def _misfit(shape: Shape, points: NDArray[np.int64], images: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
+    """Mean squared change of the distances to known points if sample x goes to sample y, and of sides, (S, S)."""
+    misfit = squared_differences(shape.sample_distances[:, points], shape.sample_distances[:, images]) / len(points)
+    known = slice(None, _LANDMARKS)
+    first = signed_areas(shape.directions[:, points[known]])
+    second = signed_areas(shape.directions[:, images[known]])
+    return misfit + _SIDE_WEIGHT * squared_differences(first, sign * second) / first.shape[1]
+
+
+def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
+    """Place the images of the points at vertices, between the samples, and measure the map there."""
+    rows = shape.sample_rows[:count].astype(np.float64)
+    nearest = candidate.images[:count]
+    images, image_rows = shape.samples[nearest], shape.sample_rows[nearest].astype(np.float64)
+    for _ in range(_ROUNDS):
+        before = images
+        images = _images_at_vertices(shape, rows, image_rows, nearest)
+        if np.array_equal(images, before):
+            break
+        image_rows = _rows_from(shape, images)
+    points = shape.samples[:count]
+    change = rows[:, points] - image_rows[:, images]
+    sides = _sides(shape, rows - image_rows)
+    whole_sides = np.full(shape.original.vertex_count, np.nan)
+    whole_sides[shape.vertices] = sides * shape.scale
+    return SymmetryResult(
+        source_points=SurfacePoints.at_vertices(shape.original, shape.vertices[points]),
+        target_points=SurfacePoints.at_vertices(shape.original, shape.vertices[images]),
+        asymmetry=float(np.sqrt(np.square(change).sum() / (count * (count - 1)))),
+        orientation=candidate.orientation,
+        involution=candidate.involution,
+        curvature=candidate.curvature,
+        sides=whole_sides,
+        axis_points=_zero_crossings(shape.original, whole_sides, reflection=candidate.orientation < 0),
+        alternatives=(),
+        proven=candidate.coarse.proven,
+        notes=_notes(shape),
+    )
+
+
+def _rows_from(shape: Shape, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Distances from some vertices to all, in sqrt(area), (k, n)."""
+    return np.concatenate([block for _, block in shape.solver.distances_in_blocks(vertices)]) / shape.scale
+
+
+def _images_at_vertices(
+    shape: Shape, rows: NDArray[np.float64], image_rows: NDArray[np.float64], nearest: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Find the vertex near each point's image that keeps its distances to all points and images best, (k,).
+
+    `rows` and `image_rows` (k, n) are the distances from the points, which are the first samples, and from their
+    images; `nearest` (k,) are the samples that the images are near to.
+    """
+    points = shape.samples[: len(rows)]
+    # The map takes points to images and images back to points: both kinds of distances have to be kept.
+    here = np.concatenate([rows[:, points], image_rows[:, points]])
+    reach = float(shape.sample_rows.min(axis=0).max())  # no vertex is farther than this from the samples
+    found = np.empty(len(points), np.int64)
+    for i, image in enumerate(nearest):
+        near = np.flatnonzero(shape.sample_rows[image] <= reach)
+        there = np.concatenate([image_rows[:, near], rows[:, near]])
+        found[i] = near[np.square(there - here[:, i : i + 1]).sum(axis=0).argmin()]
+    return found
+
+
+def _sides(shape: Shape, differences: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Tell the sides of the axis apart by how much nearer each vertex is to points than to their images, (n,).
+
+    `differences` (k, n) is d(v, p_i) - d(v, T p_i).  A vertex is nearer to whichever of the two lies on its own side:
+    the shortest path to the other one crosses the axis, from where both are equally far.  So up to noise the table has
+    the signs of an outer product, and its leading singular vectors tell the sides of points and of vertices.
+    """
+    _, vectors = np.linalg.eigh((differences * shape.mesh.vertex_areas) @ differences.T)
+    weights = vectors[:, -1]
+    weights *= np.sign(weights[np.abs(weights).argmax()])
+    return -(weights / np.abs(weights).sum()) @ differences / 2
+
+
+def _zero_crossings(mesh: TriangleMesh, values: NDArray[np.float64], *, reflection: bool) -> SurfacePoints:
+    """Points on edges at which a function given at the vertices, NaN where unknown, changes its sign."""
+    corners = mesh.triangles if reflection else mesh.triangles[:0]
+    first, second = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    crossing = (values[first] >= 0) & (values[second] < 0)  # in one direction: each inner edge once
+    flat = np.flatnonzero(crossing)
+    triangles, corner = np.divmod(flat, 3)
+    a, b = values[first[flat]], values[second[flat]]
+    weights = np.zeros((len(flat), 3))
+    rows = np.arange(len(flat))
+    weights[rows, corner] = b / (b - a)
+    weights[rows, (corner + 1) % 3] = a / (a - b)
+    return SurfacePoints.from_barycentric(mesh, triangles, weights)
+
+
+def _notes(shape: Shape) -> tuple[str, ...]:
+    """Say what of the surface was left out."""
+    count = int(shape.original.component_labels[shape.original.triangles].max()) + 1
+    if count == 1:
+        return ()
+    share = shape.mesh.area / shape.original.area
+    return (f"The mesh has {count} separate parts: only the largest ({share:.0%} of the area) was looked at.",)

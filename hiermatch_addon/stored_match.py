@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A match as it is kept in the file: both answers, in plain numbers and texts.
+
+Each of the two meshes keeps its own points, the source also what both have in common.  They name each other by a key
+that no renaming, saving or undoing changes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from ..engine import MatchResult
+    from .writing import Points
+
+__all__ = ["Answer", "CornerPoints", "StoredMatch", "Written"]
+
+_ANSWERS = ("direct", "mirrored")
+
+
+@dataclass(frozen=True)
+class Written:
+    """How a match is written.
+
+    Attributes
+    ----------
+    use_modifiers : bool
+        Whether the meshes were read as shape keys and modifiers show them.
+    vertex_groups, match_colors, distortion : bool
+        Which kinds are written.
+    """
+
+    use_modifiers: bool
+    vertex_groups: bool
+    match_colors: bool
+    distortion: bool
+
+
+@dataclass(frozen=True, eq=False)
+class CornerPoints:
+    """Points on a mesh, by the vertices between which they lie; so they move with the mesh.
+
+    Attributes
+    ----------
+    corners : (k, 3) array of int
+        The vertices of the triangle of each point.
+    barycentric : (k, 3) array of float
+        Its barycentric coordinates there.
+    """
+
+    corners: NDArray[np.int64]
+    barycentric: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, points: Points) -> CornerPoints:
+        """Take what is stored of points."""
+        return cls(points.corners, points.barycentric)
+
+    @property
+    def nearest_vertices(self) -> NDArray[np.int64]:
+        """The corner with the largest coordinate, (k,)."""
+        return np.take_along_axis(self.corners, self.barycentric.argmax(axis=1)[:, None], axis=1)[:, 0]
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return flat arrays of the two number types that Blender stores."""
+        return {
+            "corners": self.corners.ravel().astype(np.int32),
+            "barycentric": np.ascontiguousarray(self.barycentric, np.float64).ravel(),
+        }
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> CornerPoints:
+        """Undo `to_plain`."""
+        return cls(
+            np.array(plain["corners"], np.int64).reshape(-1, 3),
+            np.array(plain["barycentric"], np.float64).reshape(-1, 3),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """One of the two answers.
+
+    Attributes
+    ----------
+    target_points : CornerPoints
+        Where the source's points are on the target.
+    point_distortion : (k,) array of float
+        Distortion of each point.
+    distortion : float
+        Distortion of the whole.
+    orientation : float
+        From 1, left stays left, to -1, the answer mirrors.
+    proven : bool
+        Whether no coarse match has less distortion.
+    gap : float
+        By how much, at most, the coarse match can be worse than the best one.
+    """
+
+    target_points: CornerPoints
+    point_distortion: NDArray[np.float64]
+    distortion: float
+    orientation: float
+    proven: bool
+    gap: float
+
+    @classmethod
+    def of(cls, result: MatchResult) -> Answer:
+        """Take what is stored of a result."""
+        coarse = result.coarse
+        return cls(
+            CornerPoints.of(result.target_points),
+            result.point_distortion,
+            result.distortion,
+            result.orientation,
+            coarse.proven,
+            1 - coarse.lower_bound / coarse.cost if coarse.cost > 0 else 0.0,
+        )
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return all but the points on the target."""
+        return {
+            "point_distortion": np.ascontiguousarray(self.point_distortion, np.float64),
+            "distortion": float(self.distortion),
+            "orientation": float(self.orientation),
+            "proven": bool(self.proven),
+            "gap": float(self.gap),
+        }
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any], points: Mapping[str, Any]) -> Answer:
+        """Undo `to_plain`."""
+        numbers = dict(plain)
+        distortion = np.array(numbers.pop("point_distortion"), np.float64)
+        return cls(CornerPoints.from_plain(points), distortion, **numbers)
+
+
+@dataclass(frozen=True, eq=False)
+class StoredMatch:
+    """A match of two objects with all that is needed to write either answer.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Names of source and target when they were matched.
+    topologies : tuple of str
+        What `mesh_io.topology` said of them.
+    written : Written
+        How it is written.
+    source_points : CornerPoints
+        The matched points.
+    answers : tuple of Answer
+        The answer, and the mirrored one if there is one.
+    mirrored : bool
+        Whether the mirrored one is written.
+    notes : tuple of str
+        What the user should know.
+    """
+
+    names: tuple[str, str]
+    topologies: tuple[str, str]
+    written: Written
+    source_points: CornerPoints
+    answers: tuple[Answer, ...]
+    mirrored: bool
+    notes: tuple[str, ...]
+
+    @property
+    def answer(self) -> Answer:
+        """The answer that is written."""
+        return self.answers[self.mirrored]
+
+    @property
+    def key(self) -> str:
+        """A text that both meshes carry, and that is the same for the same answers between the same objects only."""
+        digest = hashlib.blake2b("\0".join((*self.names, *self.topologies)).encode(), digest_size=16)
+        for points in (self.source_points, *(answer.target_points for answer in self.answers)):
+            for numbers in points.to_plain().values():
+                digest.update(numbers.tobytes())
+        return digest.hexdigest()
+
+    def to_plain(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return what the source and what the target keep."""
+        names = {"source": self.names[0], "target": self.names[1]}
+        common = {"key": self.key, "names": names, "mirrored": self.mirrored}
+        answers = dict(zip(_ANSWERS, self.answers, strict=False))
+        source = {
+            "role": "source",
+            "topology": self.topologies[0],
+            "points": self.source_points.to_plain(),
+            "answers": {which: answer.to_plain() for which, answer in answers.items()},
+            "written": dict(vars(self.written)),
+            "notes": "\n".join(self.notes),
+        }
+        target = {
+            "role": "target",
+            "topology": self.topologies[1],
+            "points": {which: answer.target_points.to_plain() for which, answer in answers.items()},
+        }
+        return common | source, common | target
+
+    @classmethod
+    def from_plain(cls, source: Mapping[str, Any], target: Mapping[str, Any]) -> StoredMatch:
+        """Undo `to_plain`."""
+        return cls(
+            names=(source["names"]["source"], source["names"]["target"]),
+            topologies=(source["topology"], target["topology"]),
+            written=Written(**source["written"]),
+            source_points=CornerPoints.from_plain(source["points"]),
+            answers=tuple(
+                Answer.from_plain(source["answers"][which], target["points"][which])
+                for which in _ANSWERS
+                if which in source["answers"]
+            ),
+            mirrored=source["mirrored"],
+            notes=tuple(source["notes"].splitlines()),
+        )

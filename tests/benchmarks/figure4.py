@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figure 4 of the paper: time against the number of matched points, flat and hierarchical.
+
+    python -m tests.benchmarks.figure4 [--data FOLDER --pair cat0:cat1] [--limit 240] [--output build/figure4]
+
+Without a data folder a generated body in two poses and meshings is matched.  Flat matching gets twice as many
+candidates as points, and searches until it has proven the optimum or the limit (in seconds) is over; after the first
+size that it cannot prove, it is not asked for larger ones.  The hierarchical method runs with its default settings.
+Times are those on the clock, without the precomputation of each shape (samples and their distances), which is a column
+of its own.  Written are figure4.csv and figure4.svg.
+"""
+
+import argparse
+import csv
+import os
+import time
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+
+from engine import MatchSettings, Shape, match, run
+from engine.flat import flat_candidates, flat_steps
+from engine.pair import Pair
+from tests.benchmarks.common import creature_pairs, data_pairs
+
+SIZES = "6,8,10,12,14,16,18,20,22,24,26,28,30,32,36,40,48,64,96,128,192,256,384,512"
+PAIR = "cat0:cat1"
+SAMPLES = 512  # for the flat method, whose descriptors are measured by them
+WIDTH, HEIGHT, LEFT, BOTTOM, MARGIN = 720, 460, 70, 60, 24
+COLOURS = {"flat": "#c0392b", "hierarchical": "#1f5fa8"}
+
+
+@dataclass(frozen=True)
+class Run:
+    """One point of the plot.  Of a search that was stopped, no cost is known."""
+
+    method: str
+    points: int
+    candidates: int
+    seconds: float
+    precomputation: float
+    proven: bool
+    distortion: float
+
+
+def flat(pair, precomputation, points, limit):
+    """Match by the flat method, to the end or to the limit."""
+    start = time.perf_counter()
+    candidates = flat_candidates(points, SAMPLES)
+    steps = flat_steps(pair, points, candidates, node_limit=10**12)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as stop:
+            (found,) = stop.value
+            seconds = time.perf_counter() - start
+            return Run("flat", points, candidates, seconds, precomputation, found.proven, found.cost)
+        if time.perf_counter() - start > limit:
+            steps.close()
+            seconds = time.perf_counter() - start
+            return Run("flat", points, candidates, seconds, precomputation, proven=False, distortion=float("nan"))
+
+
+def hierarchical(known, points):
+    start = time.perf_counter()
+    result = match(Shape(known.source), Shape(known.target), MatchSettings(points=points))
+    precomputation = result.seconds["geodesics"]
+    seconds = time.perf_counter() - start - precomputation
+    candidates = max(MatchSettings().samples, 2 * points)
+    return Run("hierarchical", points, candidates, seconds, precomputation, result.coarse.proven, result.distortion)
+
+
+def measured(known, sizes, limit):
+    """Yield the runs, each as soon as it is done."""
+    start = time.perf_counter()
+    for shape in known.shapes:
+        run(shape.sample_steps(SAMPLES))
+    precomputation = time.perf_counter() - start
+    pair = Pair(*known.shapes, MatchSettings())
+    open_end = True
+    for points in sizes:
+        yield hierarchical(known, points)
+        if open_end:
+            found = flat(pair, precomputation, points, limit)
+            open_end = found.proven
+            yield found
+
+
+def plot(runs, limit, title):
+    """Draw the runs as an SVG, both axes logarithmic."""
+    points, seconds = np.array([(r.points, r.seconds) for r in runs]).T
+    low, high = np.floor(np.log10(seconds.min())), np.log10(max(seconds.max(), limit)) + 0.15
+    first, last = np.log2(points.min()) - 0.15, np.log2(points.max()) + 0.15
+
+    def x(value):
+        return LEFT + (np.log2(value) - first) / (last - first) * (WIDTH - LEFT - MARGIN)
+
+    def y(value):
+        return HEIGHT - BOTTOM - (np.log10(value) - low) / (high - low) * (HEIGHT - BOTTOM - 2 * MARGIN)
+
+    def text(place, words, extra=""):
+        return f'<text x="{place[0]:.1f}" y="{place[1]:.1f}" {extra}>{words}</text>'
+
+    def line(start, end, colour, extra=""):
+        ends = f'x1="{start[0]:.1f}" y1="{start[1]:.1f}" x2="{end[0]:.1f}" y2="{end[1]:.1f}"'
+        return f'<line {ends} stroke="{colour}" {extra}/>'
+
+    size = f'width="{WIDTH}" height="{HEIGHT}"'
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif" font-size="13">',
+        '<rect width="100%" height="100%" fill="white"/>',
+        text((WIDTH / 2, MARGIN), title, 'text-anchor="middle"'),
+        text(((LEFT + WIDTH) / 2, HEIGHT - 14), "matched points", 'text-anchor="middle"'),
+        text((0, 0), "seconds", f'text-anchor="middle" transform="translate(18 {HEIGHT / 2}) rotate(-90)"'),
+    ]
+    for power in range(int(low), int(np.floor(high)) + 1):
+        parts.append(line((LEFT, y(10.0**power)), (WIDTH - MARGIN, y(10.0**power)), "#dddddd"))
+        parts.append(text((LEFT - 8, y(10.0**power) + 4), f"{10.0**power:g}", 'text-anchor="end"'))
+    for tick in (6, 10, 22, 32, 64, 128, 256, 512):
+        if points.min() <= tick <= points.max():
+            parts.append(line((x(tick), y(10**low)), (x(tick), 2 * MARGIN), "#dddddd"))
+            parts.append(text((x(tick), HEIGHT - BOTTOM + 18), str(tick), 'text-anchor="middle"'))
+    parts.append(line((LEFT, y(limit)), (WIDTH - MARGIN, y(limit)), "#888888", 'stroke-dasharray="6 4"'))
+    parts.append(text((WIDTH - MARGIN, y(limit) - 5), f"limit {limit:g} s", 'text-anchor="end" fill="#666666"'))
+    for number, (method, colour) in enumerate(COLOURS.items()):
+        own = [r for r in runs if r.method == method]
+        places = " ".join(f"{x(r.points):.1f},{y(r.seconds):.1f}" for r in own)
+        parts.append(f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="2"/>')
+        for r in own:
+            filled = colour if r.proven or method == "hierarchical" else "white"
+            place = f'cx="{x(r.points):.1f}" cy="{y(r.seconds):.1f}"'
+            parts.append(f'<circle {place} r="4" fill="{filled}" stroke="{colour}" stroke-width="2"/>')
+        label = f"{method} (hollow: optimum not proven)" if method == "flat" else method
+        parts.append(text((LEFT + 16, 3 * MARGIN + 20 * number), label, f'fill="{colour}"'))
+    return "\n".join([*parts, "</svg>", ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, help="folder with .off files and their correspondence")
+    parser.add_argument("--pair", default=PAIR, help="source:target (default: %(default)s)")
+    parser.add_argument("--sizes", default=SIZES, help="numbers of points (default: %(default)s)")
+    parser.add_argument("--limit", type=float, default=240.0, help="seconds for one flat search (default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=Path("build/figure4"), help="folder (default: %(default)s)")
+    options = parser.parse_args()
+    known = next(iter(data_pairs(options.data, options.pair) if options.data else creature_pairs()))
+    runs = []
+    for found in measured(known, [int(size) for size in options.sizes.split(",")], options.limit):
+        runs.append(found)
+        proof = "" if found.method == "hierarchical" else ", proven" if found.proven else ", NOT PROVEN"
+        print(
+            f"{found.method:12s} {found.points:4d} points, {found.candidates:5d} candidates: {found.seconds:7.2f} s "
+            f"(and {found.precomputation:5.2f} s before), distortion {found.distortion:9.4f}{proof}",
+            flush=True,
+        )
+    options.output.mkdir(parents=True, exist_ok=True)
+    with (options.output / "figure4.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, [field.name for field in fields(Run)])
+        writer.writeheader()
+        writer.writerows(asdict(found) for found in runs)
+    title = f"Time to match points of {known.name.replace(':', ' to ')}"
+    (options.output / "figure4.svg").write_text(plot(runs, options.limit, title))
+    print(f"Written: {options.output / 'figure4.csv'} and figure4.svg")
+
+
+if __name__ == "__main__":
+    main()

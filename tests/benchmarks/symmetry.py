@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Find the left-right map of shapes whose true one is known, and measure its error.
+
+    python -m tests.benchmarks.symmetry --data FOLDER [--shapes cat0,dog0] [--points 64]
+    python -m tests.benchmarks.symmetry                        generated bodies instead
+
+FOLDER holds .off files and beside them a folder `corres` with NAME.vts and NAME.sym.vts, whose i-th lines name a point
+and its mirror image (the layout of the remeshed TOSCA and FAUST collections).
+
+The error of a point is the geodesic distance from its true mirror image to the one found, over the square root of the
+area; a point whose image is not known takes that of the nearest vertex that has one.  Printed are also the asymmetry of
+the map found and of the true one, the runner-up among the other symmetries, and how many of the vertices whose image is
+known lie on the other side of the axis than their image.
+"""
+
+import argparse
+import os
+import time
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from engine.geodesics import GeodesicSolver
+from engine.mesh import TriangleMesh
+from engine.settings import MatchSettings
+from engine.symmetry import find_symmetry
+from tests.bodies import mirrored_body
+from tests.shapes import creature
+
+
+def read_off(path):
+    """Read an .off file of triangles."""
+    words = path.read_text().split()
+    count, faces = int(words[1]), int(words[2])
+    numbers = np.array(words[4:], float)
+    triangles = numbers[3 * count : 3 * count + 4 * faces].reshape(faces, 4)[:, 1:]
+    return TriangleMesh(numbers[: 3 * count].reshape(count, 3), triangles.astype(np.int64))
+
+
+def known_images(path, mesh):
+    """For each vertex its mirror image, that of the nearest vertex that has one."""
+    here, there = (
+        np.loadtxt(path.parent / "corres" / f"{path.stem}{suffix}.vts", dtype=int) - 1 for suffix in ("", ".sym")
+    )
+    _, nearest = cKDTree(mesh.vertices[here]).query(mesh.vertices)
+    return there[nearest]
+
+
+def measure(mesh, truth, points):
+    """Errors of the points, the result, the asymmetry of the truth and the seconds."""
+    start = time.perf_counter()
+    result = find_symmetry(mesh, MatchSettings(points=points))
+    seconds = time.perf_counter() - start
+    solver, size = GeodesicSolver(mesh), np.sqrt(mesh.area)
+    chosen, found = result.source_points.nearest_vertices, result.target_points.nearest_vertices
+    rows, true_rows = (
+        np.concatenate([block for _, block in solver.distances_in_blocks(v)]) / size for v in (chosen, truth[chosen])
+    )
+    errors = true_rows[np.arange(len(chosen)), found]
+    change = rows[:, chosen] - true_rows[:, truth[chosen]]
+    asymmetry = np.sqrt(np.square(change).sum() / (len(chosen) * (len(chosen) - 1)))
+    return errors, result, asymmetry, seconds
+
+
+def report(name, mesh, truth, points):
+    """Print a line, and return what goes into the mean."""
+    errors, result, true_asymmetry, seconds = measure(mesh, truth, points)
+    opposite = (result.sides * result.sides[truth] < 0)[truth != np.arange(len(truth))].mean()
+    other = f"{result.alternatives[0].asymmetry:.3f}" if result.alternatives else "none"
+    print(
+        f"{name:14s} error mean {errors.mean():.4f} worst {errors.max():.4f}   asymmetry {result.asymmetry:.4f} "
+        f"(true map {true_asymmetry:.4f}, next {other})   orientation {result.orientation:+.2f}   "
+        f"twice {result.involution:.3f}   opposite sides {opposite:.1%}   {seconds:5.1f} s",
+        flush=True,
+    )
+    return errors.mean(), errors.max(), result.asymmetry, seconds
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, help="folder with the shapes")
+    parser.add_argument("--shapes", help="names of shapes, separated by commas (default all)")
+    parser.add_argument("--points", type=int, default=64)
+    options = parser.parse_args()
+    print(f"{options.points} points; errors and asymmetry x sqrt(area)")
+    rows = []
+    if options.data is None:
+        for pose in (0.0, 0.5, 1.0):
+            vertices, triangles, rest = mirrored_body(pose, seed=1)
+            _, truth = cKDTree(rest).query(rest * [1, -1, 1])
+            rows.append(report(f"body {pose}", TriangleMesh(vertices, triangles), truth, options.points))
+        for pose in (0.0, 1.0):
+            vertices, triangles, _ = creature(pose)
+            result = find_symmetry(TriangleMesh(vertices, triangles), MatchSettings(points=options.points))
+            print(f"creature {pose}, not symmetric: asymmetry {result.asymmetry:.4f}")
+    else:
+        chosen = options.shapes.split(",") if options.shapes else None
+        for path in sorted(options.data.rglob("*.off")):
+            if chosen is None or path.stem in chosen:
+                mesh = read_off(path)
+                rows.append(report(path.stem, mesh, known_images(path, mesh), options.points))
+    mean, worst, asymmetry, seconds = np.array(rows).T
+    print(
+        f"mean of {len(rows)}: error {mean.mean():.4f}, above 0.1 in {(mean > 0.1).sum()}, median worst point "
+        f"{np.median(worst):.4f}, asymmetry {asymmetry.mean():.4f}, {seconds.mean():.1f} s"
+    )
+
+
+if __name__ == "__main__":
+    main()

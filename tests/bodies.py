@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bodies for the tests of symmetry and retrieval, made from the creature of `tests.shapes`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tests.shapes import creature, irregular, posed
+
+
+def mirrored_body(pose=0.0, resolution=13, seed=None):
+    """Body that is symmetric at rest: the half y >= 0 of the creature and its mirror image.
+
+    Parameters
+    ----------
+    pose : float
+        How far legs, neck and tail are bent, each in its own way, so that nothing is symmetric in space; 0 to 1.
+    resolution : int
+        Of the creature.
+    seed : int, optional
+        Cut random triangles, so that the triangulation is not symmetric.
+
+    Returns
+    -------
+    vertices : (n, 3) array of float
+        Positions in the pose.
+    triangles : (m, 3) array of int
+        The same in all poses.
+    rest : (n, 3) array of float
+        Positions at rest: mirror images differ in the sign of y.
+    """
+    _, triangles, rest = creature(0.0, resolution)
+    rest, triangles = _half(rest, triangles)
+    middle = rest[:, 1] == 0
+    other = np.arange(len(rest))
+    other[~middle] = len(rest) + np.arange((~middle).sum())
+    rest = np.concatenate([rest, rest[~middle] * [1, -1, 1]])
+    triangles = np.concatenate([triangles, other[triangles][:, ::-1]])
+    if seed is not None:
+        rest, triangles = irregular(rest, triangles, rounds=1, seed=seed)
+    return posed(rest, pose), triangles, rest
+
+
+def relative_of_creature(legs=1.0, tail=1.0, pose=0.0, resolution=11, turn=0.0):
+    """Body like the creature, its legs and tail longer by a factor, in a pose: vertices and triangles."""
+    _, triangles, rest = creature(0.0, resolution, turn)
+    rest = rest.copy()
+    rest[:, 2] = np.where(rest[:, 2] < -0.3, -0.3 + legs * (rest[:, 2] + 0.3), rest[:, 2])
+    rest[:, 0] = np.where(rest[:, 0] < -0.85, -0.85 + tail * (rest[:, 0] + 0.85), rest[:, 0])
+    return posed(rest, pose), triangles
+
+
+def _half(points, triangles):
+    """Cut a surface along y = 0 and keep the part above, its border exactly at 0."""
+    points = points.copy()
+    # A cut close to a vertex would leave needles: such vertices are moved onto the plane.
+    edge = np.linalg.norm(points[triangles[:, 0]] - points[triangles[:, 1]], axis=1).mean()
+    points[np.abs(points[:, 1]) < 0.2 * edge, 1] = 0
+    above = points[:, 1] >= 0
+    vertices, cuts, kept = list(points), {}, []
+    for triangle in triangles:
+        polygon = []
+        for a, b in zip(triangle, np.roll(triangle, -1), strict=True):
+            if above[a]:
+                polygon.append(a)
+            if above[a] != above[b] and points[a, 1] and points[b, 1]:
+                pair = (min(a, b), max(a, b))
+                if pair not in cuts:
+                    p, q = points[pair[0]], points[pair[1]]
+                    cuts[pair] = len(vertices)
+                    vertices.append((p + (q - p) * p[1] / (p[1] - q[1])) * [1, 0, 1])
+                polygon.append(cuts[pair])
+        kept += [(polygon[0], polygon[i], polygon[i + 1]) for i in range(1, len(polygon) - 1)]
+    vertices, kept = np.array(vertices), np.array(kept)
+    kept = kept[(vertices[kept][:, :, 1] > 0).any(axis=1)]  # triangles in the plane itself would be there twice
+    used, kept = np.unique(kept, return_inverse=True)
+    return vertices[used], kept.reshape(-1, 3)

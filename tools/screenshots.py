@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Take the documentation's pictures of the panel in a real Blender window.
+
+    blender --factory-startup --window-geometry 0 0 1600 1000 --python tools/screenshots.py -- [FOLDER [COMMAND ...]]
+
+Any Blender from 4.3 on with NumPy and SciPy will do; the extension is loaded from this source tree.  Writes into
+build/screenshots (or FOLDER), and ends Blender with an error if a step failed:
+
+    panel.png     after a match of the demo pair; docs/images/panel.png is a copy of it, 1200 pixels wide
+    advanced.png  the same with all sections of the panel open
+    flipped.png   the mirrored match
+
+Blender cannot read its own pixels on some screens, virtual ones above all.  There, name a COMMAND that takes a picture
+of the screen and is given the file to write, such as `import -window root -resize 75% -colors 256`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+
+from source_extension import PACKAGE, load_extension  # noqa: E402 - Blender puts no script's folder on the path
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_PAUSE = 1.5
+"""Seconds between two steps: enough for a window to be drawn, in software too."""
+
+_ROOM = 1.25
+"""How much farther away than filling the view the cats are seen."""
+
+_ASIDE = 0.09
+"""How far they stand left of the middle, where the sidebar covers nothing, in units of that distance."""
+
+
+class OpenLayout:
+    """A layout whose collapsible sections start open; everything else is the layout's own."""
+
+    def __init__(self, layout: bpy.types.UILayout) -> None:
+        object.__setattr__(self, "layout", layout)
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - whatever the layout has
+        return getattr(self.layout, name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        setattr(self.layout, name, value)
+
+    def panel(self, name: str, **_names: bool) -> Any:  # noqa: ANN401 - a pair of layouts or None
+        """Open a section; under another name, because Blender remembers which were closed."""
+        return self.layout.panel(f"{name}_open", default_closed=False)
+
+
+def view() -> dict[str, Any]:
+    """Return what an operator of the 3D viewport needs in its context."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return {"window": window, "area": area, "region": region, "space_data": area.spaces.active}
+
+
+def set_scene() -> None:
+    """Put the demo pair into an empty scene and look at it."""
+    with bpy.context.temp_override(**view()):
+        for thing in list(bpy.data.objects):
+            bpy.data.objects.remove(thing)
+        bpy.ops.hiermatch.add_demo_pair()
+        space = view()["space_data"]
+        space.show_region_ui = True
+        space.shading.color_type = "VERTEX"
+        bpy.ops.view3d.view_selected()
+        eye = space.region_3d
+        eye.view_distance *= _ROOM
+        eye.view_location += eye.view_rotation @ Vector((_ASIDE * eye.view_distance, 0, 0))
+
+
+def choose_tab() -> None:
+    """Bring the sidebar's tab to the front."""
+    sidebar = next(region for region in view()["area"].regions if region.type == "UI")
+    sidebar.active_panel_category = "HierMatch"
+
+
+def match() -> None:
+    """Match the pair, without a pause."""
+    with bpy.context.temp_override(**view()):
+        bpy.ops.hiermatch.match()
+
+
+def flip() -> None:
+    """Write the mirrored match."""
+    with bpy.context.temp_override(**view()):
+        bpy.ops.hiermatch.flip()
+
+
+def open_sections() -> None:
+    """Draw the panel with its sections open from now on."""
+    panels = importlib.import_module(f"{PACKAGE}.hiermatch_addon.panels")
+    own = panels.layout_of
+    panels.layout_of = lambda owner: OpenLayout(own(owner))
+    view()["area"].tag_redraw()
+
+
+def picture(path: Path, command: list[str]) -> Callable[[], None]:
+    """Return a step that takes a picture of the window, or of the screen by a command."""
+
+    def take() -> None:
+        path.unlink(missing_ok=True)
+        if command:
+            subprocess.run([*command, str(path)], check=True)
+        else:
+            with bpy.context.temp_override(**view()):
+                bpy.ops.screen.screenshot(filepath=str(path))
+        image = bpy.data.images.load(str(path))
+        pixels = np.empty(len(image.pixels), np.float32)
+        image.pixels.foreach_get(pixels)
+        bpy.data.images.remove(image)
+        if np.ptp(pixels.reshape(-1, 4)[:, :3]) == 0:
+            raise OSError(f"{path} is blank: this screen cannot be read. Name a COMMAND that takes pictures of it.")
+        print(path, flush=True)
+
+    return take
+
+
+def main(arguments: list[str]) -> None:
+    """Let Blender's own timer do one step after the other, so that the window is drawn in between."""
+    folder = (Path(arguments[0]) if arguments else ROOT / "build" / "screenshots").resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    command = arguments[1:]
+    bpy.context.preferences.view.show_splash = False
+    load_extension().register()
+    steps = iter(
+        [
+            set_scene,
+            choose_tab,
+            match,
+            picture(folder / "panel.png", command),
+            flip,
+            picture(folder / "flipped.png", command),
+            flip,
+            open_sections,
+            picture(folder / "advanced.png", command),
+        ]
+    )
+
+    def advance() -> float | None:
+        step = next(steps, None)
+        if step is None:
+            bpy.ops.wm.quit_blender()
+            return None
+        try:
+            step()
+        except Exception:  # noqa: BLE001 - whatever it is, nobody sits before this window
+            traceback.print_exc()
+            sys.exit(1)
+        return _PAUSE
+
+    bpy.app.timers.register(advance, first_interval=_PAUSE)
+
+
+main(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
