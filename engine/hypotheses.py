@@ -24,7 +24,7 @@ from .progress import Progress, Steps, within
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Coarse", "Hypothesis", "choose_steps", "coarse_candidates", "coarse_steps"]
+__all__ = ["Coarse", "Hypothesis", "assess", "choose_steps", "coarse_candidates", "coarse_steps", "two_answers"]
 
 Result = TypeVar("Result")
 
@@ -130,15 +130,13 @@ def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
     return found
 
 
-def choose_steps(coarse: list[Coarse]) -> Steps[tuple[Hypothesis, Hypothesis | None]]:
+def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
     """Follow up coarse matchings, each with either orientation, and choose.
 
     Returns
     -------
-    chosen : Hypothesis
-        The most credible matching that keeps the orientation (of any orientation if none does).
-    mirrored : Hypothesis or None
-        The most credible one of the opposite orientation.
+    list of Hypothesis
+        One or two, see `two_answers`.
     """
     points = min(coarse[0].pair.settings.points, _DECISION_POINTS)
     sizes = level_sizes(len(coarse[0].matching.assignment), points)
@@ -160,10 +158,15 @@ def choose_steps(coarse: list[Coarse]) -> Steps[tuple[Hypothesis, Hypothesis | N
         hypotheses.append((yield from _at(here, _follow_steps(lead, further))))
     hypotheses.sort(key=lambda hypothesis: hypothesis.score)
     reflected = yield from _at(Progress(0.85, "Comparing matchings"), _reflected_steps(hypotheses, sizes))
-    hypotheses = sorted(hypotheses + reflected, key=lambda hypothesis: hypothesis.score)
-    chosen = next((h for h in hypotheses if h.orientation > 0), hypotheses[0])
-    mirrored = next((h for h in hypotheses if h.orientation * chosen.orientation < 0), None)
-    return chosen, mirrored
+    return two_answers(hypotheses + reflected)
+
+
+def two_answers(hypotheses: list[Hypothesis]) -> list[Hypothesis]:
+    """Choose the most credible matching of either orientation, the one that keeps it first."""
+    ranked = sorted(hypotheses, key=lambda hypothesis: hypothesis.score)
+    keeping = [h for h in ranked if h.orientation > 0][:1]
+    mirroring = [h for h in ranked if h.orientation <= 0][:1]
+    return keeping + mirroring
 
 
 def _follow_steps(lead: _Lead, further: list[int]) -> Steps[Hypothesis]:
@@ -175,7 +178,7 @@ def _follow_steps(lead: _Lead, further: list[int]) -> Steps[Hypothesis]:
     more = yield from refine_steps(pair, lead.assignment, further, lead.orientation_term)
     levels = lead.levels + more
     last = yield from refine_steps(pair, levels[-1].assignment, [len(levels[-1].assignment)])
-    return _assess(lead.coarse, levels[:-1] + last)
+    return assess(lead.coarse, levels[:-1] + last)
 
 
 def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int]) -> Steps[list[Hypothesis]]:
@@ -222,7 +225,7 @@ def _best_distinct(leads: list[_Lead]) -> list[_Lead]:
     return kept
 
 
-def _assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
+def assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
     """Carry a matching to all samples, and see how well the surfaces agree there.
 
     Two things are asked of the lifted map: that it keeps the distances to the matched points, and that the surface

@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .errors import MatchError
-from .hierarchy import Refined, level_sizes, refine_steps
-from .hypotheses import Hypothesis, choose_steps, coarse_candidates, coarse_steps
+from .gmds import on_whole_surface
 from .pair import Pair
 from .progress import Progress, Steps, run, within
-from .result import CoarseMatch, Level, MatchResult
+from .result import CoarseMatch, MatchResult
 from .settings import MatchSettings
 from .shape import Shape
+from .solvers import Answer, solve_steps
 from .surface import SurfacePoints
+from .surface_distances import SurfaceDistances, to_all_vertices_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -100,19 +101,15 @@ def match_steps(
         clock.lap("eigenpairs")
     pair = Pair(x.limited(samples), y.limited(samples), settings)
     clock.lap("descriptors")
-    coarse = yield from within(coarse_steps(pair), 0.7, 0.8, "Matching the coarse points exactly")
-    clock.lap("coarse")
-    chosen, mirrored = yield from within(choose_steps(coarse), 0.8, 0.9)
-    answers = []
-    for number, hypothesis in enumerate(filter(None, (chosen, mirrored))):
-        start = 0.9 + 0.05 * number
-        levels = yield from within(_finish_steps(hypothesis), start, start + 0.05)
-        answers.append((hypothesis, levels))
-    clock.lap("hierarchy")
-    yield Progress(1.0, "Done")
+    answers = yield from within(solve_steps(pair), 0.7, 1.0)
+    clock.lap("matching")
     notes = [note for shape, name in ((x, "source"), (y, "target")) for note in _notes(shape, name)]
-    results = [_result(hypothesis, levels, tuple(notes), clock.laps) for hypothesis, levels in answers]
-    return replace(results[0], mirrored=results[1]) if len(results) > 1 else results[0]
+    result = yield from _result_steps(answers[0], tuple(notes), clock.laps)
+    if len(answers) > 1:
+        mirrored = yield from _result_steps(answers[1], tuple(notes), clock.laps)
+        result = replace(result, mirrored=mirrored)
+    yield Progress(1.0, "Done")
+    return result
 
 
 class _Clock:
@@ -128,14 +125,6 @@ class _Clock:
         self._last = now
 
 
-def _finish_steps(hypothesis: Hypothesis) -> Steps[list[Refined]]:
-    """Go on from the level at which the hypotheses were compared to the finest."""
-    pair = hypothesis.coarse.pair
-    reached = len(hypothesis.assignment)
-    sizes = level_sizes(reached, pair.settings.points)[1:]
-    return hypothesis.levels + (yield from refine_steps(pair, hypothesis.assignment, sizes))
-
-
 def _notes(shape: Shape, name: str) -> list[str]:
     """Say what of a surface was left out."""
     count = int(shape.original.component_labels[shape.original.triangles].max()) + 1
@@ -145,55 +134,41 @@ def _notes(shape: Shape, name: str) -> list[str]:
     return [f"The {name} has {count} separate parts: the largest ({share:.0%} of the area) was matched."]
 
 
-def _result(
-    hypothesis: Hypothesis, levels: list[Refined], notes: tuple[str, ...], seconds: dict[str, float]
-) -> MatchResult:
-    pair, coarse = hypothesis.coarse.pair, hypothesis.coarse.matching
-    x, y, assignment = pair.source, pair.target, levels[-1].assignment
-    count = len(assignment)
-    problem = pair.problem(count)
-    difference = problem.source_distances - problem.target_distances[np.ix_(assignment, assignment)]
+def _result_steps(answer: Answer, notes: tuple[str, ...], seconds: dict[str, float]) -> Steps[MatchResult]:
+    pair, coarse = answer.coarse.pair, answer.coarse.matching
+    x, y, count = pair.source, pair.target, len(answer.points)
+    difference = pair.source_distances[:count, :count] - answer.distances
+    # Distances to all vertices are geodesic ones whatever the metric: they are for spreading values over the surface.
+    metric = pair.target_metric if isinstance(pair.target_metric, SurfaceDistances) else SurfaceDistances(y)
+    target_distances = yield from within(to_all_vertices_steps(metric, answer.points), 1.0, 1.0)
     return MatchResult(
-        source_points=_points(x, np.arange(count)),
-        target_points=_points(y, assignment),
-        distortion=problem.cost(assignment),
-        linear=problem.linear_cost(assignment),
-        quadratic=problem.quadratic_cost(assignment),
+        source_points=SurfacePoints.at_vertices(x.original, x.vertices[x.samples[:count]]),
+        target_points=on_whole_surface(y, answer.points),
+        distortion=answer.distortion,
+        linear=answer.linear,
+        quadratic=answer.quadratic,
         point_distortion=np.sqrt(np.square(difference).sum(axis=1) / max(count - 1, 1)),
-        orientation=hypothesis.orientation,
-        levels=tuple(
-            Level(
-                len(level.assignment),
-                level.iterations,
-                pair.problem(len(level.assignment)).cost(level.assignment),
-                _points(y, level.assignment),
-            )
-            for level in levels
-        ),
+        orientation=answer.orientation,
+        levels=answer.levels,
         coarse=CoarseMatch(
             x.vertices[x.samples[: len(coarse.assignment)]],
             y.vertices[y.samples[coarse.assignment]],
-            coarse_candidates(pair),
+            answer.candidates,
             coarse.cost,
             coarse.lower_bound,
             coarse.proven,
             coarse.nodes,
         ),
         mirrored=None,
-        source_distances=_distances(x, np.arange(count)),
-        target_distances=_distances(y, assignment),
+        source_distances=_sample_distances(x, count),
+        target_distances=target_distances,
         notes=notes,
         seconds=seconds,
     )
 
 
-def _points(shape: Shape, samples: NDArray[np.int64]) -> SurfacePoints:
-    """Place samples on the whole surface, of which the shape may be a part."""
-    return SurfacePoints.at_vertices(shape.original, shape.vertices[shape.samples[samples]])
-
-
-def _distances(shape: Shape, samples: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Distances from samples to all vertices of the whole surface, in its units; inf on other parts."""
-    rows = np.full((len(samples), shape.original.vertex_count), np.inf)
-    rows[:, shape.vertices] = shape.sample_rows[samples] * shape.scale
-    return rows
+def _sample_distances(shape: Shape, count: int) -> NDArray[np.float64]:
+    """Distances from the first samples to all vertices of the whole surface, in its units; inf on other parts."""
+    whole = np.full((count, shape.original.vertex_count), np.inf)
+    whole[:, shape.vertices] = shape.sample_rows[:count].astype(np.float64) * shape.scale
+    return whole

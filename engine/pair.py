@@ -19,6 +19,7 @@ from .spectral_descriptors import (
     multiplets,
     wave_kernel_signatures,
 )
+from .surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,13 +61,15 @@ class Pair:
         d_X between the samples of X.
     target_distances : (T, T) array of float
         d_Y between the samples of Y.
+    target_metric : PointDistances
+        d_Y between points anywhere on Y.
     linear : (S, T) array of float
         d_F between every sample of X and every sample of Y, weighted.
     """
 
     def __init__(self, source: Shape, target: Shape, settings: MatchSettings) -> None:
         self.source, self.target, self.settings = source, target, settings
-        self.source_distances, self.target_distances = _metric(source, target, settings)
+        self.source_distances, self.target_distances, self.target_metric = _metric(source, target, settings)
         self._descriptor = settings.linear_weight * self._sign_free(settings.descriptor)
         self.linear = self._descriptor
 
@@ -146,17 +149,22 @@ class Pair:
         )
 
 
-def _metric(source: Shape, target: Shape, settings: MatchSettings) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distances between the samples of each shape in the chosen metric."""
+def _metric(
+    source: Shape, target: Shape, settings: MatchSettings
+) -> tuple[NDArray[np.float64], NDArray[np.float64], PointDistances]:
+    """Distances between the samples of each shape in the chosen metric, and the metric on the whole target."""
     if settings.metric == "geodesic":
-        return source.sample_distances, target.sample_distances
+        return source.sample_distances, target.sample_distances, SurfaceDistances(target)
     # One time, and one scale, for both shapes.
     time = settings.diffusion_time or (automatic_time(source.spectrum) + automatic_time(target.spectrum)) / 2
     first, second = (
         DiffusionMetric(shape.spectrum, time).distances(shape.samples)[:, shape.samples] for shape in (source, target)
     )
-    size = np.sqrt((np.square(first).mean() + np.square(second).mean()) / 2)
-    return first * (_TYPICAL_DISTANCE / size), second * (_TYPICAL_DISTANCE / size)
+    scale = _TYPICAL_DISTANCE / np.sqrt((np.square(first).mean() + np.square(second).mean()) / 2)
+    spectrum = target.spectrum
+    decay = np.exp(-spectrum.values * spectrum.area * time)
+    places = spectrum.functions * (decay * scale * np.sqrt(spectrum.area))
+    return first * scale, second * scale, EmbeddedDistances(target.mesh, places)
 
 
 def _scaled(difference: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -29,7 +29,8 @@ def _choice(default: str, label: str, description: str, choices: dict[str, tuple
 class MatchSettings:
     """Settings of `match`; the defaults need no tuning across units, scale and resolution.
 
-    Each field's metadata holds ``label`` and ``description``, and ``minimum`` and ``maximum`` or ``choices``.
+    Each field's metadata holds ``label`` and ``description``, and ``minimum`` and ``maximum`` of a number or
+    ``choices`` of a word.
 
     Raises
     ------
@@ -43,6 +44,27 @@ class MatchSettings:
     )
     coarse_candidates: int = _setting(
         24, "Coarse Candidates", 3, 100, "How many points of the target the coarse points may be matched to"
+    )
+    solver: str = _choice(
+        "hierarchical",
+        "Solver",
+        "How the points are matched",
+        {
+            "hierarchical": ("Hierarchical", "Some points exactly, then more and more, level by level"),
+            "flat": ("Flat", "All points at once, exactly: for comparison, and for some 30 points at most"),
+            "gmds": (
+                "Generalized Multidimensional Scaling",
+                "From the exact coarse match, points move over the target by their distances alone: for comparison",
+            ),
+        },
+    )
+    settle: bool = field(
+        default=True,
+        metadata={
+            "label": "Settle",
+            "description": "At last let the points leave the samples of the target and come to rest between its "
+            "vertices (hierarchical solver)",
+        },
     )
     metric: str = _choice(
         "geodesic",
@@ -149,7 +171,7 @@ class MatchSettings:
             if "choices" in about:
                 if value not in about["choices"]:
                     raise SettingsError(f"{about['label']} is {value!r}, but must be one of {list(about['choices'])}.")
-            elif not about["minimum"] <= value <= about["maximum"]:
+            elif "minimum" in about and not about["minimum"] <= value <= about["maximum"]:
                 raise SettingsError(
                     f"{about['label']} is {value}, but must lie between {about['minimum']} and {about['maximum']}."
                 )

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .errors import MeshError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -64,6 +66,30 @@ class SurfacePoints:
         first_corner[flat[::-1]] = np.arange(len(flat))[::-1]
         triangles, corner = np.divmod(first_corner[vertices], 3)
         return cls.from_barycentric(mesh, triangles, np.eye(3)[corner])
+
+    @classmethod
+    def from_corners(
+        cls, mesh: TriangleMesh, corners: NDArray[np.int64], barycentric: NDArray[np.float64]
+    ) -> SurfacePoints:
+        """Make points from the vertices of their triangles (k, 3), in any order, and barycentric coordinates (k, 3).
+
+        Raises
+        ------
+        MeshError
+            If the mesh has no such triangle.
+        """
+
+        def keys(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+            low, middle, high = np.sort(triangles, axis=1).T
+            return (low * mesh.vertex_count + middle) * mesh.vertex_count + high
+
+        known, asked = keys(mesh.triangles), keys(corners)
+        order = np.argsort(known, kind="stable")
+        triangles = order[np.searchsorted(known[order], asked).clip(max=len(order) - 1)]
+        if (known[triangles] != asked).any():
+            raise MeshError("The mesh has no triangle at the place of a point: it is not the mesh of these points.")
+        place = (mesh.triangles[triangles][:, :, None] == corners[:, None, :]).argmax(axis=2)
+        return cls.from_barycentric(mesh, triangles, np.take_along_axis(barycentric, place, axis=1))
 
     def interpolate(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Evaluate a function given at the vertices, linear inside triangles.

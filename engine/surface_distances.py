@@ -18,7 +18,14 @@ if TYPE_CHECKING:
     from .shape import Shape
     from .surface import SurfacePoints
 
-__all__ = ["EmbeddedDistances", "PointDistances", "SurfaceDistances", "squared_offsets", "symmetric_roots"]
+__all__ = [
+    "EmbeddedDistances",
+    "PointDistances",
+    "SurfaceDistances",
+    "squared_offsets",
+    "symmetric_roots",
+    "to_all_vertices_steps",
+]
 
 _MEMORY = 256_000_000  # bytes of rows that are kept
 
@@ -124,6 +131,14 @@ class SurfaceDistances:
         """Distances between points (k,), prepared: (k, k), symmetric with a zero diagonal."""
         return symmetric_roots(self.squares_between(points))
 
+    def to_all_vertices(self, points: SurfacePoints) -> NDArray[np.float64]:
+        """Distances from points (k,), prepared, to all vertices of the whole surface, in units of the mesh: (k, n)."""
+        shape = self._shape
+        whole = np.full((len(points), shape.original.vertex_count), np.inf)
+        squares = self.squares_to_vertices(points, np.arange(self.mesh.vertex_count))
+        whole[:, shape.vertices] = np.sqrt(np.maximum(squares, 0)) * shape.scale
+        return whole
+
     def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
         """Squared lengths of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
         return _squared_sides(self.mesh.vertices, self.mesh.triangles[triangles]) / self._unit
@@ -139,6 +154,25 @@ class SurfaceDistances:
             row = self._rows.get(source)
             block[i] = (number[source] if row is None else row).take(vertices)
         return block
+
+
+def to_all_vertices_steps(metric: SurfaceDistances, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
+    """Measure the distances from points to every vertex of the whole surface.
+
+    Parameters
+    ----------
+    metric : SurfaceDistances
+        The metric of the part of the surface that is used.
+    points : SurfacePoints
+        Places (k,) on that part.
+
+    Returns
+    -------
+    (k, n) array of float
+        In units of the mesh; ``inf`` on other parts of the surface.
+    """
+    yield from metric.prepare_steps(points)
+    return metric.to_all_vertices(points)
 
 
 class EmbeddedDistances:

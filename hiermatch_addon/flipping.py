@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..engine.geodesics import GeodesicSolver
+from ..engine import Shape, SurfacePoints
+from ..engine.surface_distances import SurfaceDistances, to_all_vertices_steps
 from . import writing
 from .access import mesh_of, view_layer_of
 from .errors import ObjectError
@@ -224,8 +225,8 @@ def _restore(stored: StoredMatch, meshes: Sequence[TriangleMesh], progress: Call
     source_points, target_points = _placed(stored.source_points, source), _placed(answer.target_points, target)
     source_distances = target_distances = np.empty((0, 0))
     if stored.written.match_colors or stored.written.distortion:
-        source_distances = _distances(source, source_points.nearest_vertices, lambda done: progress(done / 2))
-        target_distances = _distances(target, target_points.nearest_vertices, lambda done: progress((1 + done) / 2))
+        source_distances = _distances(source, source_points, lambda done: progress(done / 2))
+        target_distances = _distances(target, target_points, lambda done: progress((1 + done) / 2))
     return _Restored(source_points, target_points, answer.point_distortion, source_distances, target_distances)
 
 
@@ -234,18 +235,16 @@ def _placed(points: CornerPoints, mesh: TriangleMesh) -> _Points:
     return _Points(points.corners, points.barycentric, points.nearest_vertices, positions)
 
 
-def _distances(
-    mesh: TriangleMesh, sources: NDArray[np.int64], progress: Callable[[float], None]
-) -> NDArray[np.float64]:
-    """Measure the distances from vertices of one part of a mesh to all others, as a match does.
-
-    Like those of a match they are rounded to single precision, so that the colours are the same to the last bit.
-    """
-    labels = mesh.component_labels
-    part, vertices, _ = mesh.submesh(labels == labels[sources[0]])
-    scale = float(np.sqrt(part.area))
-    rows = np.full((len(sources), mesh.vertex_count), np.inf)
-    for first, block in GeodesicSolver(part).distances_in_blocks(np.searchsorted(vertices, sources)):
-        rows[first : first + len(block), vertices] = (block / scale).astype(np.float32) * scale
-        progress((first + len(block)) / len(sources))
-    return rows
+def _distances(mesh: TriangleMesh, points: _Points, progress: Callable[[float], None]) -> NDArray[np.float64]:
+    """Measure the distances from points to all vertices of a mesh, the same to the last bit as a match does."""
+    shape = Shape(mesh)
+    corners = np.searchsorted(shape.vertices, points.corners)
+    steps = to_all_vertices_steps(
+        SurfaceDistances(shape), SurfacePoints.from_corners(shape.mesh, corners, points.barycentric)
+    )
+    while True:
+        try:
+            progress(next(steps).fraction)
+        except StopIteration as stop:
+            rows: NDArray[np.float64] = stop.value
+            return rows

@@ -47,6 +47,8 @@ def _setting_property(setting: Any) -> Any:  # noqa: ANN401 - a dataclass field 
             default=to_identifier(setting.default),
             items=[(to_identifier(word), *described) for word, described in about["choices"].items()],
         )
+    if isinstance(setting.default, bool):
+        return _props.BoolProperty(name=about["label"], description=about["description"], default=setting.default)
     make = _props.FloatProperty if isinstance(setting.default, float) else _props.IntProperty
     return make(
         name=about["label"],

@@ -25,7 +25,7 @@ _GROUPS: Final[dict[str, tuple[str, ...]]] = {
         "quadratic_weight",
     ),
     "Coarse Match": ("coarse_points", "coarse_candidates", "constraint", "hypotheses", "node_limit"),
-    "Refinement": ("samples", "neighbourhood"),
+    "Refinement": ("samples", "neighbourhood", "settle"),
 }
 """Settings of the engine that are named nowhere here come first, in a group without a name."""
 
@@ -44,6 +44,10 @@ def _matters(name: str, options: MatchOptions) -> bool:
         return bool(descriptor == "eigenfunctions")
     if name == "eigenpairs":
         return bool(metric == "diffusion" or descriptor != "histogram")
+    if name == "settle":
+        return bool(setting_of(options, "solver") == "hierarchical")
+    if name in _GROUPS["Coarse Match"] and name != "node_limit":
+        return bool(setting_of(options, "solver") != "flat")
     return True
 
 

@@ -59,6 +59,10 @@ def test_every_setting_is_mirrored(owner, setting):
         assert items == list(setting.metadata["choices"].items())
         assert all(item.identifier.isupper() for item in mirror.enum_items)
         return
+    if isinstance(setting.default, bool):
+        assert mirror.type == "BOOLEAN"
+        assert mirror.default is setting.default
+        return
     assert mirror.type == {int: "INT", float: "FLOAT"}[type(setting.default)]
     assert mirror.default == pytest.approx(setting.default)
     assert mirror.hard_min == pytest.approx(setting.metadata["minimum"])

@@ -55,28 +55,60 @@ def test_the_result_is_consistent_in_itself(result, bodies):
     source, target = bodies[:2]
     k = QUICK.points
     assert len(result.source_points) == len(result.target_points) == k
+    between = []
     for points, mesh, distances in (
         (result.source_points, source, result.source_distances),
         (result.target_points, target, result.target_distances),
     ):
-        assert len(set(points.nearest_vertices.tolist())) == k
-        np.testing.assert_allclose(points.positions, mesh.vertices[points.nearest_vertices], atol=1e-12)
+        np.testing.assert_allclose(points.positions, points.interpolate(mesh.vertices), atol=1e-12)
+        assert points.barycentric.min() >= 0
+        np.testing.assert_allclose(points.barycentric.sum(axis=1), 1)
         assert distances.shape == (k, mesh.vertex_count)
-        np.testing.assert_allclose(distances[np.arange(k), points.nearest_vertices], 0, atol=1e-6)
+        rows = points.interpolate(distances.T)  # from every point to every point
+        assert np.diag(rows).max() < mesh.edge_lengths.max()
+        between.append((rows + rows.T) / 2 / np.sqrt(mesh.area))
+    np.testing.assert_array_equal(result.source_points.barycentric.max(axis=1), 1)
+    assert (result.target_points.barycentric.max(axis=1) < 1).any()
     assert result.distortion == pytest.approx(result.linear + QUICK.quadratic_weight * result.quadratic)
+    np.testing.assert_allclose(result.point_distortion**2 * (k - 1), _squares(*between), rtol=0.5, atol=5e-3)
+    assert (result.point_distortion**2 * (k - 1)).sum() == pytest.approx(result.quadratic)
+    assert [level.points for level in result.levels] == [10, 20, 40]
+    assert result.levels[-1].distortion == pytest.approx(result.distortion)
+    assert set(result.seconds) == {"geodesics", "descriptors", "matching"}
+
+
+def _squares(first, second):
+    return np.square(first - second).sum(axis=1)
+
+
+def test_without_settling_the_points_stay_at_samples_and_the_distortion_is_larger(result, bodies):
+    target = Shape(bodies[1])
+    plain = match(bodies[0], target, replace(QUICK, settle=False))
+    assert set(plain.target_points.nearest_vertices) <= set(target.samples)
+    np.testing.assert_array_equal(plain.target_points.barycentric.max(axis=1), 1)
+    assert len(set(plain.target_points.nearest_vertices)) == QUICK.points
+    assert result.distortion < plain.distortion
+    assert rest_errors(result, bodies).mean() < rest_errors(plain, bodies).mean() + 0.005
     between = [
         d[:, p.nearest_vertices] / np.sqrt(m.area)
         for d, p, m in (
-            (result.source_distances, result.source_points, source),
-            (result.target_distances, result.target_points, target),
+            (plain.source_distances, plain.source_points, bodies[0]),
+            (plain.target_distances, plain.target_points, bodies[1]),
         )
     ]
-    difference = (between[0] + between[0].T - between[1] - between[1].T) / 2
-    assert result.quadratic == pytest.approx(np.square(difference).sum(), rel=1e-4)
-    np.testing.assert_allclose(result.point_distortion**2 * (k - 1), np.square(difference).sum(axis=1), rtol=1e-3)
-    assert [level.points for level in result.levels] == [10, 20, 40]
-    assert result.levels[-1].distortion == pytest.approx(result.distortion)
-    assert set(result.seconds) == {"geodesics", "descriptors", "coarse", "hierarchy"}
+    symmetric = [(d + d.T) / 2 for d in between]
+    assert plain.quadratic == pytest.approx(_squares(*symmetric).sum(), rel=1e-4)
+
+
+@pytest.mark.parametrize("solver", ["flat", "gmds"])
+def test_the_solvers_to_compare_with_find_the_match_too(solver, bodies):
+    result = match(*bodies[:2], replace(QUICK, points=14 if solver == "flat" else 40, solver=solver))
+    assert rest_errors(result, bodies).mean() < 0.08
+    assert result.orientation > 0.3
+    assert result.levels[-1].points == len(result.target_points)
+    if solver == "flat":
+        assert result.coarse.proven
+        assert len(result.coarse.source_vertices) == 14
 
 
 def test_the_same_input_gives_the_same_output(result, bodies):

@@ -7,7 +7,7 @@ from engine import MatchSettings, SettingsError
 from engine.settings import SETUPS
 
 FIELDS = {setting.name: setting for setting in fields(MatchSettings)}
-NUMBERS = [name for name, setting in FIELDS.items() if "choices" not in setting.metadata]
+NUMBERS = [name for name, setting in FIELDS.items() if "minimum" in setting.metadata]
 CHOICES = [name for name, setting in FIELDS.items() if "choices" in setting.metadata]
 
 

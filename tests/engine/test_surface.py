@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from engine import SurfacePoints, TriangleMesh
-from tests.shapes import plane, torus
+from engine import MeshError, SurfacePoints, TriangleMesh
+from tests.shapes import icosphere, plane, torus
 
 
 @pytest.fixture
@@ -66,3 +66,17 @@ def test_no_points(mesh):
     assert len(none) == 0
     assert none.positions.shape == (0, 3)
     assert none.interpolate(mesh.vertices).shape == (0, 3)
+
+
+def test_points_are_found_by_the_corners_of_their_triangle():
+    mesh = TriangleMesh(*icosphere(3))
+    rng = np.random.default_rng(0)
+    points = SurfacePoints.from_barycentric(
+        mesh, rng.permutation(mesh.triangle_count)[:9], rng.dirichlet(np.ones(3), 9)
+    )
+    turned = np.array([1, 2, 0])
+    again = SurfacePoints.from_corners(mesh, points.corners[:, turned], points.barycentric[:, turned])
+    np.testing.assert_array_equal(again.triangles, points.triangles)
+    np.testing.assert_array_equal(again.barycentric, points.barycentric)
+    with pytest.raises(MeshError, match="no triangle"):
+        SurfacePoints.from_corners(mesh, np.array([[0, 1, 2]]), np.array([[1.0, 0, 0]]))

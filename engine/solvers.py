@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ways to match a pair: hierarchical, and the flat one and generalised multidimensional scaling beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .flat import flat_candidates, flat_steps
+from .gmds import gmds_steps, on_whole_surface
+from .hierarchy import Refined, level_sizes, refine_steps
+from .hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
+from .progress import Steps, within
+from .result import Level
+from .settling import Stress, settle_steps
+from .surface import SurfacePoints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .pair import Pair
+
+__all__ = ["Answer", "solve_steps"]
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A matching, on the part of the target that is used.
+
+    Attributes
+    ----------
+    coarse : Coarse
+        The exact first step.
+    candidates : int
+        How many samples of the target were offered there.
+    orientation : float
+        Mean agreement of orientation, -1 to 1.
+    points : SurfacePoints
+        Images of the first k samples of the source, on ``Shape.mesh`` of the target.
+    distances : (k, k) array of float
+        Distances between the images.
+    linear : float
+        Sum of the descriptor differences, at the samples nearest to the images.
+    levels : tuple of Level
+        The hierarchy, on the whole target.
+    """
+
+    coarse: Coarse
+    candidates: int
+    orientation: float
+    points: SurfacePoints
+    distances: NDArray[np.float64]
+    linear: float
+    levels: tuple[Level, ...]
+
+    @property
+    def quadratic(self) -> float:
+        """Sum over ordered pairs of the squared differences of distances."""
+        wanted = self.coarse.pair.source_distances[: len(self.points), : len(self.points)]
+        return float(np.square(self.distances - wanted).sum())
+
+    @property
+    def distortion(self) -> float:
+        """The distortion, equation 2."""
+        return self.linear + self.coarse.pair.settings.quadratic_weight * self.quadratic
+
+
+def solve_steps(pair: Pair) -> Steps[list[Answer]]:
+    """Match a pair by the solver that its settings name.
+
+    Returns
+    -------
+    list of Answer
+        The one that keeps the orientation and the one that mirrors it, as far as they were found.
+    """
+    if pair.settings.solver == "flat":
+        return (yield from _flat_steps(pair))
+    if pair.settings.solver == "gmds":
+        return (yield from _gmds_steps(pair))
+    return (yield from _hierarchical_steps(pair))
+
+
+def _hierarchical_steps(pair: Pair) -> Steps[list[Answer]]:
+    coarse = yield from within(coarse_steps(pair), 0.0, 0.2, "Matching the coarse points exactly")
+    hypotheses = yield from within(choose_steps(coarse), 0.2, 0.7)
+    answers = []
+    for number, hypothesis in enumerate(hypotheses):
+        start = 0.7 + 0.15 * number
+        sizes = level_sizes(len(hypothesis.assignment), pair.settings.points)[1:]
+        finer = refine_steps(hypothesis.coarse.pair, hypothesis.assignment, sizes)
+        levels = hypothesis.levels + (yield from within(finer, start, start + 0.05))
+        answer = _at_samples(hypothesis, levels, coarse_candidates(pair))
+        if pair.settings.settle:
+            answer = yield from within(_settled_steps(answer), start + 0.05, start + 0.15)
+        answers.append(answer)
+    return answers
+
+
+def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
+    settings = pair.settings
+    candidates = flat_candidates(settings.points, pair.target.sample_count)
+    hypotheses = []
+    for variant in pair.variants(2):
+        found = yield from within(
+            flat_steps(variant, settings.points, candidates, count=2, node_limit=settings.node_limit), 0.0, 1.0
+        )
+        hypotheses += [assess(Coarse(variant, matching), [Refined(matching.assignment, 0)]) for matching in found]
+    return [_at_samples(hypothesis, hypothesis.levels, candidates) for hypothesis in two_answers(hypotheses)]
+
+
+def _gmds_steps(pair: Pair) -> Steps[list[Answer]]:
+    coarse = yield from within(coarse_steps(pair), 0.0, 0.2, "Matching the coarse points exactly")
+    target, points = pair.target, pair.settings.points
+    answers = []
+    for number, hypothesis in enumerate((yield from within(choose_steps(coarse), 0.2, 0.5))):
+        at_coarse = hypothesis.levels[0].assignment
+        found = yield from within(
+            gmds_steps(
+                pair.source,
+                target,
+                points,
+                start=SurfacePoints.at_vertices(target.original, target.vertices[target.samples[at_coarse]]),
+                wanted=pair.source_distances[:points, :points],
+                distances=pair.target_metric,
+            ),
+            0.5 + 0.25 * number,
+            0.75 + 0.25 * number,
+        )
+        levels = tuple(Level(level.points, level.sweeps, level.stress, level.target_points) for level in found.levels)
+        placed = _on_part(pair, found.target_points)
+        answers.append(
+            Answer(
+                hypothesis.coarse,
+                coarse_candidates(pair),
+                hypothesis.orientation,
+                placed,
+                found.distances,
+                _linear(hypothesis.coarse.pair, placed),
+                levels,
+            )
+        )
+    return answers
+
+
+def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) -> Answer:
+    pair = hypothesis.coarse.pair
+    target, assignment = pair.target, levels[-1].assignment
+
+    def places(numbers: NDArray[np.int64]) -> SurfacePoints:
+        return SurfacePoints.at_vertices(target.mesh, target.samples[numbers])
+
+    return Answer(
+        hypothesis.coarse,
+        candidates,
+        hypothesis.orientation,
+        places(assignment),
+        pair.target_distances[np.ix_(assignment, assignment)],
+        pair.problem(len(assignment)).linear_cost(assignment),
+        tuple(
+            Level(
+                len(level.assignment),
+                level.iterations,
+                pair.problem(len(level.assignment)).cost(level.assignment),
+                on_whole_surface(target, places(level.assignment)),
+            )
+            for level in levels
+        ),
+    )
+
+
+def _settled_steps(answer: Answer) -> Steps[Answer]:
+    """Let the points leave the samples and come to rest anywhere on the surface, if that lowers the distortion."""
+    pair = answer.coarse.pair
+    wanted = pair.source_distances[: len(answer.points), : len(answer.points)]
+    settled = yield from settle_steps(pair.target_metric, answer.points, Stress(wanted))
+    moved = replace(answer, points=settled.points, distances=settled.distances, linear=_linear(pair, settled.points))
+    if moved.distortion >= answer.distortion:
+        return answer
+    last = replace(
+        answer.levels[-1],
+        distortion=moved.distortion,
+        target_points=on_whole_surface(pair.target, settled.points),
+    )
+    return replace(moved, levels=(*answer.levels[:-1], last))
+
+
+def _linear(pair: Pair, points: SurfacePoints) -> float:
+    """Sum the descriptor differences, at the sample of the target nearest to each point."""
+    nearest = pair.target.sample_rows[:, points.nearest_vertices].argmin(axis=0)
+    return float(pair.linear[np.arange(len(points)), nearest].sum())
+
+
+def _on_part(pair: Pair, points: SurfacePoints) -> SurfacePoints:
+    """Place points on the whole target on the part of it that is used."""
+    triangles = np.searchsorted(pair.target.triangles, points.triangles)
+    return SurfacePoints.from_barycentric(pair.target.mesh, triangles, points.barycentric)
