@@ -7,7 +7,7 @@ PYTHON =
 PIP = pip==26.3
 RUN = .venv/bin/python
 
-.PHONY: help demo test lint types package package-no-wheels environment python-check clean distclean
+.PHONY: help demo test lint types package package-no-wheels environment bench-environment python-check clean distclean
 
 help:
 	@echo 'make demo               match a demo pair in Blender: build/demo/demo.blend, demo.png and a table'
@@ -16,6 +16,7 @@ help:
 	@echo 'make types              check types with mypy'
 	@echo 'make package            build and validate an extension zip per platform in build/package'
 	@echo 'make package-no-wheels  the same without SciPy, for a Blender that has its own: build/package-no-wheels'
+	@echo 'make bench-environment  add what benchmarks compare with; then e.g. .venv/bin/python -m tests.benchmarks.real_pairs'
 	@echo 'make clean              remove what was built, and caches'
 	@echo 'make distclean          remove the environments and downloaded wheels too'
 	@echo 'All of them first make .venv, once.  PYTHON=... names the CPython 3.11 to use for it.'
@@ -38,6 +39,9 @@ package: environment
 
 package-no-wheels: environment
 	$(RUN) -m tools.build_package --without-wheels
+
+bench-environment: environment
+	$(RUN) -m pip install --quiet --disable-pip-version-check --group bench
 
 environment: $(if $(PYTHON),python-check) .venv/installed
 

@@ -101,8 +101,7 @@ def match_steps(
         clock.lap("eigenpairs")
     pair = Pair(x.limited(samples), y.limited(samples), settings)
     clock.lap("descriptors")
-    answers = yield from within(solve_steps(pair), 0.7, 1.0)
-    clock.lap("matching")
+    answers = yield from within(solve_steps(pair, clock.lap), 0.7, 1.0)
     notes = [note for shape, name in ((x, "source"), (y, "target")) for note in _notes(shape, name)]
     result = yield from _result_steps(answers[0], tuple(notes), clock.laps)
     if len(answers) > 1:

@@ -18,6 +18,8 @@ from .settling import Stress, settle_steps
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from .pair import Pair
@@ -67,8 +69,15 @@ class Answer:
         return self.linear + self.coarse.pair.settings.quadratic_weight * self.quadratic
 
 
-def solve_steps(pair: Pair) -> Steps[list[Answer]]:
+def solve_steps(pair: Pair, lap: Callable[[str], None]) -> Steps[list[Answer]]:
     """Match a pair by the solver that its settings name.
+
+    Parameters
+    ----------
+    pair : Pair
+        The two shapes.
+    lap : callable
+        Is told the name of each stage when it ends.
 
     Returns
     -------
@@ -76,25 +85,33 @@ def solve_steps(pair: Pair) -> Steps[list[Answer]]:
         The one that keeps the orientation and the one that mirrors it, as far as they were found.
     """
     if pair.settings.solver == "flat":
-        return (yield from _flat_steps(pair))
-    if pair.settings.solver == "gmds":
-        return (yield from _gmds_steps(pair))
-    return (yield from _hierarchical_steps(pair))
-
-
-def _hierarchical_steps(pair: Pair) -> Steps[list[Answer]]:
+        answers = yield from _flat_steps(pair)
+        lap("flat")
+        return answers
     coarse = yield from within(coarse_steps(pair), 0.0, 0.2, "Matching the coarse points exactly")
-    hypotheses = yield from within(choose_steps(coarse), 0.2, 0.7)
+    lap("coarse")
+    hypotheses = yield from within(choose_steps(coarse), 0.2, 0.6)
+    if pair.settings.solver == "gmds":
+        answers = yield from within(_gmds_steps(hypotheses), 0.6, 1.0)
+        lap("gmds")
+        return answers
+    answers = yield from within(_finished_steps(hypotheses), 0.6, 0.8)
+    lap("hierarchy")
+    if pair.settings.settle:
+        answers = yield from within(_settled_steps(answers), 0.8, 1.0)
+        lap("settling")
+    return answers
+
+
+def _finished_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
+    """Go on from the level at which the hypotheses were compared to the finest."""
     answers = []
     for number, hypothesis in enumerate(hypotheses):
-        start = 0.7 + 0.15 * number
+        pair = hypothesis.coarse.pair
         sizes = level_sizes(len(hypothesis.assignment), pair.settings.points)[1:]
-        finer = refine_steps(hypothesis.coarse.pair, hypothesis.assignment, sizes)
-        levels = hypothesis.levels + (yield from within(finer, start, start + 0.05))
-        answer = _at_samples(hypothesis, levels, coarse_candidates(pair))
-        if pair.settings.settle:
-            answer = yield from within(_settled_steps(answer), start + 0.05, start + 0.15)
-        answers.append(answer)
+        finer = refine_steps(pair, hypothesis.assignment, sizes)
+        levels = yield from within(finer, number / len(hypotheses), (number + 1) / len(hypotheses))
+        answers.append(_at_samples(hypothesis, hypothesis.levels + levels, coarse_candidates(pair)))
     return answers
 
 
@@ -110,11 +127,11 @@ def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
     return [_at_samples(hypothesis, hypothesis.levels, candidates) for hypothesis in two_answers(hypotheses)]
 
 
-def _gmds_steps(pair: Pair) -> Steps[list[Answer]]:
-    coarse = yield from within(coarse_steps(pair), 0.0, 0.2, "Matching the coarse points exactly")
-    target, points = pair.target, pair.settings.points
+def _gmds_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
     answers = []
-    for number, hypothesis in enumerate((yield from within(choose_steps(coarse), 0.2, 0.5))):
+    for number, hypothesis in enumerate(hypotheses):
+        pair = hypothesis.coarse.pair
+        target, points = pair.target, pair.settings.points
         at_coarse = hypothesis.levels[0].assignment
         found = yield from within(
             gmds_steps(
@@ -125,8 +142,8 @@ def _gmds_steps(pair: Pair) -> Steps[list[Answer]]:
                 wanted=pair.source_distances[:points, :points],
                 distances=pair.target_metric,
             ),
-            0.5 + 0.25 * number,
-            0.75 + 0.25 * number,
+            number / len(hypotheses),
+            (number + 1) / len(hypotheses),
         )
         levels = tuple(Level(level.points, level.sweeps, level.stress, level.target_points) for level in found.levels)
         placed = _on_part(pair, found.target_points)
@@ -137,7 +154,7 @@ def _gmds_steps(pair: Pair) -> Steps[list[Answer]]:
                 hypothesis.orientation,
                 placed,
                 found.distances,
-                _linear(hypothesis.coarse.pair, placed),
+                _linear(pair, placed),
                 levels,
             )
         )
@@ -170,8 +187,16 @@ def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) 
     )
 
 
-def _settled_steps(answer: Answer) -> Steps[Answer]:
-    """Let the points leave the samples and come to rest anywhere on the surface, if that lowers the distortion."""
+def _settled_steps(answers: list[Answer]) -> Steps[list[Answer]]:
+    """Let the points leave the samples and come to rest anywhere on the surface, where that lowers the distortion."""
+    settled = []
+    for number, answer in enumerate(answers):
+        steps = within(_one_settled_steps(answer), number / len(answers), (number + 1) / len(answers))
+        settled.append((yield from steps))
+    return settled
+
+
+def _one_settled_steps(answer: Answer) -> Steps[Answer]:
     pair = answer.coarse.pair
     wanted = pair.source_distances[: len(answer.points), : len(answer.points)]
     settled = yield from settle_steps(pair.target_metric, answer.points, Stress(wanted))

@@ -32,23 +32,24 @@ _GROUPS: Final[dict[str, tuple[str, ...]]] = {
 # The sign of an eigenfunction is arbitrary; histograms tell which signs are consistent.
 _WITH_HISTOGRAMS = ("histogram", "eigenfunctions")
 
+# The flat solver has no coarse step; only the limit of the exact search is its own, too.
+_OF_COARSE_STEP = ("coarse_points", "coarse_candidates", "constraint", "hypotheses", "neighbourhood")
+
 
 def _matters(name: str, options: MatchOptions) -> bool:
     """Return whether a setting changes anything, as the others are."""
     metric, descriptor = setting_of(options, "metric"), setting_of(options, "descriptor")
-    if name == "diffusion_time":
-        return bool(metric == "diffusion")
-    if name in ("comparison", "histogram_bins"):
-        return descriptor in _WITH_HISTOGRAMS
-    if name == "eigenfunctions":
-        return bool(descriptor == "eigenfunctions")
-    if name == "eigenpairs":
-        return bool(metric == "diffusion" or descriptor != "histogram")
-    if name == "settle":
-        return bool(setting_of(options, "solver") == "hierarchical")
-    if name in _GROUPS["Coarse Match"] and name != "node_limit":
-        return bool(setting_of(options, "solver") != "flat")
-    return True
+    solver = setting_of(options, "solver")
+    conditions = {
+        "diffusion_time": metric == "diffusion",
+        "comparison": descriptor in _WITH_HISTOGRAMS,
+        "histogram_bins": descriptor in _WITH_HISTOGRAMS,
+        "eigenfunctions": descriptor == "eigenfunctions",
+        "eigenpairs": metric == "diffusion" or descriptor != "histogram",
+        "settle": solver == "hierarchical",
+        **dict.fromkeys(_OF_COARSE_STEP, solver != "flat"),
+    }
+    return bool(conditions.get(name, True))
 
 
 def shown_groups(options: MatchOptions) -> list[tuple[str, list[str]]]:

@@ -74,7 +74,7 @@ def test_the_result_is_consistent_in_itself(result, bodies):
     assert (result.point_distortion**2 * (k - 1)).sum() == pytest.approx(result.quadratic)
     assert [level.points for level in result.levels] == [10, 20, 40]
     assert result.levels[-1].distortion == pytest.approx(result.distortion)
-    assert set(result.seconds) == {"geodesics", "descriptors", "matching"}
+    assert set(result.seconds) == {"geodesics", "descriptors", "coarse", "hierarchy", "settling"}
 
 
 def _squares(first, second):
