@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Match real shapes with the operator in Blender, and measure the error against their known correspondence.
 
-    python -m tests.benchmarks.real_pairs --data FOLDER [--pairs cat0:cat1,dog0:dog5] [--points 64]
+    python -m tests.benchmarks.real_pairs --data FOLDER [--pairs cat0:cat1,dog0:dog5] [--points 64] [--setup a]
     python -m tests.benchmarks.real_pairs                        the demo pair instead
 
 FOLDER holds .off files and beside them a folder `corres` with NAME.vts and NAME.sym.vts: line i of two shapes names the
@@ -31,6 +31,7 @@ from tools.source_extension import registered_extension
 
 registered_extension()
 
+from hiermatch.engine.settings import SETUPS  # noqa: E402
 from hiermatch.hiermatch_addon import demo_truth  # noqa: E402
 
 PAIRS = "cat0:cat1,dog0:dog5,michael0:michael3"
@@ -56,7 +57,7 @@ def errors(truth, matched, solver, size):
     return np.array([solver.compute_distance(int(m))[t] for t, m in zip(truth, matched, strict=True)]) / size
 
 
-def measure(path_x, path_y, points):
+def measure(path_x, path_y, options):
     bpy.ops.wm.read_homefile(use_empty=True)
     thing_x, vertices_x, _ = add_object(path_x)
     thing_y, vertices_y, triangles_y = add_object(path_y)
@@ -68,7 +69,7 @@ def measure(path_x, path_y, points):
     rows = []
     for mirrored in (False, True):
         start = time.perf_counter()
-        bpy.ops.hiermatch.match(source=thing_x.name, target=thing_y.name, points=points, use_mirrored=mirrored)
+        bpy.ops.hiermatch.match(source=thing_x.name, target=thing_y.name, use_mirrored=mirrored, **options)
         seconds = time.perf_counter() - start
         _, places = nearest.query(vertices_x[matched_vertices(thing_x)])
         found = matched_vertices(thing_y)
@@ -78,16 +79,14 @@ def measure(path_x, path_y, points):
     return rows
 
 
-def measure_demo(points):
+def measure_demo(options):
     bpy.ops.wm.read_homefile(use_empty=True)
     bpy.ops.hiermatch.add_demo_pair()
     state = bpy.context.scene.hiermatch
     rows = []
     for mirrored in (False, True):
         start = time.perf_counter()
-        bpy.ops.hiermatch.match(
-            source=state.source.name, target=state.target.name, points=points, use_mirrored=mirrored
-        )
+        bpy.ops.hiermatch.match(source=state.source.name, target=state.target.name, use_mirrored=mirrored, **options)
         seconds = time.perf_counter() - start
         depsgraph = bpy.context.evaluated_depsgraph_get()
         rows.append((*demo_truth.match_errors(state.source, state.target, depsgraph), seconds))
@@ -114,14 +113,17 @@ def main():
     parser.add_argument("--data", type=Path, help="folder with the shapes")
     parser.add_argument("--pairs", default=PAIRS, help=f"source:target, separated by commas (default {PAIRS})")
     parser.add_argument("--points", type=int, default=64)
+    parser.add_argument("--setup", choices=list(SETUPS), default="a", help="setup of the paper's figure 2 (default a)")
     options = parser.parse_args()
-    print(f"{options.points} points; errors x sqrt(area)")
+    choices = {name: word.upper() for name, word in SETUPS[options.setup][1].items()}
+    choices["points"] = options.points
+    print(f"{options.points} points; {SETUPS[options.setup][0]}; errors x sqrt(area)")
     if options.data is None:
-        means = [report("demo pair", measure_demo(options.points))]
+        means = [report("demo pair", measure_demo(choices))]
     else:
         paths = {path.stem: path for path in sorted(options.data.rglob("*.off"))}
         pairs = [pair.split(":") for pair in options.pairs.split(",")]
-        means = [report(f"{x} -> {y}", measure(paths[x], paths[y], options.points)) for x, y in pairs]
+        means = [report(f"{x} -> {y}", measure(paths[x], paths[y], choices)) for x, y in pairs]
     true, best, worst, seconds = np.array(means).T
     print(
         f"mean of {len(means)}: against the truth {true.mean():.4f}, up to symmetry {best.mean():.4f}, "
