@@ -78,6 +78,7 @@ class _Corners:
         return _Corners(self.c[index], self.a[index], self.b[index], self.l[index], self.x[index], self.y[index])
 
     def is_obtuse(self) -> NDArray[np.bool_]:
+        """Say of each corner whether its angle exceeds a right one."""
         # The slack puts right angles, the rule on regular grids, on one side whatever the rounding.
         return self.x * (self.x - self.l) + self.y**2 < 1e-9 * self.l**2
 

@@ -33,6 +33,7 @@ class _Block:
     needed: NDArray[np.int64]  # (w, e) points that each exclusion still needs
 
     def take(self, nodes: NDArray[np.intp] | slice) -> _Block:
+        """Return some of the nodes."""
         return _Block(
             self.bound[nodes],
             self.spent[nodes],

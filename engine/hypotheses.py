@@ -95,6 +95,7 @@ class _Lead:
 
     @property
     def assignment(self) -> NDArray[np.int64]:
+        """The matching of the last level, (j,)."""
         return self.levels[-1].assignment
 
 

@@ -119,6 +119,7 @@ class _Clock:
         self._last = time.perf_counter()
 
     def lap(self, name: str) -> None:
+        """Record the time since the last lap under a name."""
         now = time.perf_counter()
         self.laps[name] = now - self._last
         self._last = now

@@ -160,10 +160,12 @@ class _Places:
 
     @cached_property
     def distances(self) -> NDArray[np.float64]:
+        """Distances between all places, (q, q)."""
         return symmetric_roots(self.squares)
 
     @cached_property
     def linear(self) -> NDArray[np.float64]:
+        """What the linear term is at each place, (q,)."""
         return self.stress.of_places(self.points, self.owner)
 
     @cached_property
@@ -190,6 +192,7 @@ class _Places:
         return (self.squares.T - self.squares) / 2
 
     def chosen(self, numbers: NDArray[np.int64], mesh: TriangleMesh) -> _Places:
+        """Return some of the places."""
         points = self.points
         points = SurfacePoints.from_barycentric(mesh, points.triangles[numbers], points.barycentric[numbers])
         return _Places(points, self.owner[numbers], self.squares[np.ix_(numbers, numbers)], self.stress)

@@ -288,3 +288,5 @@ def test_it_can_be_stopped():
     steps = eigenpairs_steps(TriangleMesh(*icosphere(10)), 30)
     next(steps)
     steps.close()
+    with pytest.raises(StopIteration):
+        next(steps)
