@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The closed curves in which a surface ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from .edge_pairs import triangle_slots
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["BoundaryLoops", "boundary_loops"]
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryLoops:
+    """Boundary half-edges, and the loop of each.
+
+    Attributes
+    ----------
+    half_edges, tails, heads : (b,) array of int
+        Half-edges at the boundary, and the vertices they lead from and to.
+    labels : (b,) array of int
+        The loop of each.  Loops that meet in a vertex count as one.
+    centres : (l, 3) array of float
+        Centre of gravity of each loop as a wire.
+    areas : (l,) array of float
+        Area of the fan from the loop to its centre.
+    """
+
+    half_edges: NDArray[np.int64]
+    tails: NDArray[np.int64]
+    heads: NDArray[np.int64]
+    labels: NDArray[np.int64]
+    centres: NDArray[np.float64]
+    areas: NDArray[np.float64]
+
+    @property
+    def count(self) -> int:
+        """Number of loops, l."""
+        return len(self.areas)
+
+
+def boundary_loops(
+    vertices: NDArray[np.float64], triangles: NDArray[np.int64], half_edges: NDArray[np.int64]
+) -> BoundaryLoops:
+    """Find the boundary loops of an oriented surface.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float
+        Positions.
+    triangles : (m, 3) array of int
+        Corners of each triangle.
+    half_edges : (b,) array of int
+        The half-edges at the boundary: 3 t + i leads from corner i of triangle t to corner i + 1.
+
+    Returns
+    -------
+    BoundaryLoops
+        The loops, numbered by their first half-edges.
+    """
+    tails, heads = (triangle_slots(triangles, half_edges, shift) for shift in (0, 1))
+    ends, number = np.unique(np.concatenate([tails, heads]), return_inverse=True)
+    start, end = np.split(number.ravel(), 2)
+    graph = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(len(ends), len(ends)))
+    raw = connected_components(graph, directed=False)[1][start] if len(start) else start
+    _, first, raw = np.unique(raw, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    labels = rank[raw.ravel()]
+
+    a, b = vertices[tails], vertices[heads]
+    lengths = np.linalg.norm(b - a, axis=1)
+    # A loop of zero length has its centre at its vertices all the same.
+    lengths = np.where(np.bincount(labels, lengths)[labels] > 0, lengths, 1.0) if len(labels) else lengths
+    weights = np.bincount(labels, lengths, len(first))
+    centres = np.stack([np.bincount(labels, lengths * axis, len(first)) / weights for axis in ((a + b) / 2).T], axis=1)
+    fans = np.linalg.norm(np.cross(b - a, centres[labels] - a), axis=1) / 2
+    areas: NDArray[Any] = np.bincount(labels, fans, len(first))
+    return BoundaryLoops(half_edges, tails, heads, labels, centres, areas)

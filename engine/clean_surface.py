@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh taken apart into clean surfaces, and the way back to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .closest_points import ClosestPoints
+from .mesh import TriangleMesh
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["CleanSurface", "SurfacePart"]
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePart:
+    """A part of a mesh as an oriented manifold that hangs together.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The part; every vertex has a triangle.
+    original_vertices : (n,) array of int
+        For each vertex, a vertex of the original mesh that it stands for; -1 for the centre of a filled hole.
+    original_triangles : (m,) array of int
+        For each triangle, the one of the original mesh; -1 in a filled hole.
+    turned : (m,) array of bool
+        Triangles whose last two corners are exchanged against the original.
+    inverted : bool
+        Whether the part as a whole was turned inside out, because its normals pointed inwards.
+    """
+
+    mesh: TriangleMesh
+    original_vertices: NDArray[np.int64]
+    original_triangles: NDArray[np.int64]
+    turned: NDArray[np.bool_]
+    inverted: bool
+
+    def to_original(
+        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Name points of the part as points of the original mesh.
+
+        Parameters
+        ----------
+        triangles : (k,) array of int
+            Triangles of the part.
+        barycentric : (k, 3) array of float
+            Barycentric coordinates there.
+
+        Returns
+        -------
+        triangles : (k,) array of int
+            Triangles of the original mesh.
+        barycentric : (k, 3) array of float
+            Barycentric coordinates there, in the order of the corners of the original.  Points in filled holes are
+            moved to the nearest point around the hole that the original has.
+        """
+        filled = np.flatnonzero(self.original_triangles[triangles] < 0)
+        if len(filled):
+            triangles, barycentric = triangles.copy(), barycentric.copy()
+            triangles[filled], barycentric[filled] = self._beside_holes(triangles[filled], barycentric[filled])
+        turned = self.turned[triangles]
+        if turned.any():
+            barycentric = np.where(turned[:, None], barycentric[:, [0, 2, 1]], barycentric)
+        return self.original_triangles[triangles], barycentric
+
+    def _beside_holes(
+        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Move points in filled holes to the nearest of the triangles around holes."""
+        corners, kept = self.mesh.triangles, self.original_triangles >= 0
+        at_hole = np.zeros(self.mesh.vertex_count, bool)
+        at_hole[corners[~kept]] = True
+        around = kept & at_hole[corners].any(axis=1)
+        if not self.mesh.triangle_areas[around].any():
+            around = kept
+        points = np.einsum("kc,kcd->kd", barycentric, self.mesh.vertices[corners[triangles]])
+        used, number = np.unique(corners[around], return_inverse=True)
+        search = ClosestPoints(TriangleMesh(self.mesh.vertices[used], number.reshape(-1, 3)))
+        found = search.nearest(points)
+        return np.flatnonzero(around)[found.triangles], found.barycentric
+
+
+@dataclass(frozen=True, eq=False)
+class CleanSurface:
+    """A mesh as a set of oriented manifolds.
+
+    Attributes
+    ----------
+    original : TriangleMesh
+        The mesh as it was.
+    pieces : tuple of SurfacePart
+        The parts, the largest by area first: that is the main part, the one to match.
+    vertex_parts : (n,) array of int
+        For each vertex of the original mesh, its part; -1 if it is in none: a loose vertex, or one of parts that are
+        too many and too small to be listed.
+    vertex_images : (n,) array of int
+        For each vertex of the original mesh, its vertex in that part, or -1.  Welded vertices share one.
+    notes : tuple of str
+        A sentence for each thing that was done and that the owner of the mesh may want to know.
+    """
+
+    original: TriangleMesh
+    pieces: tuple[SurfacePart, ...]
+    vertex_parts: NDArray[np.int64]
+    vertex_images: NDArray[np.int64]
+    notes: tuple[str, ...]
+
+    @property
+    def main(self) -> SurfacePart:
+        """The main part, with its way back."""
+        return self.pieces[0]
+
+    @property
+    def mesh(self) -> TriangleMesh:
+        """The main part: manifold, oriented, every vertex with a triangle."""
+        return self.pieces[0].mesh
+
+    @property
+    def parts(self) -> tuple[TriangleMesh, ...]:
+        """The other parts, in decreasing area."""
+        return tuple(piece.mesh for piece in self.pieces[1:])
+
+    @property
+    def inverted(self) -> bool:
+        """Whether the normals of the main part pointed inwards."""
+        return self.pieces[0].inverted

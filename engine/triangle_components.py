@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which triangles hang together across paired half-edges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["neighbour_graph", "symmetric_components", "triangle_components", "triangle_neighbours"]
+
+
+def triangle_components(twins: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Find the components of triangles that hang together across paired half-edges.
+
+    Parameters
+    ----------
+    twins : (3m,) array of int
+        Twin of each half-edge, -1 at the boundary.
+
+    Returns
+    -------
+    (m,) array of int
+        The component of each triangle.
+    """
+    return symmetric_components(neighbour_graph(triangle_neighbours(twins)))
+
+
+def triangle_neighbours(twins: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the triangle across each side of each triangle, (m, 3); at a boundary the triangle itself."""
+    return (np.where(twins >= 0, twins, np.arange(len(twins))) // 3).reshape(-1, 3)
+
+
+def neighbour_graph(neighbours: NDArray[np.int64]) -> csr_array:
+    """Make a graph of the neighbours (k, 3) of k nodes."""
+    k = len(neighbours)
+    return csr_array((np.ones(3 * k, np.int8), neighbours.ravel(), 3 * np.arange(k + 1)), shape=(k, k))
+
+
+def symmetric_components(graph: csr_array) -> NDArray[np.int64]:
+    """Find the connected components of a symmetric graph of k nodes: the number of that of each, (k,)."""
+    # They are its strong components, too, which are found without a transposed copy of the graph.
+    return connected_components(graph, directed=True, connection="strong")[1].astype(np.int64)

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts and loose vertices that follow the map of the main part."""
+
+import numpy as np
+import pytest
+
+from engine import SurfacePoints, TriangleMesh
+from engine.cleaning import clean
+from engine.followers import follow
+from tests.messes import cut_along_seam, partly_turned, together
+from tests.shapes import creature, icosphere, permuted, posed, rotation
+
+LEFT_EYE, RIGHT_EYE = np.array([1.12, 0.12, 0.55]), np.array([1.12, -0.12, 0.55])
+
+
+@pytest.fixture(scope="module")
+def rest():
+    _, triangles, vertices = creature(0.0, 13)
+    return vertices, triangles
+
+
+def ball(centre, radius, parts=4):
+    vertices, triangles = icosphere(parts, radius)
+    return vertices * [1, 1, 1.2] + centre, triangles  # an egg
+
+
+def in_pose(mesh, pose):
+    return posed(mesh[0], pose), mesh[1]
+
+
+def followed(x_mesh, y_mesh, body_count, images=None):
+    """Follow the true map of two meshes that both begin with the body, whose vertices correspond by index.
+
+    `images`: for each vertex of the body in X, that in Y.
+    """
+    x, y = clean(TriangleMesh(*x_mesh)), clean(TriangleMesh(*y_mesh))
+    images = np.arange(body_count) if images is None else images
+    target = np.zeros(x.mesh.vertex_count, np.int64)
+    known = x.main.original_vertices
+    target[known >= 0] = y.vertex_images[images[known[known >= 0]]]
+    return x, y, follow(x, y, SurfacePoints.at_vertices(y.mesh, target))
+
+
+def assert_valid(result, y):
+    assert np.isfinite(result.points.positions).all()
+    assert (result.points.barycentric >= 0).all()
+    assert np.allclose(result.points.barycentric.sum(axis=1), 1)
+    assert (result.points.triangles >= 0).all()
+    assert (result.points.triangles < y.original.triangle_count).all()
+    assert ((result.confidence > 0) & (result.confidence <= 1)).all()
+
+
+def test_the_map_of_a_mesh_to_itself_keeps_every_vertex(rest):
+    loose = np.array([[0.0, 0, 0.3], [0, 0, 5.0]]), np.empty((0, 3), np.int64)
+    mesh = together(rest, ball(LEFT_EYE, 0.05), ball(RIGHT_EYE, 0.05), loose)
+    x, y, result = followed(mesh, mesh, len(rest[0]))
+    assert_valid(result, y)
+    assert np.abs(result.points.positions[:-2] - mesh[0][:-2]).max() < 1e-9
+    assert np.array_equal(result.partners, [0, 1, 2])
+    assert np.array_equal(result.confidence[: len(rest[0])], np.ones(len(rest[0])))
+    assert (result.confidence[len(rest[0]) : -2] > 0.99).all()
+    near, far = result.confidence[-2:]
+    assert far < 0.01 < near
+    distances = np.linalg.norm(x.mesh.vertices - mesh[0][-2], axis=1)
+    assert np.linalg.norm(result.points.positions[-2] - mesh[0][-2]) <= distances.min() + 1e-12
+    assert result.surroundings[-2] == distances.argmin()
+
+
+def test_a_clean_mesh_needs_no_followers(rest):
+    x, y, result = followed(rest, in_pose(rest, 0.5), len(rest[0]))
+    assert_valid(result, y)
+    assert np.allclose(result.points.positions, y.original.vertices)
+    assert np.array_equal(result.surroundings, np.arange(len(rest[0])))
+    assert (result.confidence == 1).all()
+    assert np.array_equal(result.partners, [0])
+    assert x.parts == ()
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_eyes_find_the_eyes_at_their_place(rest, mirrored):
+    x_mesh = together(rest, ball(LEFT_EYE, 0.05), ball(RIGHT_EYE, 0.05))
+    # The other way round in the file, a little larger, in another pose, size and place.
+    y_rest = together(rest, ball(RIGHT_EYE + 0.01, 0.06), ball(LEFT_EYE - 0.01, 0.055))
+    vertices, triangles = in_pose(y_rest, 0.8)
+    vertices = 3 * vertices @ rotation([1, 2, 3], 2.0).T + [5, 0, 0]
+    if mirrored:
+        vertices = vertices * [-1, 1, 1]
+    x, y, result = followed(x_mesh, (vertices, triangles), len(rest[0]))
+    assert_valid(result, y)
+    assert y.inverted == mirrored
+    assert (result.partners[1:] > 0).all()
+    count, eye = len(rest[0]), len(ball(LEFT_EYE, 0.05)[0])
+    left, right = np.arange(count, count + eye), np.arange(count + eye, count + 2 * eye)
+    truth = np.empty_like(vertices)
+    truth[left], truth[right] = vertices[right], vertices[left]
+    for vertices_of_eye in (left, right):
+        errors = np.linalg.norm(result.points.positions - truth, axis=1)[vertices_of_eye]
+        assert errors.max() < 0.3 * 3 * 0.06
+    assert (result.confidence[count:] > 0.3).all()
+    assert x.vertex_parts[left[0]] != x.vertex_parts[right[0]]
+
+
+def test_an_eye_without_a_partner_goes_to_the_surface(rest):
+    x_mesh = together(rest, ball(LEFT_EYE, 0.05), ball(RIGHT_EYE, 0.05))
+    y_mesh = in_pose(together(rest, ball(RIGHT_EYE, 0.05)), 0.5)
+    x, y, result = followed(x_mesh, y_mesh, len(rest[0]))
+    assert_valid(result, y)
+    count, eye = len(rest[0]), len(ball(LEFT_EYE, 0.05)[0])
+    assert sorted(result.partners) == [0, 0, 1]
+    left = np.arange(count, count + eye)
+    assert (result.partners[x.vertex_parts[left]] == 0).all()
+    assert (y.original.triangles[result.points.triangles[left]] < count).all()
+    expected = posed(x.original.vertices[left], 0.5)
+    assert np.linalg.norm(result.points.positions[left] - expected, axis=1).max() < 0.15
+    assert (result.confidence[left] < 1).all()
+
+
+@pytest.mark.parametrize("other", [ball(LEFT_EYE, 0.2), ball(LEFT_EYE, 0.01), ball([-1.3, 0, 0.1], 0.05)])
+def test_parts_of_another_size_or_place_are_no_partners(rest, other):
+    x, y, result = followed(together(rest, ball(LEFT_EYE, 0.05)), together(rest, other), len(rest[0]))
+    assert_valid(result, y)
+    assert np.array_equal(result.partners, [0, 0])
+    assert len(x.parts) == len(y.parts) == 1
+
+
+def test_parts_of_another_shape_are_no_partners(rest):
+    vertices, triangles = ball([0, 0, 0], 0.08)
+    bar = vertices * [2.0, 0.3, 0.3] + LEFT_EYE, triangles
+    _, _, result = followed(together(rest, ball(LEFT_EYE, 0.08)), together(rest, bar), len(rest[0]))
+    assert np.array_equal(result.partners, [0, 0])
+
+
+def test_a_row_of_teeth_keeps_its_order(rest):
+    places = LEFT_EYE + np.linspace([-0.3, 0.1, 0.2], [0.3, 0.1, 0.2], 7)
+    x_mesh = together(rest, *(ball(place, 0.03, 2) for place in places))
+    y_mesh = in_pose(together(rest, *(ball(place, 0.03, 2) for place in places[::-1])), 0.4)
+    x, y, result = followed(x_mesh, y_mesh, len(rest[0]))
+    count, tooth = len(rest[0]), len(ball(LEFT_EYE, 0.03, 2)[0])
+    for number in range(7):
+        mine = x.vertex_parts[count + number * tooth]
+        its = y.vertex_parts[count + (6 - number) * tooth]
+        assert result.partners[mine] == its
+
+
+def test_loose_vertices_follow_their_limb(rest):
+    vertices, triangles = rest
+    shapes = TriangleMesh(vertices, triangles)
+    chosen = np.arange(0, len(vertices), 7)
+    hairs = vertices[chosen] + 0.02 * shapes.vertex_normals[chosen]
+    x_mesh = together(rest, (hairs, np.empty((0, 3), np.int64)))
+    y_mesh = in_pose(rest, 1.0)
+    _, y, result = followed(x_mesh, y_mesh, len(vertices))
+    assert_valid(result, y)
+    errors = np.linalg.norm(result.points.positions[len(vertices) :] - y.original.vertices[chosen], axis=1)
+    assert errors.max() < 0.06
+    assert np.median(errors) < 0.01
+    assert (result.confidence[len(vertices) :] > 0.9).all()
+
+
+def test_the_map_leads_back_through_every_mess(rest):
+    count = len(rest[0])
+    loose = np.array([[0.0, 0, 0.4]]), np.empty((0, 3), np.int64)
+    x_mesh = together(rest, ball(LEFT_EYE, 0.05), loose)
+    y_mesh = in_pose(together(rest, ball(LEFT_EYE, 0.05)), 0.6)
+    _, _, plain = followed(x_mesh, y_mesh, count)
+
+    messy_x = partly_turned(*cut_along_seam(*x_mesh), 0.2)
+    messy_y = partly_turned(*cut_along_seam(*y_mesh, axis=1), 0.2, seed=1)
+    vertices, triangles, new_y = permuted(*messy_y, 3)
+    x, y, result = followed(messy_x, (vertices, triangles), count, new_y[:count])
+    assert_valid(result, y)
+    assert np.abs(result.points.positions[: len(x_mesh[0])] - plain.points.positions).max() < 1e-6
+    copies = np.arange(len(x_mesh[0]), len(messy_x[0]))
+    assert np.array_equal(x.vertex_parts[copies], np.zeros(len(copies)))
+
+
+def test_a_few_triangles_are_enough_to_follow():
+    body = icosphere(1)
+    loose = np.array([[0.0, 0, 1.5]]), np.empty((0, 3), np.int64)
+    mesh = together(body, ball([0, 1.3, 0], 0.1, 1), loose)
+    _, y, result = followed(mesh, (mesh[0] * 2, mesh[1]), len(body[0]))
+    assert_valid(result, y)
+    assert np.array_equal(result.partners, [0, 1])
+    assert np.allclose(result.points.positions[:-1], 2 * mesh[0][:-1])

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ways to make a mess of a clean mesh, for the tests of its cleaning.
+
+Each takes and returns vertices (n, 3) and triangles (m, 3); the first vertices stay where they are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def cut_along_seam(vertices, triangles, axis=0, noise=0.0, seed=0):
+    """Double the vertices between the two sides of the plane through the middle: the copies come last."""
+    beyond = vertices[triangles].mean(axis=1)[:, axis] > vertices[:, axis].mean()
+    shared = np.intersect1d(triangles[beyond], triangles[~beyond])
+    copies = np.arange(len(vertices))
+    copies[shared] = len(vertices) + np.arange(len(shared))
+    triangles = np.where(beyond[:, None], copies[triangles], triangles)
+    shift = noise * np.random.default_rng(seed).uniform(-1, 1, (len(shared), 3))
+    return np.concatenate([vertices, vertices[shared] + shift]), triangles
+
+
+def in_pieces(vertices, triangles):
+    """Give every triangle three vertices of its own, as a raw scan or a text format has them."""
+    return vertices[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
+
+
+def with_fin(vertices, triangles, first=0, count=3):
+    """Add a strip of triangles that stands on a path of edges, each of which then has three triangles."""
+    path = _path(triangles, first, count + 1)
+    normal = vertices[path].mean(axis=0) - vertices.mean(axis=0)
+    height = 2 * np.linalg.norm(np.diff(vertices[path], axis=0), axis=1).mean()
+    top = vertices[path] + height * normal / np.linalg.norm(normal)
+    upper = len(vertices) + np.arange(count + 1)
+    fin = [(path[i], path[i + 1], upper[i]) for i in range(count)]
+    fin += [(path[i + 1], upper[i + 1], upper[i]) for i in range(count)]
+    return np.concatenate([vertices, top]), np.concatenate([triangles, np.array(fin)])
+
+
+def without_disc(vertices, triangles, centre, radius):
+    """Take out the triangles around a point (3,)."""
+    away = np.linalg.norm(vertices[triangles].mean(axis=1) - centre, axis=1) > radius
+    return vertices, triangles[away]
+
+
+def partly_turned(vertices, triangles, part=0.3, seed=0):
+    """Turn random triangles over."""
+    turned = np.random.default_rng(seed).random(len(triangles)) < part
+    return vertices, np.where(turned[:, None], triangles[:, ::-1], triangles)
+
+
+def together(*meshes):
+    """Put meshes side by side into one, in the order given."""
+    starts = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
+    triangles = [part + start for (_, part), start in zip(meshes, starts[:-1], strict=True)]
+    return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate(triangles)
+
+
+def _path(triangles, first, count):
+    """Walk along edges to `count` vertices, each of which is a neighbour of the one before it only."""
+    path, near = [first], set()
+    while len(path) < count:
+        around = triangles[(triangles == path[-1]).any(axis=1)]
+        following = [v for v in np.unique(around) if v not in near and v not in path]
+        near.update(np.unique(around).tolist())
+        path.append(int(following[0]))
+    return np.array(path)
