@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the match of two coarse meshes to a map of every vertex of the dense ones."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array, diags_array, eye_array
+
+from .closest_points import ClosestPoints
+from .errors import MatchError
+from .progress import Progress, Steps
+from .surface import SurfacePoints
+from .untangling import follow_neighbours, heaviest_corners, located, untangle
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+    from .proxy import Proxy
+
+__all__ = ["lift_steps"]
+
+_ROTATION_ROUNDS = 2  # of averaging rotation and scale over the proxy
+_FIELD_ROUNDS = 2  # of averaging the whole motion over the proxy
+_CORRECTIONS = 2
+_CORRECTION_ROUNDS = 2  # of averaging a correction over the proxy
+_SAMPLES = 25  # vertices for each of the proxy that say how to correct the motion
+_NORMAL_REACH = 0.01  # of sqrt(area): how much farther a point may be for not being on a side that faces away
+_NORMAL_GATE = 0.0  # product of normals below which they face away from one another
+_RINGS = 3  # of the target's proxy around the match of a proxy vertex in which a vertex is looked for
+_FAR = 4.0  # times the median: longer corrections are not trusted
+_LEAST_TRUST = 1e-3
+_CHUNK = 100_000  # vertices between two reports of progress, which also bounds the memory of a step
+_TINY = np.finfo(float).tiny
+_LABEL = "Mapping every vertex"
+
+
+def lift_steps(
+    source: TriangleMesh,
+    source_proxy: Proxy,
+    registered: NDArray[np.float64],
+    target: TriangleMesh,
+    *,
+    target_proxy: Proxy | None = None,
+    proxy_map: NDArray[np.int64] | None = None,
+    search: ClosestPoints | None = None,
+) -> Steps[SurfacePoints]:
+    """Map every vertex of a dense mesh to another, given how its proxy lies on it.
+
+    Parameters
+    ----------
+    source : TriangleMesh
+        The dense mesh to be mapped, n vertices.
+    source_proxy : Proxy
+        The coarse mesh that stands for it, k vertices; the identity for a mesh that is not dense.
+    registered : (k, 3) array of float
+        Positions of the proxy's vertices after it was laid onto the target.
+    target : TriangleMesh
+        The mesh to map to, as dense or coarse as it is.
+    target_proxy : Proxy, optional
+        The coarse mesh that stands for the target.
+    proxy_map : (k,) array of int, optional
+        For each vertex of the source's proxy, the vertex of the target's that it is matched to.  With both, a vertex is
+        looked for only around the match of its proxy vertex, so that surfaces that come close in space, such as the
+        hands of folded arms, are not taken for one another.
+    search : ClosestPoints, optional
+        The search on the target, if there is one already.
+
+    Yields
+    ------
+    Progress
+        How far it is.
+
+    Returns
+    -------
+    SurfacePoints
+        For each vertex of the source, (n,), its point on the target.
+
+    Raises
+    ------
+    MatchError
+        If the arrays do not belong to the proxies.
+
+    Notes
+    -----
+    Every proxy vertex moves its surroundings by the rotation and scale that fit the motion of its neighbours best.
+    These motions are averaged over the proxy and blended between its vertices, as in embedded deformation [1]_, which
+    lays the dense mesh near to the target with all its details.  From some vertices it is seen how far the surface
+    still is; the proxy is corrected by the smooth part of that, twice.  Then each vertex goes to the closest point,
+    found by walking from the nearest vertex.  A vertex that came to a side that faces away, or too far from the match
+    of its proxy vertex, starts from where its neighbours are instead; triangles that the map turned over are averaged.
+
+    The cost is linear in the numbers of vertices.
+
+    References
+    ----------
+    .. [1] R. Sumner, J. Schmid, M. Pauly, "Embedded deformation for shape manipulation", ACM Transactions on Graphics
+       26, 2007.
+    """
+    _check(source, source_proxy, registered)
+    if target_proxy is not None and proxy_map is not None:
+        _check_map(source_proxy, target, target_proxy, proxy_map)
+    yield Progress(0, _LABEL)
+    lift = _Lift(source, source_proxy, target, ClosestPoints(target) if search is None else search)
+    if target_proxy is not None and proxy_map is not None:
+        lift.restrict(target_proxy, proxy_map)
+    average = _averaging(source_proxy.mesh)
+    motion = _motion(source_proxy, registered, average)
+    n, k = source.vertex_count, source_proxy.mesh.vertex_count
+    samples = np.arange(0, n, max(1, n // (_SAMPLES * k)))
+    for correction in range(_CORRECTIONS):
+        yield Progress(0.05 + 0.1 * correction, _LABEL)
+        motion[:, :, 3] += lift.correction(motion, samples, average)
+
+    positions, starts = np.empty((n, 3)), np.empty(n, np.int64)
+    astray = np.empty(n, bool)
+    for start in range(0, n, _CHUNK):
+        yield Progress(0.25 + 0.2 * start / n, _LABEL)
+        part = np.arange(start, min(start + _CHUNK, n))
+        positions[part], normals = lift.moved(motion, part)
+        starts[part], astray[part] = lift.starts(part, positions[part], normals)
+    starts = follow_neighbours(source, starts, astray)
+    triangles, barycentric = np.empty(n, np.int64), np.empty((n, 3))
+    for start in range(0, n, _CHUNK):
+        yield Progress(0.45 + 0.4 * start / n, _LABEL)
+        part = np.arange(start, min(start + _CHUNK, n))
+        triangles[part], barycentric[part], agreement = lift.search_from(
+            starts[part], positions[part], lift.turned(motion, part)
+        )
+        astray[part] = agreement <= _NORMAL_GATE
+    yield Progress(0.85, _LABEL)
+    starts = follow_neighbours(source, heaviest_corners(target, triangles, barycentric), astray)
+    again = np.flatnonzero(astray)
+    for start in range(0, len(again), _CHUNK):
+        part = again[start : start + _CHUNK]
+        triangles[part], barycentric[part], _ = lift.search_from(
+            starts[part], positions[part], lift.turned(motion, part)
+        )
+    yield Progress(0.9, _LABEL)
+    untangle(source, positions, target, triangles, barycentric, search=lift.search)
+    return SurfacePoints.from_barycentric(target, triangles, barycentric)
+
+
+class _Lift:
+    """What the steps of a lift share."""
+
+    def __init__(self, source: TriangleMesh, proxy: Proxy, target: TriangleMesh, search: ClosestPoints) -> None:
+        self.source, self.proxy, self.target, self.search = source, proxy, target, search
+        self.allowed: NDArray[np.int64] | None = None
+
+    def restrict(self, target_proxy: Proxy, proxy_map: NDArray[np.int64]) -> None:
+        """Look for a vertex only near to the match of its proxy vertex."""
+        self.target_proxy, self.proxy_map = target_proxy, proxy_map
+        self.allowed = _near_pairs(target_proxy.mesh)
+
+    def _blended(self, motion: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Motion at vertices (q,) of the dense mesh, (q, 3, 4)."""
+        places = self.proxy.points
+        corners, weights = places.corners[vertices], places.barycentric[vertices]
+        flat = motion.reshape(-1, 12)
+        blended = weights[:, :1] * flat.take(corners[:, 0], axis=0)
+        for corner in (1, 2):
+            blended += weights[:, corner, None] * flat.take(corners[:, corner], axis=0)
+        return blended.reshape(-1, 3, 4)
+
+    def moved(
+        self, motion: NDArray[np.float64], vertices: NDArray[np.int64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Positions and normals of vertices (q,) after the motion, (q, 3) each."""
+        blended = self._blended(motion, vertices)
+        positions = np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertices[vertices]) + blended[:, :, 3]
+        return positions, self._turned(blended, vertices)
+
+    def turned(self, motion: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Turn the normals of vertices (q,) by the motion, (q, 3): cheaper to do again than to keep them."""
+        return self._turned(self._blended(motion, vertices), vertices)
+
+    def _turned(self, blended: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        normals = np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertex_normals[vertices])
+        return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)
+
+    def starts(
+        self, vertices: NDArray[np.int64], positions: NDArray[np.float64], normals: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Vertices of the target from which to search for those of the source, (q,), and which are astray, (q,)."""
+        starts = self.search.nearest_vertices(positions)
+        astray = np.einsum("qd,qd->q", normals, self.search.vertex_normals[starts]) < _NORMAL_GATE
+        if self.allowed is not None:
+            matched = self.proxy_map[self.proxy.points.nearest_vertices[vertices]]
+            asked = matched * self.target_proxy.mesh.vertex_count + self.target_proxy.points.nearest_vertices[starts]
+            found = np.searchsorted(self.allowed, asked).clip(max=len(self.allowed) - 1)
+            far = self.allowed[found] != asked
+            starts[far] = self.target_proxy.vertices[matched[far]]
+            astray |= far
+        return starts, astray
+
+    def search_from(
+        self, starts: NDArray[np.int64], positions: NDArray[np.float64], normals: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+        """Triangles (q,) and coordinates (q, 3) of the closest points, and how far the normals agree there, (q,)."""
+        found = self.search.walk(
+            positions,
+            starts,
+            normals,
+            normal_weight=_NORMAL_REACH**2 * self.target.area,
+            normal_gate=_NORMAL_GATE,
+        )
+        agreement = np.einsum("qd,qd->q", normals, self.target.triangle_normals[found.triangles])
+        return found.triangles, found.barycentric, agreement
+
+    def correction(
+        self, motion: NDArray[np.float64], samples: NDArray[np.int64], average: csr_array
+    ) -> NDArray[np.float64]:
+        """Shift of the proxy's vertices, (k, 3), that brings samples (q,) of the dense mesh nearer to the target."""
+        k = average.shape[0]
+        steps, trust = np.empty((len(samples), 3)), np.empty(len(samples))
+        for start in range(0, len(samples), _CHUNK):
+            part = slice(start, start + _CHUNK)
+            positions, normals = self.moved(motion, samples[part])
+            starts, _ = self.starts(samples[part], positions, normals)
+            triangles, barycentric, agreement = self.search_from(starts, positions, normals)
+            steps[part] = located(self.target, triangles, barycentric) - positions
+            trust[part] = np.maximum(agreement, 0) ** 2
+        lengths = np.linalg.norm(steps, axis=1)
+        trust *= lengths <= _FAR * np.median(lengths)
+        places = self.proxy.points
+        shares = ((trust + _LEAST_TRUST) * self.source.vertex_areas[samples])[:, None] * places.barycentric[samples]
+        corners = places.corners[samples].ravel()
+        sums = np.stack(
+            [np.bincount(corners, (shares * column[:, None]).ravel(), k) for column in (*steps.T, np.ones(len(steps)))],
+            axis=1,
+        )
+        for _ in range(_CORRECTION_ROUNDS):
+            sums = average @ sums
+        return sums[:, :3] / np.maximum(sums[:, 3:], _TINY)
+
+
+def _averaging(mesh: TriangleMesh) -> csr_array:
+    """Matrix (k, k) that takes half of each vertex and half of the mean of its neighbours."""
+    k = mesh.vertex_count
+    neighbours = _adjacency(mesh)
+    degrees = np.maximum(neighbours.sum(axis=1), 1)
+    return csr_array(eye_array(k) / 2 + diags_array(0.5 / degrees) @ neighbours)
+
+
+def _adjacency(mesh: TriangleMesh) -> csr_array:
+    k, (a, b) = mesh.vertex_count, mesh.edges.T
+    ends = (np.concatenate([a, b]), np.concatenate([b, a]))
+    return csr_array(coo_array((np.ones(2 * len(a)), ends), shape=(k, k)))
+
+
+def _near_pairs(mesh: TriangleMesh) -> NDArray[np.int64]:
+    """Keys first * k + second, sorted, of all vertices that are at most some edges apart."""
+    k = mesh.vertex_count
+    ring = csr_array(_adjacency(mesh) + eye_array(k))
+    reach = ring
+    for _ in range(_RINGS - 1):
+        reach = csr_array(reach @ ring)
+    return np.sort(np.repeat(np.arange(k), np.diff(reach.indptr)) * k + reach.indices)
+
+
+def _motion(proxy: Proxy, registered: NDArray[np.float64], average: csr_array) -> NDArray[np.float64]:
+    """Motion of the surroundings of each proxy vertex, (k, 3, 4): x goes to motion[:, :3] x + motion[:, 3]."""
+    rest, (a, b) = proxy.mesh.vertices, proxy.mesh.edges.T
+    k = len(rest)
+    before, after = rest[a] - rest[b], registered[a] - registered[b]
+    products = np.concatenate(
+        [
+            (after[:, :, None] * before[:, None, :]).reshape(-1, 9),
+            np.einsum("ed,ed->e", after, after)[:, None],
+            np.einsum("ed,ed->e", before, before)[:, None],
+        ],
+        axis=1,
+    )
+    ends = np.concatenate([a, b])
+    sums = np.stack([np.bincount(ends, np.tile(column, 2), k) for column in products.T], axis=1)
+    for _ in range(_ROTATION_ROUNDS):
+        sums = average @ sums
+    u, _, vt = np.linalg.svd(sums[:, :9].reshape(k, 3, 3))
+    u[:, :, 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
+    scales = np.sqrt(sums[:, 9] / np.maximum(sums[:, 10], _TINY))
+    turns = scales[:, None, None] * (u @ vt)
+    shifts = registered - np.einsum("kab,kb->ka", turns, rest)
+    motion = np.concatenate([turns, shifts[:, :, None]], axis=2).reshape(k, 12)
+    if not proxy.is_identity:  # between the vertices of a coarse mesh there is something to smooth
+        for _ in range(_FIELD_ROUNDS):
+            motion = average @ motion
+    return motion.reshape(k, 3, 4)
+
+
+def _check(source: TriangleMesh, source_proxy: Proxy, registered: NDArray[np.float64]) -> None:
+    """Raise an error if the registered positions are not those of the proxy."""
+    k = source_proxy.mesh.vertex_count
+    _check_proxy("source", source, source_proxy)
+    if registered.shape != (k, 3):
+        raise MatchError(
+            f"A position is needed for each of the {k} vertices of the source's proxy, of the shape ({k}, 3), but they "
+            f"have {registered.shape}."
+        )
+    if not np.isfinite(registered).all():
+        raise MatchError("Some registered positions are not finite numbers. Register the proxy again.")
+
+
+def _check_map(source_proxy: Proxy, target: TriangleMesh, target_proxy: Proxy, proxy_map: NDArray[np.int64]) -> None:
+    """Raise an error if a map does not lead from proxy to proxy."""
+    k, size = source_proxy.mesh.vertex_count, target_proxy.mesh.vertex_count
+    _check_proxy("target", target, target_proxy)
+    if proxy_map.shape != (k,) or proxy_map.min() < 0 or proxy_map.max() >= size:
+        raise MatchError(
+            f"For each of the {k} vertices of the source's proxy a vertex of the target's is needed, 0 to {size - 1}."
+        )
+
+
+def _check_proxy(name: str, mesh: TriangleMesh, proxy: Proxy) -> None:
+    """Raise an error if a proxy is not that of a mesh."""
+    if len(proxy.points) != mesh.vertex_count:
+        raise MatchError(
+            f"The {name}'s proxy stands for a mesh of {len(proxy.points)} vertices, but the {name} has "
+            f"{mesh.vertex_count}. Make the proxy from this mesh."
+        )

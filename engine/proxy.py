@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Coarse stand-ins for dense meshes: what is matched instead of a million vertices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+
+from .closest_points import ClosestPoints
+from .dual_triangulation import DualTriangulation, dual_triangulation, manifold_part
+from .mesh import TriangleMesh
+from .progress import Progress, Steps
+from .surface import SurfacePoints
+from .surface_cells import SurfaceCells, grid_labels, nearest_members
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Proxy", "proxy_steps"]
+
+_LARGE = 1.6  # times as many vertices as wanted: meshes with fewer stand for themselves
+_CELLS = 10.0  # cells for each vertex of the proxy; many, so that a cell never joins two fingers
+_CELL_SIZE = 0.85  # of sqrt(area / cells); a cube cuts more from a slanted surface than its side squared
+_SPACING = 0.78  # least distance of seeds, in units of sqrt(area / vertices)
+_LLOYD_STEPS = 2
+_REPAIRS = 24  # rounds; each may double the seeds where something is wrong
+_DISSOLVING = 6  # in every so many rounds regions that are still wrong fall apart into single vertices
+_HOLE = 2.0  # perimeter in units of sqrt(area / vertices) below which a hole is closed: no loop of the proxy fits it
+_FITS = 2
+_TETHER = 0.02  # weight of staying in place against that of the vertices around, where these leave freedom
+_FINER = 2.0  # more vertices for the second attempt
+_GOOD_PART = 0.98  # of the triangles that must have stayed for the first attempt to be taken
+_STEP = 200_000  # vertices projected between two reports of progress
+
+
+@dataclass(frozen=True, eq=False)
+class Proxy:
+    """A coarse mesh that stands for a dense one.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The coarse mesh, a manifold.
+    points : SurfacePoints
+        For each vertex of the dense mesh, (n,), its place on the coarse one.
+    vertices : (k,) array of int
+        For each vertex of the coarse mesh, a vertex of the dense one: the nearest of those it stands for.  All differ.
+    """
+
+    mesh: TriangleMesh
+    points: SurfacePoints
+    vertices: NDArray[np.int64]
+
+    @property
+    def is_identity(self) -> bool:
+        """Whether the mesh stands for itself."""
+        return self.mesh.vertex_count == len(self.points)
+
+    @classmethod
+    def identity(cls, mesh: TriangleMesh) -> Proxy:
+        """Let a mesh, all vertices of which have triangles, stand for itself."""
+        vertices = np.arange(mesh.vertex_count)
+        return cls(mesh, SurfacePoints.at_vertices(mesh, vertices), vertices)
+
+
+@dataclass(frozen=True, eq=False)
+class _Regions:
+    """Cells gathered around seeds, and the triangulation of their neighbourhoods."""
+
+    cells: SurfaceCells
+    seeds: NDArray[np.int64]  # (k,) cells
+    labels: NDArray[np.int64]  # (c,) region of each cell
+    dual: DualTriangulation
+
+
+def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
+    """Approximate a dense mesh by a coarse one.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        A manifold, consistently oriented; it may have open boundaries.  Every vertex has a triangle.
+    vertices : int
+        About how many vertices the proxy should have.
+
+    Yields
+    ------
+    Progress
+        How far it is.
+
+    Returns
+    -------
+    Proxy
+        The coarse mesh: a manifold of the same genus and the same boundary loops as the dense one.  A mesh of less
+        than 1.6 times as many vertices stands for itself.
+
+    Notes
+    -----
+    The vertices are gathered in the cubes of a grid, ten for each vertex of the proxy and split into parts that hang
+    together, so that all that follows costs the same whatever the number of vertices.  Seeds are spread over these
+    cells with a least distance between each two (Poisson-disk sampling [1]_), moved to the centres of their
+    Voronoi regions twice [2]_, and joined by the triangulation dual to the regions.  Where that is not a manifold like
+    the surface, farther seeds are added to the regions at fault; so thin and intricate parts get more vertices, and in
+    the limit all of the mesh.  Last, the positions are fitted to the vertices in the least squares sense, which
+    restores most of the volume that coarse triangles cut away.
+
+    Holes too small for a loop of the proxy's edges are closed in it.  Should faults remain (a mesh that is not a
+    manifold, say), a proxy of twice as many vertices is tried, and then the largest part without faults is taken.
+
+    The result does not depend on the order of the vertices but for ties of distances and for rounding, nor on the
+    scale; it turns with the mesh as far as the grid allows.
+
+    References
+    ----------
+    .. [1] R. Cook, "Stochastic sampling in computer graphics", ACM Transactions on Graphics 5, 1986.
+    .. [2] S. Lloyd, "Least squares quantization in PCM", IEEE Transactions on Information Theory 28, 1982.
+    """
+    if mesh.vertex_count <= _LARGE * vertices:
+        return Proxy.identity(mesh)
+    count = vertices
+    regions = kept = None
+    for attempt, start in enumerate((0.0, 0.3)):
+        yield Progress(start, "Simplifying the mesh")
+        closed = _without_small_holes(mesh, _HOLE * np.sqrt(mesh.area / count))
+        yield Progress(start + 0.1, "Simplifying the mesh")
+        cells = SurfaceCells.build(
+            closed, grid_labels(closed, _CELL_SIZE * float(np.sqrt(closed.area / (_CELLS * count))))
+        )
+        yield Progress(start + 0.2, "Simplifying the mesh")
+        regions = _repaired(closed, _spread_regions(cells, count))
+        kept = (
+            manifold_part(regions.dual.triangles, len(regions.seeds))
+            if regions.dual.faulty.any()
+            else np.arange(len(regions.dual.triangles))
+        )
+        if attempt or len(kept) >= _GOOD_PART * len(regions.dual.triangles):
+            break
+        count = int(_FINER * count)
+    assert regions is not None  # noqa: S101 -- for the type checker
+    assert kept is not None  # noqa: S101
+    del closed, cells
+    if not len(kept) or len(regions.seeds) > mesh.vertex_count / 2:
+        return Proxy.identity(mesh)
+    yield Progress(0.6, "Simplifying the mesh")
+    return (yield from _fitted(mesh, regions, kept))
+
+
+def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
+    """Close the holes of a mesh that are shorter around than a length, each by a fan about a new vertex."""
+    low, high = mesh.boundary_edges.T
+    if not len(low):
+        return mesh
+    n = mesh.vertex_count
+    tail, head = mesh.triangles.ravel(), np.roll(mesh.triangles, -1, axis=1).ravel()
+    ends = np.zeros(n, bool)
+    ends[mesh.boundary_edges] = True
+    near = np.flatnonzero(ends[tail] & ends[head])
+    keys = np.minimum(tail[near], head[near]) * n + np.maximum(tail[near], head[near])
+    border = near[np.isin(keys, low * n + high)]
+    tail, head = tail[border], head[border]
+    graph = coo_array((np.ones(len(tail), np.int8), (tail, head)), shape=(n, n))
+    loops = np.unique(connected_components(graph, directed=False)[1][tail], return_inverse=True)[1].reshape(-1)
+    lengths = np.bincount(loops, np.linalg.norm(mesh.vertices[tail] - mesh.vertices[head], axis=1))
+    small = lengths < perimeter
+    closing = small[loops]
+    if not closing.any():
+        return mesh
+    sizes = np.bincount(loops)
+    centres = np.stack([np.bincount(loops, column[tail]) for column in mesh.vertices.T], axis=1) / sizes[:, None]
+    number = n + np.cumsum(small) - 1
+    fans = np.stack([head[closing], tail[closing], number[loops[closing]]], axis=1)
+    return TriangleMesh(np.concatenate([mesh.vertices, centres[small]]), np.concatenate([mesh.triangles, fans]))
+
+
+def _spread_regions(cells: SurfaceCells, count: int) -> _Regions:
+    """Divide a surface into about `count` regions of about the same area."""
+    seeds = _poisson_disk(cells, _SPACING * cells.unit / np.sqrt(count))
+    # A part too small for a seed of its own still needs one.
+    components = cells.component_labels
+    parts, first = np.unique(components, return_index=True)
+    seeds = np.concatenate([seeds, first[~np.isin(parts, components[seeds])]])
+    for _ in range(_LLOYD_STEPS):
+        _, labels = _voronoi(cells, seeds)
+        areas = np.bincount(labels, cells.areas, len(seeds))
+        moments = [np.bincount(labels, cells.areas * column, len(seeds)) for column in cells.positions.T]
+        centres = np.stack(moments, axis=1) / np.maximum(areas, np.finfo(float).tiny)[:, None]
+        offsets = cells.positions - centres[labels]
+        seeds = nearest_members(labels, np.einsum("cd,cd->c", offsets, offsets), len(seeds))
+    return _triangulated(cells, seeds)
+
+
+def _poisson_disk(cells: SurfaceCells, radius: float) -> NDArray[np.int64]:
+    """Choose cells in random order, each unless a chosen one is nearer than a radius."""
+    pairs = cKDTree(cells.positions).query_pairs(radius, output_type="ndarray")
+    # Cells that face away from one another are on different sides of something thin.
+    agreement = np.einsum("pd,pd->p", cells.normals[pairs[:, 0]], cells.normals[pairs[:, 1]])
+    pairs = pairs[agreement >= 0]
+    priority = np.random.default_rng(0).permutation(cells.count)
+    ahead = np.where((priority[pairs[:, 0]] < priority[pairs[:, 1]])[:, None], pairs, pairs[:, ::-1])
+    # As if one after the other: whoever has nobody undecided ahead is chosen, and rules out all behind.
+    chosen, undecided = np.zeros(cells.count, bool), np.ones(cells.count, bool)
+    while undecided.any():
+        waits = np.zeros(cells.count, bool)
+        waits[ahead[:, 1]] = True
+        new = undecided & ~waits
+        chosen |= new
+        undecided &= ~new
+        undecided[ahead[new[ahead[:, 0]], 1]] = False
+        ahead = ahead[undecided[ahead].all(axis=1)]
+    return np.flatnonzero(chosen)
+
+
+def _voronoi(cells: SurfaceCells, seeds: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Distance from the nearest seed, and which it is, (c,) each; every component has a seed."""
+    distances, _, sources = dijkstra(cells.graph, directed=True, indices=seeds, min_only=True, return_predecessors=True)
+    number = np.empty(cells.count, np.int64)
+    number[seeds] = np.arange(len(seeds))
+    return distances, number[sources]
+
+
+def _triangulated(cells: SurfaceCells, seeds: NDArray[np.int64]) -> _Regions:
+    _, labels = _voronoi(cells, seeds)
+    return _Regions(cells, seeds, labels, dual_triangulation(cells, labels, len(seeds)))
+
+
+def _repaired(mesh: TriangleMesh, regions: _Regions) -> _Regions:
+    """Add seeds until the dual triangulation is a manifold like the surface, or the rounds run out."""
+    for repair in range(1, _REPAIRS + 1):
+        faulty = regions.dual.faulty
+        if not faulty.any():
+            break
+        cells, seeds = regions.cells, regions.seeds
+        distances, labels = _voronoi(cells, seeds)
+        farthest = nearest_members(labels, -distances, len(seeds))[faulty]
+        added = farthest[distances[farthest] > 0]
+        if not len(added) or repair % _DISSOLVING == 0:
+            in_faulty = faulty[labels] & (np.bincount(cells.labels, minlength=cells.count) > 1)
+            if in_faulty.any():
+                heads = cells.nearest_vertices(mesh.vertices)
+                chosen = heads[np.concatenate([seeds, added])]
+                cells = cells.dissolved(mesh, in_faulty)
+                regions = _triangulated(cells, cells.labels[chosen])
+                continue
+        if not len(added):
+            break
+        regions = _triangulated(cells, np.concatenate([seeds, added]))
+    return regions
+
+
+def _fitted(mesh: TriangleMesh, regions: _Regions, kept: NDArray[np.int64]) -> Steps[Proxy]:
+    """Make a proxy of the kept triangles of a triangulation, and fit it to the mesh."""
+    cells = regions.cells
+    used, triangles = np.unique(regions.dual.triangles[kept], return_inverse=True)
+    triangles = triangles.reshape(-1, 3)
+    number = np.full(len(regions.seeds), -1)
+    number[used] = np.arange(len(used))
+    # Closed holes may have vertices that are not of the mesh.
+    n = mesh.vertex_count
+    place = number[regions.labels[cells.labels[:n]]]
+    coarse = TriangleMesh(_first_positions(regions)[used], triangles)
+
+    # One vertex of each cell speaks for all in the fit.
+    samples = cells.nearest_vertices(mesh.vertices)
+    known = np.flatnonzero(samples >= 0)
+    known = known[place[samples[known]] >= 0]
+    samples, weights = samples[known], cells.areas[known]
+    search = ClosestPoints(coarse)
+    for fit in range(_FITS):
+        found = search.walk(mesh.vertices[samples], place[samples])
+        positions = _fitted_positions(search, found.triangles, found.barycentric, mesh.vertices[samples], weights)
+        search = search.moved(positions)
+        yield Progress(0.65 + 0.05 * fit, "Simplifying the mesh")
+
+    coarse = TriangleMesh(search.vertices, triangles)
+    lost = np.flatnonzero(place < 0)
+    place[lost] = search.nearest_vertices(mesh.vertices[lost])
+    where, barycentric = np.empty(n, np.int64), np.empty((n, 3))
+    for start in range(0, n, _STEP):
+        yield Progress(0.75 + 0.25 * start / n, "Simplifying the mesh")
+        part = slice(start, start + _STEP)
+        found = search.walk(mesh.vertices[part], place[part])
+        where[part], barycentric[part] = found.triangles, found.barycentric
+
+    offsets = mesh.vertices - coarse.vertices[place]
+    distances = np.einsum("nd,nd->n", offsets, offsets)
+    distances[lost] = np.inf
+    vertices = nearest_members(place, distances, len(used))
+    return Proxy(coarse, SurfacePoints.from_barycentric(coarse, where, barycentric), vertices)
+
+
+def _first_positions(regions: _Regions) -> NDArray[np.float64]:
+    """Seeds' positions (k, 3), but for regions at open boundaries that of the nearest place there.
+
+    Else a triangulation dual to regions would end half a region before the boundary.
+    """
+    cells, seeds, labels = regions.cells, regions.seeds, regions.labels
+    offsets = cells.positions - cells.positions[seeds][labels]
+    distances = np.where(cells.at_boundary, np.einsum("cd,cd->c", offsets, offsets), np.inf)
+    ends = nearest_members(labels, distances, len(seeds))
+    return cells.positions[np.where(cells.at_boundary[ends], ends, seeds)]
+
+
+def _fitted_positions(
+    search: ClosestPoints,
+    triangles: NDArray[np.int64],
+    barycentric: NDArray[np.float64],
+    wanted: NDArray[np.float64],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Positions of the vertices, (k, 3), so that points of the surface come as near to where they are wanted as can be.
+
+    The points, (s,), are given by triangles and coordinates, with positions `wanted`, (s, 3), and weights, (s,).
+    """
+    k, s = len(search.vertices), len(triangles)
+    interpolate = csr_array((barycentric.ravel(), search.triangles[triangles].ravel(), np.arange(s + 1) * 3), (s, k))
+    weighted = csr_array(interpolate.T @ diags_array(weights))
+    tether = np.full(k, _TETHER * weights.sum() / k)
+    system = csc_array(weighted @ interpolate + diags_array(tether))
+    factor = splu(system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
+    return factor.solve(weighted @ wanted + tether[:, None] * search.vertices)

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Maps of dense meshes from the match of coarse ones."""
+
+import numpy as np
+import pytest
+
+from engine import MatchError, SurfacePoints, TriangleMesh, run
+from engine.closest_points import ClosestPoints
+from engine.lifting import lift_steps
+from engine.proxy import Proxy, proxy_steps
+from engine.untangling import flipped_triangles
+from tests.shapes import creature, icosphere, permuted, plane, rotation
+
+PROXY = 1500
+
+
+class Dense:
+    """A body in a pose, its positions at rest, which name its points, and its proxy."""
+
+    def __init__(self, pose, resolution, turn=0.0):
+        vertices, triangles, self.rest = creature(pose, resolution, turn)
+        self.mesh = TriangleMesh(vertices, triangles)
+        self.proxy = run(proxy_steps(self.mesh, PROXY))
+
+    def proxy_rest(self):
+        """Positions at rest of the proxy's vertices."""
+        found = ClosestPoints(self.mesh).walk(self.proxy.mesh.vertices, self.proxy.vertices)
+        return SurfacePoints.from_barycentric(self.mesh, found.triangles, found.barycentric).interpolate(self.rest)
+
+
+@pytest.fixture(scope="module")
+def source():
+    return Dense(0.0, 40)
+
+
+@pytest.fixture(scope="module")
+def target():
+    return Dense(0.8, 34, turn=0.4)
+
+
+def bent(rest, target):
+    """Where points known at rest are in the pose of a target: on its surface."""
+    at_rest = TriangleMesh(target.rest, target.mesh.triangles)
+    found = ClosestPoints(at_rest).nearest(rest)
+    return SurfacePoints.from_barycentric(target.mesh, found.triangles, found.barycentric).positions
+
+
+def assert_valid(points, mesh, count):
+    assert len(points) == count
+    assert (points.barycentric >= 0).all()
+    np.testing.assert_allclose(points.barycentric.sum(axis=1), 1)
+    np.testing.assert_array_equal(points.corners, mesh.triangles[points.triangles])
+
+
+def stretch(points, mesh):
+    """Length of each edge after the map by that before."""
+    a, b = mesh.edges.T
+    return np.linalg.norm(points.positions[a] - points.positions[b], axis=1) / mesh.edge_lengths
+
+
+def flipped(points, source, target):
+    return len(flipped_triangles(source, target, points.triangles, points.barycentric)) / source.triangle_count
+
+
+def errors(points, source, target):
+    """Distances at rest from where vertices are mapped to where they belong, in units of sqrt(area)."""
+    return np.linalg.norm(points.interpolate(target.rest) - source.rest, axis=1) / np.sqrt(target.mesh.area)
+
+
+def test_identity(source):
+    points = run(lift_steps(source.mesh, source.proxy, source.proxy.mesh.vertices, source.mesh))
+    assert_valid(points, source.mesh, source.mesh.vertex_count)
+    moved = np.linalg.norm(points.positions - source.mesh.vertices, axis=1) / np.sqrt(source.mesh.area)
+    assert moved.mean() < 3e-4
+    assert moved.max() < 5e-3
+    ratio = stretch(points, source.mesh)
+    assert np.sqrt((ratio**2).mean()) == pytest.approx(1, abs=0.01)
+    assert flipped(points, source.mesh, source.mesh) < 1e-3
+
+
+def test_a_mesh_that_stands_for_itself_goes_where_it_was_registered():
+    mesh = TriangleMesh(*icosphere(10))
+    target = TriangleMesh(*permuted(*icosphere(14))[:2])
+    found = ClosestPoints(target).nearest(mesh.vertices)
+    wanted = SurfacePoints.from_barycentric(target, found.triangles, found.barycentric).positions
+    points = run(lift_steps(mesh, Proxy.identity(mesh), wanted, target))
+    np.testing.assert_allclose(points.positions, wanted, atol=1e-9)
+
+
+def test_a_bend_is_recovered(source, target):
+    registered = bent(source.proxy_rest(), target)
+    points = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    assert_valid(points, target.mesh, source.mesh.vertex_count)
+    error = errors(points, source, target)
+    assert error.mean() < 2e-3
+    assert np.quantile(error, 0.99) < 0.01
+    ratio = stretch(points, source.mesh)
+    assert np.sqrt((ratio**2).mean()) < 1.1
+    assert (ratio > 3).mean() < 2e-3
+    assert (ratio < 0.05).mean() < 2e-3
+    assert flipped(points, source.mesh, target.mesh) < 2e-3
+
+
+def test_a_noisy_registration_does_not_make_the_map_blocky(source, target):
+    noise = np.random.default_rng(0).normal(size=source.proxy.mesh.vertices.shape) * 0.003
+    registered = bent(source.proxy_rest(), target) + noise * np.sqrt(target.mesh.area)
+    points = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    assert errors(points, source, target).mean() < 4e-3
+    ratio = stretch(points, source.mesh)
+    assert np.sqrt((ratio**2).mean()) < 1.15
+    assert flipped(points, source.mesh, target.mesh) < 5e-3
+
+
+@pytest.mark.parametrize(("dense", "coarse"), [(40, 12), (12, 40)])
+def test_dense_against_coarse(dense, coarse):
+    first, second = Dense(0.0, dense), Dense(0.8, coarse, turn=0.4)
+    assert first.proxy.is_identity == (dense < coarse)
+    assert second.proxy.is_identity == (dense > coarse)
+    registered = bent(first.proxy_rest(), second)
+    points = run(lift_steps(first.mesh, first.proxy, registered, second.mesh))
+    assert_valid(points, second.mesh, first.mesh.vertex_count)
+    # A coarse mesh is no nearer to the surface than its own edges tell.
+    assert errors(points, first, second).mean() < 8e-3
+    assert np.sqrt((stretch(points, first.mesh) ** 2).mean()) < 1.15
+    assert flipped(points, first.mesh, second.mesh) < 0.01
+
+
+def test_a_moved_and_scaled_target_gets_the_same_map(source, target):
+    registered = bent(source.proxy_rest(), target)
+    first = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    turn = rotation([1, 2, -1], 0.9).T * 100
+    moved = TriangleMesh(target.mesh.vertices @ turn + [10, -20, 5], target.mesh.triangles)
+    second = run(lift_steps(source.mesh, source.proxy, registered @ turn + [10, -20, 5], moved))
+    far = np.linalg.norm(second.interpolate(target.mesh.vertices) - first.positions, axis=1)
+    assert np.quantile(far, 0.999) < 1e-4
+
+
+def test_the_order_of_the_target_does_not_matter(source, target):
+    registered = bent(source.proxy_rest(), target)
+    first = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    other = TriangleMesh(*permuted(target.mesh.vertices, target.mesh.triangles)[:2])
+    second = run(lift_steps(source.mesh, source.proxy, registered, other))
+    assert np.quantile(np.linalg.norm(second.positions - first.positions, axis=1), 0.999) < 1e-4
+
+
+def test_a_search_can_be_shared_and_the_map_is_reproducible(source, target):
+    registered = bent(source.proxy_rest(), target)
+    first = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    second = run(lift_steps(source.mesh, source.proxy, registered, target.mesh, search=ClosestPoints(target.mesh)))
+    np.testing.assert_array_equal(first.triangles, second.triangles)
+    np.testing.assert_array_equal(first.barycentric, second.barycentric)
+
+
+def rolled(part, layers=3, gap=0.06):
+    """Sheet rolled up to a spiral: points (x in 0..1, y) to layers that face the same way."""
+    angle = 2 * np.pi * layers * np.sqrt(part[:, 0] + 0.1)
+    radius = 0.2 + gap * angle / (2 * np.pi)
+    return np.stack([radius * np.cos(angle), part[:, 1] * 0.5, radius * np.sin(angle)], axis=1)
+
+
+def test_with_a_map_of_the_proxies_surfaces_close_in_space_are_not_confused():
+    vertices, triangles = plane(60)
+    sheet = TriangleMesh(rolled(vertices), triangles)
+    proxy = Proxy.identity(sheet)
+    # Laid a little nearer to the next layer.
+    away = 0.033 * sheet.vertices * [1, 0, 1]
+    away /= np.linalg.norm(sheet.vertices * [1, 0, 1], axis=1, keepdims=True)
+    registered = sheet.vertices + away
+    loose = run(lift_steps(sheet, proxy, registered, sheet))
+    led = run(lift_steps(sheet, proxy, registered, sheet, target_proxy=proxy, proxy_map=np.arange(sheet.vertex_count)))
+    wrong = [np.linalg.norm(points.interpolate(vertices) - vertices, axis=1) > 0.15 for points in (loose, led)]
+    assert wrong[0].mean() > 0.2
+    assert wrong[1].mean() < 0.01
+
+
+def test_with_a_map_of_the_proxies_a_good_registration_stays_good(source, target):
+    registered = bent(source.proxy_rest(), target)
+    proxy_map = ClosestPoints(target.proxy.mesh).nearest_vertices(registered)
+    points = run(
+        lift_steps(
+            source.mesh,
+            source.proxy,
+            registered,
+            target.mesh,
+            target_proxy=target.proxy,
+            proxy_map=proxy_map,
+        )
+    )
+    assert errors(points, source, target).mean() < 2e-3
+    assert np.sqrt((stretch(points, source.mesh) ** 2).mean()) < 1.1
+    assert flipped(points, source.mesh, target.mesh) < 2e-3
+
+
+def test_progress_grows(source):
+    fractions = [p.fraction for p in lift_steps(source.mesh, source.proxy, source.proxy.mesh.vertices, source.mesh)]
+    assert fractions == sorted(fractions)
+    assert 0 <= fractions[0] <= fractions[-1] <= 1
+
+
+def test_arrays_that_do_not_belong_together_are_refused(source, target):
+    registered = source.proxy.mesh.vertices
+    with pytest.raises(MatchError, match="source's proxy stands for a mesh of"):
+        run(lift_steps(target.mesh, source.proxy, registered, target.mesh))
+    with pytest.raises(MatchError, match="position is needed for each"):
+        run(lift_steps(source.mesh, source.proxy, registered[1:], target.mesh))
+    broken = registered.copy()
+    broken[3, 1] = np.nan
+    with pytest.raises(MatchError, match="not finite"):
+        run(lift_steps(source.mesh, source.proxy, broken, target.mesh))
+    zeros = np.zeros(len(registered), np.int64)
+    with pytest.raises(MatchError, match="target's proxy stands for"):
+        run(lift_steps(source.mesh, source.proxy, registered, target.mesh, target_proxy=source.proxy, proxy_map=zeros))
+    with pytest.raises(MatchError, match="vertex of the target's is needed"):
+        run(
+            lift_steps(
+                source.mesh, source.proxy, registered, target.mesh, target_proxy=target.proxy, proxy_map=zeros - 1
+            )
+        )

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Repair of maps."""
+
+import numpy as np
+
+from engine import SurfacePoints, TriangleMesh
+from engine.closest_points import ClosestPoints
+from engine.untangling import flipped_triangles, follow_neighbours, heaviest_corners, located, untangle
+from tests.shapes import icosphere, permuted, plane
+
+
+def test_values_come_from_the_nearest_neighbour_in_order():
+    # A row of squares: values are handed on from one end to the other.
+    mesh = TriangleMesh(*plane(12))
+    values = np.arange(mesh.vertex_count)
+    astray = mesh.vertices[:, 0] > 0
+    new = follow_neighbours(mesh, values, astray)
+    assert (mesh.vertices[new, 0] == 0).all()
+    assert (abs(mesh.vertices[new, 1] - mesh.vertices[:, 1]) <= mesh.vertices[:, 0] + 1e-9).all()
+    np.testing.assert_array_equal(values, np.arange(mesh.vertex_count))
+    one = np.arange(mesh.vertex_count) == 50
+    step = mesh.vertices[follow_neighbours(mesh, values, one)[50]] - mesh.vertices[50]
+    assert np.linalg.norm(step) < 1.01 / 11  # along a side of a square, not its diagonal
+
+
+def test_without_a_neighbour_in_order_values_stay():
+    mesh = TriangleMesh(*icosphere(2))
+    values = np.arange(mesh.vertex_count)
+    everywhere = np.ones(mesh.vertex_count, bool)
+    np.testing.assert_array_equal(follow_neighbours(mesh, values, everywhere), values)
+    np.testing.assert_array_equal(follow_neighbours(mesh, values, ~everywhere), values)
+
+
+def test_flipped_triangles_are_those_turned_over():
+    mesh = TriangleMesh(*plane(10))
+    points = SurfacePoints.at_vertices(mesh, np.arange(mesh.vertex_count))
+    assert len(flipped_triangles(mesh, mesh, points.triangles, points.barycentric)) == 0
+    mirrored = TriangleMesh(mesh.vertices, mesh.triangles[:, ::-1])
+    everything = flipped_triangles(mirrored, mesh, points.triangles, points.barycentric)
+    np.testing.assert_array_equal(everything, np.arange(mesh.triangle_count))
+    some = np.array([3, 8, 100])
+    np.testing.assert_array_equal(flipped_triangles(mirrored, mesh, points.triangles, points.barycentric, some), some)
+    np.testing.assert_allclose(located(mesh, points.triangles, points.barycentric), mesh.vertices)
+    np.testing.assert_array_equal(
+        heaviest_corners(mesh, points.triangles, points.barycentric), np.arange(mesh.vertex_count)
+    )
+
+
+def test_a_knot_is_untied_and_the_rest_left_alone():
+    source = TriangleMesh(*icosphere(16))
+    target = TriangleMesh(*permuted(*icosphere(13))[:2])
+    search = ClosestPoints(target)
+    found = search.nearest(source.vertices)
+    random = np.random.default_rng(0)
+    # A few vertices exchanged with others near by.
+    near = np.flatnonzero(np.linalg.norm(source.vertices - source.vertices[700], axis=1) < 0.3)
+    moved = random.permutation(near)
+    triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
+    triangles[near], barycentric[near] = triangles[moved], barycentric[moved]
+    before = flipped_triangles(source, target, triangles, barycentric)
+    assert len(before) > 20
+    untangle(source, source.vertices, target, triangles, barycentric, search=search)
+    assert len(flipped_triangles(source, target, triangles, barycentric)) == 0
+    far = np.linalg.norm(source.vertices - source.vertices[700], axis=1) > 0.8
+    np.testing.assert_array_equal(triangles[far], found.triangles[far])
+    np.testing.assert_array_equal(barycentric[far], found.barycentric[far])
+    assert np.linalg.norm(located(target, triangles, barycentric) - source.vertices, axis=1).max() < 0.3
+
+
+def test_a_map_in_order_is_not_touched():
+    source, target = TriangleMesh(*icosphere(9)), TriangleMesh(*icosphere(12))
+    search = ClosestPoints(target)
+    found = search.nearest(source.vertices)
+    triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
+    untangle(source, source.vertices, target, triangles, barycentric, search=search)
+    np.testing.assert_array_equal(triangles, found.triangles)
+    np.testing.assert_array_equal(barycentric, found.barycentric)
