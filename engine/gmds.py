@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .shape import Shape
     from .surface_distances import PointDistances
 
-__all__ = ["GmdsLevel", "GmdsResult", "Norm", "gmds_steps", "on_whole_surface"]
+__all__ = ["GmdsLevel", "GmdsResult", "Norm", "gmds_steps"]
 
 Norm = Literal["L2", "Linf"]
 """What is minimised: the sum of the squared differences of distances, or the largest difference."""
@@ -178,7 +178,7 @@ def gmds_steps(
         best = _own_start(symmetric_roots(distances.squares_between(places)), wanted[: sizes[0], : sizes[0]])
         placed = SurfacePoints.at_vertices(target.mesh, target.samples[best])
     else:
-        placed = _on_part(target, start)
+        placed = target.surface.on_mesh(start)
     done = []
     for number, size in enumerate(sizes):
         begin, end = (0.4 + 0.5 * part / len(sizes) for part in (number, number + 1))
@@ -187,33 +187,20 @@ def gmds_steps(
         settled = yield from within(steps, begin, end, f"Moving {size} points over the surface")
         placed = settled.points
         done.append(
-            GmdsLevel(size, settled.sweeps, settled.start, settled.stress, on_whole_surface(target, settled.points))
+            GmdsLevel(size, settled.sweeps, settled.start, settled.stress, target.surface.on_original(settled.points))
         )
     if norm == "Linf":
         settled = yield from within(_minimax_steps(distances, settled, wanted), 0.9, 1.0)
     difference = settled.distances - wanted
     return GmdsResult(
         SurfacePoints.at_vertices(source.original, source.vertices[source.samples[:points]]),
-        on_whole_surface(target, settled.points),
+        target.surface.on_original(settled.points),
         norm,
         float(np.square(difference).sum()),
         float(np.abs(difference).max()),
         settled.distances,
         tuple(done),
     )
-
-
-def on_whole_surface(shape: Shape, points: SurfacePoints) -> SurfacePoints:
-    """Place points on the part of a surface that is used (`Shape.mesh`) on the whole of it (`Shape.original`)."""
-    return SurfacePoints.from_barycentric(shape.original, shape.triangles[points.triangles], points.barycentric)
-
-
-def _on_part(shape: Shape, points: SurfacePoints) -> SurfacePoints:
-    """Place points on the whole surface on the part that is used."""
-    triangles = np.searchsorted(shape.triangles, points.triangles).clip(max=len(shape.triangles) - 1)
-    if (shape.triangles[triangles] != points.triangles).any():
-        raise MatchError("Some points to start from do not lie on the largest part of the target.")
-    return SurfacePoints.from_barycentric(shape.mesh, triangles, points.barycentric)
 
 
 def _checked_levels(

@@ -35,6 +35,8 @@ _KEPT = 4  # which are so many of each orientation.
 _DISTINCT_SHARE = 0.1  # part of the points that has to differ (by half of _DISTINCT) for two refined ones to be kept
 _CURVATURE_WEIGHT = 6.0
 _SYMMETRIES = 2  # so many self-matchings of the source, beside the identity, are tried for the mirror image
+_STRAINED = 0.7  # excess of score and strain of landmarks where a matching contradicts them
+_EXACT = 0.01  # differences of distances, in sqrt(area), below which all are the same
 _LANDMARKS = 20  # the first matched points, to which the orientation of the others is measured
 
 
@@ -158,16 +160,35 @@ def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
         here = Progress(0.5 + 0.35 * number / len(leads), "Comparing matchings")
         hypotheses.append((yield from _at(here, _follow_steps(lead, further))))
     hypotheses.sort(key=lambda hypothesis: hypothesis.score)
-    reflected = yield from _at(Progress(0.85, "Comparing matchings"), _reflected_steps(hypotheses, sizes))
-    return two_answers(hypotheses + reflected)
+    if not coarse[0].pair.landmarks:  # which no symmetry of the source would respect
+        reflected = yield from _at(Progress(0.85, "Comparing matchings"), _reflected_steps(hypotheses, sizes))
+        hypotheses += reflected
+    return two_answers(hypotheses)
 
 
 def two_answers(hypotheses: list[Hypothesis]) -> list[Hypothesis]:
-    """Choose the most credible matching of either orientation, the one that keeps it first."""
+    """Choose the most credible matching of either orientation, the one that keeps it first.
+
+    With landmarks, both take each to its partner, but one that does so against all else is left out: so landmarks on
+    one side of a symmetric body decide what the sides correspond to.
+    """
     ranked = sorted(hypotheses, key=lambda hypothesis: hypothesis.score)
     keeping = [h for h in ranked if h.orientation > 0][:1]
     mirroring = [h for h in ranked if h.orientation <= 0][:1]
-    return keeping + mirroring
+    both = keeping + mirroring
+    if not ranked[0].coarse.pair.landmarks:
+        return both
+    strains = [h.score + _landmark_strain(h) for h in both]
+    return [h for h, strain in zip(both, strains, strict=True) if strain < min(strains) + _STRAINED]
+
+
+def _landmark_strain(hypothesis: Hypothesis) -> float:
+    """Measure how badly landmarks fit the other points: logarithm of their root mean square difference of distances."""
+    pair, assignment = hypothesis.coarse.pair, hypothesis.assignment
+    count = min(pair.landmarks, len(assignment))
+    source = pair.source.sample_distances[:count, : len(assignment)]
+    target = pair.target.sample_distances[np.ix_(assignment[:count], assignment)]
+    return float(np.log(_EXACT + np.sqrt(np.square(source - target).mean())))
 
 
 def _follow_steps(lead: _Lead, further: list[int]) -> Steps[Hypothesis]:

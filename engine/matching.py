@@ -8,28 +8,42 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
+from .dense_map import registered_pair_steps
+from .dense_match import DenseMatch, dense_match_steps
 from .errors import MatchError
-from .gmds import on_whole_surface
+from .hierarchy import refine_steps
+from .landmarks import locate_landmarks, placed_at_vertices
+from .map_hypotheses import LandmarkStart
 from .pair import Pair
 from .progress import Progress, Steps, run, within
 from .result import CoarseMatch, MatchResult
 from .settings import MatchSettings
 from .shape import Shape
-from .solvers import Answer, solve_steps
+from .solvers import Answer, at_samples, moved, solve_steps
 from .surface import SurfacePoints
 from .surface_distances import SurfaceDistances, to_all_vertices_steps
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
+    from .landmarks import Landmarks
     from .mesh import TriangleMesh
 
 __all__ = ["match", "match_steps"]
 
+_AGREEING = 0.15
+"""Mean distance, in sqrt(area), up to which a sparse answer and the dense map are taken for the same."""
+
 
 def match(
-    source: TriangleMesh | Shape, target: TriangleMesh | Shape, settings: MatchSettings | None = None
+    source: TriangleMesh | Shape,
+    target: TriangleMesh | Shape,
+    settings: MatchSettings | None = None,
+    *,
+    landmarks: ArrayLike | None = None,
+    excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
 ) -> MatchResult:
     """Find corresponding points on two surfaces that differ by a non-rigid deformation.
 
@@ -43,6 +57,13 @@ def match(
         Pass a `Shape` to keep what is computed for it from one match to the next.
     settings : MatchSettings, optional
         How many points, and how hard to search.
+    landmarks : (k, 2) array_like of int, optional
+        Pairs of a vertex of the source and one of the target that are known to correspond: at most as many as there are
+        points, all different, on the largest parts of the meshes.  They are the first points of the result, and exact
+        in all of it.  One may be enough to choose between left and right; where the landmarks call for a map that
+        mirrors the surface, the orientation in the result's `quality` is that of the mirrored source.
+    excluded : pair of (n,) array_like of bool, optional
+        Vertices of the source and of the target to leave out.  In dense maps they follow what is around them.
 
     Returns
     -------
@@ -52,7 +73,8 @@ def match(
     Raises
     ------
     MatchError
-        If a surface has too few vertices for the points that were asked for.
+        If a surface has too few vertices for the points that were asked for, landmarks cannot be used, or vertices are
+        excluded from a `Shape`, which was made with or without them.
 
     See Also
     --------
@@ -62,11 +84,16 @@ def match(
     ----------
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
     """
-    return run(match_steps(source, target, settings))
+    return run(match_steps(source, target, settings, landmarks=landmarks, excluded=excluded))
 
 
 def match_steps(
-    source: TriangleMesh | Shape, target: TriangleMesh | Shape, settings: MatchSettings | None = None
+    source: TriangleMesh | Shape,
+    target: TriangleMesh | Shape,
+    settings: MatchSettings | None = None,
+    *,
+    landmarks: ArrayLike | None = None,
+    excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
 ) -> Steps[MatchResult]:
     """Match two surfaces in short steps; see `match`.
 
@@ -82,33 +109,119 @@ def match_steps(
     """
     settings = settings or MatchSettings()
     clock = _Clock()
-    x = source if isinstance(source, Shape) else Shape(source)
-    y = target if isinstance(target, Shape) else Shape(target)
+    x = yield from within(_shape_steps(source, "source", excluded[0]), 0.0, 0.03)
+    y = yield from within(_shape_steps(target, "target", excluded[1]), 0.03, 0.06)
+    clock.lap("preparation")
     for shape, name in ((x, "source"), (y, "target")):
         if shape.mesh.vertex_count < settings.points:
             raise MatchError(
                 f"{settings.points} points cannot be matched: the {name} has only {shape.mesh.vertex_count} vertices"
-                f"{' in its largest part' if shape.mesh is not shape.original else ''}. "
+                f"{'' if shape.surface.is_whole else ' in its largest part'}. "
                 "Use fewer points or subdivide the mesh."
             )
+    known = None if landmarks is None else locate_landmarks(x, y, landmarks, settings.points)
+    if known is not None:
+        x, y = x.starting_with(known.source.matched), y.starting_with(known.target.matched)
     samples = max(settings.samples, 2 * settings.points)
-    yield from within(x.sample_steps(samples), 0.0, 0.3)
-    yield from within(y.sample_steps(samples), 0.3, 0.6)
+    sparse_end = 0.5 if settings.dense else 1.0
+    yield from within(x.sample_steps(samples), 0.06, 0.13 if settings.dense else 0.3)
+    yield from within(y.sample_steps(samples), 0.13 if settings.dense else 0.3, 0.2 if settings.dense else 0.6)
     clock.lap("geodesics")
+    begin = 0.2 if settings.dense else 0.6
     if Pair.needs_spectrum(settings):
-        yield from within(x.spectrum_steps(settings.eigenpairs), 0.6, 0.65)
-        yield from within(y.spectrum_steps(settings.eigenpairs), 0.65, 0.7)
+        yield from within(x.spectrum_steps(settings.eigenpairs), begin, begin + 0.05)
+        yield from within(y.spectrum_steps(settings.eigenpairs), begin + 0.05, begin + 0.1)
+        begin += 0.1
         clock.lap("eigenpairs")
-    pair = Pair(x.limited(samples), y.limited(samples), settings)
+    pair = Pair(x.limited(samples), y.limited(samples), settings, 0 if known is None else len(known))
     clock.lap("descriptors")
-    answers = yield from within(solve_steps(pair, clock.lap), 0.7, 1.0)
-    notes = [note for shape, name in ((x, "source"), (y, "target")) for note in _notes(shape, name)]
-    result = yield from _result_steps(answers[0], tuple(notes), clock.laps)
-    if len(answers) > 1:
-        mirrored = yield from _result_steps(answers[1], tuple(notes), clock.laps)
-        result = replace(result, mirrored=mirrored)
+    answers = yield from within(solve_steps(pair, clock.lap), begin, sparse_end)
+    notes = tuple(note for shape in (x, y) for note in shape.surface.cleaned.notes)
+    if not settings.dense:
+        results = []
+        for answer in answers:
+            rows = yield from _distance_rows_steps(answer)
+            results.append(_result(answer, known, notes, clock.laps, rows))
+        yield Progress(1.0, "Done")
+        return replace(results[0], mirrored=results[1] if len(results) > 1 else None)
+    direct, mirrored, dense = yield from within(_dense_steps(answers, known, clock), sparse_end, 1.0)
+    result = _result(direct, known, notes, clock.laps)
     yield Progress(1.0, "Done")
-    return result
+    return replace(
+        result,
+        mirrored=None if mirrored is None else _result(mirrored, known, notes, clock.laps),
+        source_to_target=dense.source_to_target,
+        target_to_source=dense.target_to_source,
+        quality=dense.quality,
+    )
+
+
+def _shape_steps(surface: TriangleMesh | Shape, name: str, excluded: ArrayLike | None) -> Steps[Shape]:
+    """Prepare a mesh, or return a shape as it is."""
+    if not isinstance(surface, Shape):
+        left_out = None if excluded is None else np.asarray(excluded, bool)
+        return (yield from Shape.steps(surface, name, excluded=left_out))
+    if excluded is not None:
+        raise MatchError(
+            f"No vertices can be left out of the {name} any more, because it was prepared before. "
+            "Give the mesh itself, or leave them out when you make the shape."
+        )
+    return surface
+
+
+def _dense_steps(
+    answers: list[Answer], landmarks: Landmarks | None, clock: _Clock
+) -> Steps[tuple[Answer, Answer | None, DenseMatch]]:
+    """Find the dense map, and the sparse answers that agree with it: the true and the mirrored one."""
+    pair = answers[0].coarse.pair
+    x, y = pair.source, pair.target
+    starts = []
+    for answer in answers:
+        places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
+        starts.append(LandmarkStart(x.sample_rows[: len(places)], y.sample_rows[places], "hierarchy"))
+    registered = yield from within(registered_pair_steps(x, y, starts, landmarks=landmarks), 0.0, 0.75)
+    clock.lap("registration")
+    count = len(answers[0].points)
+    on_target = registered.registration.on_target
+    samples = x.samples[:count]
+    images = SurfacePoints.from_barycentric(y.mesh, on_target.triangles[samples], on_target.barycentric[samples])
+    if landmarks is not None:
+        images = placed_at_vertices(images, y.mesh, np.arange(len(landmarks)), landmarks.target.matched)
+    direct, mirrored = yield from within(_agreeing_steps(answers, images), 0.75, 0.85)
+    clock.lap("agreement")
+    dense = yield from within(dense_match_steps(registered), 0.85, 1.0)
+    clock.lap("lift")
+    return direct, mirrored, dense
+
+
+def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple[Answer, Answer | None]]:
+    """Tell by the dense map which sparse answer is the true one, and put its points where the map takes them.
+
+    The dense map is decided on by far more than distances between some points.  An answer that it contradicts is
+    refined anew, from the samples that are nearest to its images.
+    """
+    pair = answers[0].coarse.pair
+    y, count = pair.target, len(images)
+    far = [float(np.linalg.norm(a.points.positions - images.positions, axis=1).mean()) / y.scale for a in answers]
+    order = np.argsort(far)
+    direct = answers[order[0]]
+    mirrored = next((answers[i] for i in order[1:] if answers[i].orientation <= 0), None)
+    if far[order[0]] > _AGREEING:
+        rows = y.sample_rows[:, images.nearest_vertices]
+        start = _distinct_samples(rows, pair.landmarks)
+        levels = yield from refine_steps(pair, start, [count])
+        direct = at_samples(direct, levels)
+        mirrored = mirrored or next((a for a in answers if a.orientation <= 0), None)
+    if pair.landmarks:  # these may ask for a map that mirrors: then the other answer does not
+        mirrored = next((a for a in answers if (a.orientation > 0) != (direct.orientation > 0)), None)
+    yield from pair.target_metric.prepare_steps(images)
+    return moved(direct, images), mirrored
+
+
+def _distinct_samples(rows: NDArray[np.float32], landmarks: int) -> NDArray[np.int64]:
+    """Assign to each point (k,) a sample of its own near to it, by distances (s, k); to landmarks their own."""
+    _, samples = linear_sum_assignment(np.square(rows[landmarks:, landmarks:].T.astype(np.float64)))
+    return np.concatenate([np.arange(landmarks), landmarks + samples])
 
 
 class _Clock:
@@ -125,34 +238,47 @@ class _Clock:
         self._last = now
 
 
-def _notes(shape: Shape, name: str) -> list[str]:
-    """Say what of a surface was left out."""
-    count = int(shape.original.component_labels[shape.original.triangles].max()) + 1
-    if count == 1:
-        return []
-    share = shape.mesh.area / shape.original.area
-    return [f"The {name} has {count} separate parts: the largest ({share:.0%} of the area) was matched."]
+def _distance_rows_steps(answer: Answer) -> Steps[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Distances from the matched points to all vertices: geodesic ones whatever the metric."""
+    x, y = answer.coarse.pair.source, answer.coarse.pair.target
+    metric = answer.coarse.pair.target_metric
+    on_target = metric if isinstance(metric, SurfaceDistances) else SurfaceDistances(y)
+    rows = yield from within(to_all_vertices_steps(on_target, answer.points), 1.0, 1.0)
+    return _sample_distances(x, len(answer.points)), rows
 
 
-def _result_steps(answer: Answer, notes: tuple[str, ...], seconds: dict[str, float]) -> Steps[MatchResult]:
+def _result(
+    answer: Answer,
+    landmarks: Landmarks | None,
+    notes: tuple[str, ...],
+    seconds: dict[str, float],
+    rows: tuple[NDArray[np.float64] | None, NDArray[np.float64] | None] = (None, None),
+) -> MatchResult:
     pair, coarse = answer.coarse.pair, answer.coarse.matching
     x, y, count = pair.source, pair.target, len(answer.points)
     difference = pair.source_distances[:count, :count] - answer.distances
-    # Distances to all vertices are geodesic ones whatever the metric: they are for spreading values over the surface.
-    metric = pair.target_metric if isinstance(pair.target_metric, SurfaceDistances) else SurfaceDistances(y)
-    target_distances = yield from within(to_all_vertices_steps(metric, answer.points), 1.0, 1.0)
+    # A landmark is itself and not a vertex of a coarse proxy near to it, or one that is welded to it.
+    known = 0 if landmarks is None else len(landmarks)
+    source_vertices, target_vertices = x.vertices[x.samples], y.vertices[y.samples]
+    if landmarks is not None:
+        source_vertices[:known], target_vertices[:known] = landmarks.source.original, landmarks.target.original
+
+    def exact(points: SurfacePoints) -> SurfacePoints:
+        rows = np.arange(min(known, len(points)))
+        return placed_at_vertices(points, y.original, rows, target_vertices[rows]) if known else points
+
     return MatchResult(
-        source_points=SurfacePoints.at_vertices(x.original, x.vertices[x.samples[:count]]),
-        target_points=on_whole_surface(y, answer.points),
+        source_points=SurfacePoints.at_vertices(x.original, source_vertices[:count]),
+        target_points=exact(y.surface.on_original(answer.points)),
         distortion=answer.distortion,
         linear=answer.linear,
         quadratic=answer.quadratic,
         point_distortion=np.sqrt(np.square(difference).sum(axis=1) / max(count - 1, 1)),
         orientation=answer.orientation,
-        levels=answer.levels,
+        levels=tuple(replace(level, target_points=exact(level.target_points)) for level in answer.levels),
         coarse=CoarseMatch(
-            x.vertices[x.samples[: len(coarse.assignment)]],
-            y.vertices[y.samples[coarse.assignment]],
+            source_vertices[: len(coarse.assignment)],
+            target_vertices[coarse.assignment],
             answer.candidates,
             coarse.cost,
             coarse.lower_bound,
@@ -160,8 +286,8 @@ def _result_steps(answer: Answer, notes: tuple[str, ...], seconds: dict[str, flo
             coarse.nodes,
         ),
         mirrored=None,
-        source_distances=_sample_distances(x, count),
-        target_distances=target_distances,
+        source_distances=rows[0],
+        target_distances=rows[1],
         notes=notes,
         seconds=seconds,
     )
@@ -169,6 +295,4 @@ def _result_steps(answer: Answer, notes: tuple[str, ...], seconds: dict[str, flo
 
 def _sample_distances(shape: Shape, count: int) -> NDArray[np.float64]:
     """Distances from the first samples to all vertices of the whole surface, in its units; inf on other parts."""
-    whole = np.full((count, shape.original.vertex_count), np.inf)
-    whole[:, shape.vertices] = shape.sample_rows[:count].astype(np.float64) * shape.scale
-    return whole
+    return shape.surface.spread(shape.sample_rows[:count].astype(np.float64) * shape.scale, np.inf)

@@ -54,6 +54,8 @@ class Pair:
         The shapes X and Y, sampled; with their spectra if `needs_spectrum` says so.
     settings : MatchSettings
         Metric, descriptor and weights.
+    landmarks : int
+        How many of the first samples of X are known to correspond to the first of Y, one to one.
 
     Attributes
     ----------
@@ -67,8 +69,8 @@ class Pair:
         d_F between every sample of X and every sample of Y, weighted.
     """
 
-    def __init__(self, source: Shape, target: Shape, settings: MatchSettings) -> None:
-        self.source, self.target, self.settings = source, target, settings
+    def __init__(self, source: Shape, target: Shape, settings: MatchSettings, landmarks: int = 0) -> None:
+        self.source, self.target, self.settings, self.landmarks = source, target, settings, landmarks
         self.source_distances, self.target_distances, self.target_metric = _metric(source, target, settings)
         self._descriptor = settings.linear_weight * self._sign_free(settings.descriptor)
         self.linear = self._descriptor
@@ -119,14 +121,32 @@ class Pair:
         """Match the first `points` samples of X to the first `candidates` samples of Y (all by default).
 
         `extra`, (points, T), is added to the linear term.
+
+        Matches that contradict a landmark are forbidden in a problem of some candidates, which is meant for an exact
+        search.  Among all candidates, where the relaxed solver could not work with infinity, they cost more than could
+        ever be gained by them.
         """
         linear = self.linear[:points, :candidates]
-        return MatchingProblem(
-            linear if extra is None else linear + extra,
-            self.source_distances[:points, :points],
-            self.target_distances[:candidates, :candidates],
-            self.settings.quadratic_weight,
-        )
+        linear = linear if extra is None else linear + extra
+        source, target = self.source_distances[:points, :points], self.target_distances[:candidates, :candidates]
+        weight = self.settings.quadratic_weight
+        if self.landmarks:
+            farthest = max(float(source.max()), float(target.max()))
+            most = 1 + float(np.abs(linear).max()) + 2 * points * weight * farthest**2
+            linear = np.where(self._contradicting(*linear.shape), most if candidates is None else np.inf, linear)
+        return MatchingProblem(linear, source, target, weight)
+
+    def _contradicting(self, points: int, candidates: int) -> NDArray[np.bool_]:
+        """Find the matches of a landmark with anything but its partner, and of other points with a partner."""
+        rows, columns = np.arange(points)[:, None], np.arange(candidates)
+        of_landmark = (rows < self.landmarks) | (columns < self.landmarks)
+        forbidden: NDArray[np.bool_] = of_landmark & (rows != columns)
+        return forbidden
+
+    def keeps_landmarks(self, assignment: NDArray[np.int64]) -> bool:
+        """Say whether an assignment (n,) of sample numbers takes every landmark to its partner."""
+        count = min(self.landmarks, len(assignment))
+        return bool((assignment[:count] == np.arange(count)).all())
 
     def orientation_term(self, coarse: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
         """Penalise matches that do not keep (sign 1) or do not mirror (sign -1) the surface, (S, T).

@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from .quality import MatchQuality
     from .surface import SurfacePoints
+    from .surface_map import SurfaceMap
 
 __all__ = ["CoarseMatch", "Level", "MatchResult"]
 
@@ -93,10 +95,18 @@ class MatchResult:
     mirrored : MatchResult or None
         The other answer for a symmetric shape: same source points, opposite orientation; None if there is none.
         Its own `mirrored` is None.
-    source_distances : (k, n) array of float
-        Geodesic distance from each matched point to every vertex of the source; inf where there is no path.
-    target_distances : (k, m) array of float
+    source_distances : (k, n) array of float or None
+        Geodesic distance from each matched point to every vertex of the source; inf where there is no path.  None if
+        there are dense maps, which carry values to every vertex better.
+    target_distances : (k, m) array of float or None
         The same on the target.
+    source_to_target : SurfaceMap or None
+        For every vertex of the source its point on the target, as far as the match was dense and this is not the
+        mirrored answer.
+    target_to_source : SurfaceMap or None
+        For every vertex of the target its point on the source.
+    quality : MatchQuality or None
+        How far the dense maps may be trusted.
     notes : tuple of str
         What the user should know, such as parts that were left out: one sentence each.
     seconds : dict of str to float
@@ -113,7 +123,10 @@ class MatchResult:
     levels: tuple[Level, ...]
     coarse: CoarseMatch
     mirrored: MatchResult | None
-    source_distances: NDArray[np.float64]
-    target_distances: NDArray[np.float64]
+    source_distances: NDArray[np.float64] | None
+    target_distances: NDArray[np.float64] | None
     notes: tuple[str, ...]
     seconds: dict[str, float]
+    source_to_target: SurfaceMap | None = None
+    target_to_source: SurfaceMap | None = None
+    quality: MatchQuality | None = None

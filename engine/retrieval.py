@@ -227,7 +227,7 @@ def _check(shape: Shape, name: str, settings: RetrievalSettings) -> None:
     if shape.mesh.vertex_count < settings.points:
         raise MatchError(
             f"{name} has only {shape.mesh.vertex_count} vertices"
-            f"{' in its largest part' if shape.mesh is not shape.original else ''}, too few to match "
+            f"{' in its largest part' if not shape.surface.is_whole else ''}, too few to match "
             f"{settings.points} points. Use fewer points, subdivide the mesh or leave it out."
         )
 
@@ -271,7 +271,7 @@ class _SparsePair(Pair):
     """A pair of the first samples of two shapes, however many these have."""
 
     def __init__(self, source: Shape, target: Shape, settings: MatchSettings) -> None:
-        self.source, self.target, self.settings = source, target, settings
+        self.source, self.target, self.settings, self.landmarks = source, target, settings, 0
         first, self.source_distances = _first_samples(source, settings.samples)
         second, self.target_distances = _first_samples(target, settings.samples)
         bins, reach = settings.histogram_bins, max(self.source_distances.max(), self.target_distances.max())

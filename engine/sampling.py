@@ -11,6 +11,8 @@ from scipy.sparse.csgraph import dijkstra
 from .errors import MatchError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
     from scipy.sparse import csr_array
 
@@ -28,8 +30,8 @@ class FarthestPointSampler:
     ----------
     graph : (n, n) csr_array of float
         Connected graph with edge lengths, in both directions.
-    start : int
-        First sample.
+    start : int or sequence of int
+        The first sample, or several to begin with.
 
     Attributes
     ----------
@@ -50,12 +52,13 @@ class FarthestPointSampler:
     .. [1] D. Hochbaum, D. Shmoys, "A best possible heuristic for the k-center problem", Math. Oper. Res. 10, 1985.
     """
 
-    def __init__(self, graph: csr_array, start: int) -> None:
+    def __init__(self, graph: csr_array, start: int | Sequence[int] | NDArray[np.int64]) -> None:
         self._graph = graph
         self.samples: list[int] = []
         self.distances: NDArray[np.float64] = np.full(graph.shape[0], np.inf)
         self.nearest: NDArray[np.int64] = np.full(graph.shape[0], -1)
-        self._add(start)
+        for vertex in np.atleast_1d(start):
+            self._add(int(vertex))
 
     def _add(self, vertex: int) -> None:
         # The limit is inclusive of ties, so a vertex exactly as far as the farthest one is never missed.

@@ -58,12 +58,20 @@ class MatchSettings:
             ),
         },
     )
+    dense: bool = field(
+        default=True,
+        metadata={
+            "label": "Dense Map",
+            "description": "Find the corresponding point for every vertex of both meshes. "
+            "The matched points then lie where this map takes them",
+        },
+    )
     settle: bool = field(
         default=True,
         metadata={
             "label": "Settle",
             "description": "At last let the points leave the samples of the target and come to rest between its "
-            "vertices (hierarchical solver)",
+            "vertices (hierarchical solver without a dense map)",
         },
     )
     metric: str = _choice(
@@ -131,7 +139,7 @@ class MatchSettings:
         "Among how many of the target samples around its present match each point looks for a better one",
     )
     samples: int = _setting(
-        512,
+        256,
         "Samples",
         16,
         4096,

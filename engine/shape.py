@@ -13,8 +13,11 @@ from scipy.sparse.csgraph import dijkstra
 from .eigenpairs import Spectrum, eigenpairs_steps
 from .geodesics import GeodesicSolver
 from .integral_invariants import smoothed_mean_curvature
+from .laplacian import LaplaceBeltrami, laplace_beltrami
 from .orientation import tangent_gradient
-from .progress import Progress, Steps
+from .prepared_surface import PreparedSurface, prepared_steps
+from .progress import Progress, Steps, run
+from .reflection import reflected_surface
 from .sampling import FarthestPointSampler
 
 if TYPE_CHECKING:
@@ -35,23 +38,56 @@ class Shape:
     Parameters
     ----------
     mesh : TriangleMesh
-        The surface; where it has several parts, the largest (by area) is used.
+        The surface.  It is cleaned, and its largest part (by area) is used, through a coarse mesh that stands for it
+        where it is dense.
+    name : str
+        What notes call it.
+    proxy_vertices : int
+        About how many vertices that coarse mesh has.
+    excluded : (n,) array of bool, optional
+        Vertices to leave out.
 
     Attributes
     ----------
+    surface : PreparedSurface
+        What is used of the mesh, and the way back.
     mesh : TriangleMesh
-        The part that is used.
+        The surface that is used.
     original : TriangleMesh
-        The whole surface.
-    vertices, triangles : array of int
-        For each vertex and triangle of the part, its index in the whole surface.
+        The mesh as it was given.
+    vertices : array of int
+        For each vertex of the surface that is used, its own or the nearest vertex of the original mesh.
     scale : float
-        Square root of the area of the part: the unit of all distances below.
+        Square root of the area of the surface that is used: the unit of all distances below.
     """
 
-    def __init__(self, mesh: TriangleMesh) -> None:
-        self.original = mesh
-        self.mesh, self.vertices, self.triangles = mesh.submesh(mesh.component_labels == 0)
+    surface: PreparedSurface
+
+    def __init__(
+        self,
+        mesh: TriangleMesh,
+        name: str = "mesh",
+        proxy_vertices: int = 5000,
+        excluded: NDArray[np.bool_] | None = None,
+    ) -> None:
+        self._start(run(prepared_steps(mesh, name, proxy_vertices, excluded)))
+
+    @classmethod
+    def steps(
+        cls,
+        mesh: TriangleMesh,
+        name: str = "mesh",
+        proxy_vertices: int = 5000,
+        excluded: NDArray[np.bool_] | None = None,
+    ) -> Steps[Shape]:
+        """Make a shape in steps: for dense meshes that takes seconds."""
+        shape = object.__new__(cls)
+        shape._start((yield from prepared_steps(mesh, name, proxy_vertices, excluded)))
+        return shape
+
+    def _start(self, surface: PreparedSurface) -> None:
+        self.surface = surface
+        self.original, self.mesh, self.vertices = surface.original, surface.mesh, surface.vertices
         self.scale = float(np.sqrt(self.mesh.area))
         self.solver = GeodesicSolver(self.mesh)
         self._rows = np.empty((0, self.mesh.vertex_count), np.float32)
@@ -94,7 +130,12 @@ class Shape:
         count = min(count, self.mesh.vertex_count)
         # Not more either: a match must not depend on what was asked of the shape before.
         if self._spectrum is None or len(self._spectrum) != count:
-            self._spectrum = yield from eigenpairs_steps(self.mesh, count)
+            self._spectrum = yield from eigenpairs_steps(self.laplace, count)
+
+    @cached_property
+    def laplace(self) -> LaplaceBeltrami:
+        """The Laplace-Beltrami operator of the part that is used."""
+        return laplace_beltrami(self.mesh)
 
     def limited(self, count: int) -> Shape:
         """Return the shape with only the first `count` of its samples, sharing all that was computed.
@@ -110,6 +151,27 @@ class Shape:
             view._rows = self._rows[:count]  # noqa: SLF001
         view._spectrum = self._spectrum  # noqa: SLF001
         return view
+
+    def starting_with(self, vertices: NDArray[np.int64]) -> Shape:
+        """Return the shape with samples of its own, the first of which are given vertices (k,) of `mesh`.
+
+        All else that was computed is shared.
+        """
+        shape = copy.copy(self)
+        shape._forget_samples()  # noqa: SLF001
+        shape._rows = self._rows[:0]  # noqa: SLF001
+        shape._views = {}  # noqa: SLF001
+        shape._sampler = FarthestPointSampler(self.solver.graph, vertices)  # noqa: SLF001
+        return shape
+
+    def reflected(self) -> Shape:
+        """Return the shape as it is seen in a mirror, with all that does not depend on the side it is seen from."""
+        shape = copy.copy(self)
+        shape.surface = reflected_surface(self.surface)
+        shape.original, shape.mesh = shape.surface.original, shape.surface.mesh
+        shape._views = {}  # noqa: SLF001
+        shape.__dict__.pop("directions", None)
+        return shape
 
     def _forget_samples(self) -> None:
         for name in ("samples", "cell_areas", "sample_distances", "directions", "curvatures"):

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .flat import flat_candidates, flat_steps
-from .gmds import gmds_steps, on_whole_surface
+from .gmds import gmds_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
+from .landmarks import placed_at_vertices
 from .progress import Steps, within
 from .result import Level
 from .settling import Stress, settle_steps
 from .surface import SurfacePoints
+from .surface_distances import symmetric_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
 
     from .pair import Pair
 
-__all__ = ["Answer", "solve_steps"]
+__all__ = ["Answer", "at_samples", "moved", "solve_steps"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +99,7 @@ def solve_steps(pair: Pair, lap: Callable[[str], None]) -> Steps[list[Answer]]:
         return answers
     answers = yield from within(_finished_steps(hypotheses), 0.6, 0.8)
     lap("hierarchy")
-    if pair.settings.settle:
+    if pair.settings.settle and not pair.settings.dense:
         answers = yield from within(_settled_steps(answers), 0.8, 1.0)
         lap("settling")
     return answers
@@ -146,19 +148,30 @@ def _gmds_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
             (number + 1) / len(hypotheses),
         )
         levels = tuple(Level(level.points, level.sweeps, level.stress, level.target_points) for level in found.levels)
-        placed = _on_part(pair, found.target_points)
+        placed = target.surface.on_mesh(found.target_points)
+        distances = found.distances
+        if pair.landmarks:
+            placed, distances = yield from _at_landmarks_steps(pair, placed)
         answers.append(
             Answer(
                 hypothesis.coarse,
                 coarse_candidates(pair),
                 hypothesis.orientation,
                 placed,
-                found.distances,
+                distances,
                 _linear(pair, placed),
                 levels,
             )
         )
     return answers
+
+
+def _at_landmarks_steps(pair: Pair, points: SurfacePoints) -> Steps[tuple[SurfacePoints, NDArray[np.float64]]]:
+    """Put the images of landmarks where they belong, and measure the distances between all images anew."""
+    rows, target = np.arange(pair.landmarks), pair.target
+    placed = placed_at_vertices(points, target.mesh, rows, target.samples[: pair.landmarks])
+    yield from pair.target_metric.prepare_steps(placed)
+    return placed, symmetric_roots(pair.target_metric.squares_between(placed))
 
 
 def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) -> Answer:
@@ -180,11 +193,26 @@ def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) 
                 len(level.assignment),
                 level.iterations,
                 pair.problem(len(level.assignment)).cost(level.assignment),
-                on_whole_surface(target, places(level.assignment)),
+                target.surface.on_original(places(level.assignment)),
             )
             for level in levels
         ),
     )
+
+
+def at_samples(answer: Answer, levels: list[Refined]) -> Answer:
+    """Replace the matching of an answer by another one of the same samples, found in these levels."""
+    return _at_samples(assess(answer.coarse, levels), levels, answer.candidates)
+
+
+def moved(answer: Answer, points: SurfacePoints) -> Answer:
+    """Move the images of an answer to other points of the target, for which its metric has been prepared."""
+    pair = answer.coarse.pair
+    distances = symmetric_roots(pair.target_metric.squares_between(points))
+    there = replace(answer, points=points, distances=distances, linear=_linear(pair, points))
+    on_original = pair.target.surface.on_original(points)
+    last = replace(answer.levels[-1], distortion=there.distortion, target_points=on_original)
+    return replace(there, levels=(*answer.levels[:-1], last))
 
 
 def _settled_steps(answers: list[Answer]) -> Steps[list[Answer]]:
@@ -199,25 +227,29 @@ def _settled_steps(answers: list[Answer]) -> Steps[list[Answer]]:
 def _one_settled_steps(answer: Answer) -> Steps[Answer]:
     pair = answer.coarse.pair
     wanted = pair.source_distances[: len(answer.points), : len(answer.points)]
-    settled = yield from settle_steps(pair.target_metric, answer.points, Stress(wanted))
+    stress = Stress(wanted, _holding(pair, len(answer.points)) if pair.landmarks else None)
+    settled = yield from settle_steps(pair.target_metric, answer.points, stress)
     moved = replace(answer, points=settled.points, distances=settled.distances, linear=_linear(pair, settled.points))
     if moved.distortion >= answer.distortion:
         return answer
     last = replace(
         answer.levels[-1],
         distortion=moved.distortion,
-        target_points=on_whole_surface(pair.target, settled.points),
+        target_points=pair.target.surface.on_original(settled.points),
     )
     return replace(moved, levels=(*answer.levels[:-1], last))
+
+
+def _holding(pair: Pair, count: int) -> NDArray[np.float64]:
+    """Linear term (count, n) at the vertices of the target that lets no image of a landmark leave its place."""
+    farthest = max(float(pair.source_distances.max()), float(pair.target_distances.max()))
+    linear = np.zeros((count, pair.target.mesh.vertex_count))
+    linear[: pair.landmarks] = 1 + 2 * count * farthest**2
+    linear[np.arange(pair.landmarks), pair.target.samples[: pair.landmarks]] = 0
+    return linear
 
 
 def _linear(pair: Pair, points: SurfacePoints) -> float:
     """Sum the descriptor differences, at the sample of the target nearest to each point."""
     nearest = pair.target.sample_rows[:, points.nearest_vertices].argmin(axis=0)
     return float(pair.linear[np.arange(len(points)), nearest].sum())
-
-
-def _on_part(pair: Pair, points: SurfacePoints) -> SurfacePoints:
-    """Place points on the whole target on the part of it that is used."""
-    triangles = np.searchsorted(pair.target.triangles, points.triangles)
-    return SurfacePoints.from_barycentric(pair.target.mesh, triangles, points.barycentric)

@@ -134,10 +134,8 @@ class SurfaceDistances:
     def to_all_vertices(self, points: SurfacePoints) -> NDArray[np.float64]:
         """Distances from points (k,), prepared, to all vertices of the whole surface, in units of the mesh: (k, n)."""
         shape = self._shape
-        whole = np.full((len(points), shape.original.vertex_count), np.inf)
         squares = self.squares_to_vertices(points, np.arange(self.mesh.vertex_count))
-        whole[:, shape.vertices] = np.sqrt(np.maximum(squares, 0)) * shape.scale
-        return whole
+        return shape.surface.spread(np.sqrt(np.maximum(squares, 0)) * shape.scale, np.inf)
 
     def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
         """Squared lengths of the sides 01, 02, 12 of triangles (q,): (q, 3)."""

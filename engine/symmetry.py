@@ -157,7 +157,7 @@ def find_symmetry_steps(surface: TriangleMesh | Shape, settings: MatchSettings |
     if shape.mesh.vertex_count < settings.points:
         raise MatchError(
             f"No symmetry can be found with {settings.points} points: the mesh has only {shape.mesh.vertex_count} "
-            f"vertices{' in its largest part' if shape.mesh is not shape.original else ''}. "
+            f"vertices{' in its largest part' if not shape.surface.is_whole else ''}. "
             "Use fewer points or subdivide the mesh."
         )
     yield from within(shape.sample_steps(max(settings.samples, 2 * settings.points)), 0.0, 0.5)
@@ -273,8 +273,7 @@ def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
     points = shape.samples[:count]
     change = rows[:, points] - image_rows[:, images]
     sides = _sides(shape, rows - image_rows)
-    whole_sides = np.full(shape.original.vertex_count, np.nan)
-    whole_sides[shape.vertices] = sides * shape.scale
+    whole_sides = shape.surface.spread(sides * shape.scale, np.nan)
     return SymmetryResult(
         source_points=SurfacePoints.at_vertices(shape.original, shape.vertices[points]),
         target_points=SurfacePoints.at_vertices(shape.original, shape.vertices[images]),
@@ -344,9 +343,5 @@ def _zero_crossings(mesh: TriangleMesh, values: NDArray[np.float64], *, reflecti
 
 
 def _notes(shape: Shape) -> tuple[str, ...]:
-    """Say what of the surface was left out."""
-    count = int(shape.original.component_labels[shape.original.triangles].max()) + 1
-    if count == 1:
-        return ()
-    share = shape.mesh.area / shape.original.area
-    return (f"The mesh has {count} separate parts: only the largest ({share:.0%} of the area) was looked at.",)
+    """Say what was done about faults of the surface, and what of it was left out."""
+    return shape.surface.cleaned.notes

@@ -12,14 +12,19 @@ from typing import TYPE_CHECKING, Any, cast
 if TYPE_CHECKING:
     import bpy
 
-    from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene
+    from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 
-__all__ = ["layout_of", "mesh_of", "progress_of", "state_of", "view_layer_of", "window_manager_of"]
+__all__ = ["layout_of", "mesh_of", "progress_of", "state_of", "summary_of", "view_layer_of", "window_manager_of"]
 
 
 def state_of(context: bpy.types.Context) -> HIERMATCH_PG_scene:
     """Return the panel's state on the scene."""
     return cast("Any", context.scene).hiermatch
+
+
+def summary_of(scene: bpy.types.Scene) -> HIERMATCH_PG_summary:
+    """Return what a scene's panel remembers of the last match."""
+    return cast("Any", scene).hiermatch.summary
 
 
 def progress_of(context: bpy.types.Context) -> HIERMATCH_PG_progress:

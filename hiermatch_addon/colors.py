@@ -14,7 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["bandwidths", "distortion_colors", "match_colors", "opaque", "spread", "to_linear"]
+__all__ = ["bandwidths", "confidence_colors", "distortion_colors", "match_colors", "opaque", "spread", "to_linear"]
 
 NEUTRAL = 0.5
 """Grey (sRGB) of the places that no matched point can reach."""
@@ -22,13 +22,21 @@ NEUTRAL = 0.5
 _SATURATION = 0.75
 """Share of the grey in a colour that `match_colors` takes away."""
 
+_STRAY = 0.002
+"""Part of a surface that may lie beyond either end of the scale of `match_colors`."""
+
 _BLOCK = 4_000_000
 """How many weights `spread` holds at a time."""
 
-_ANCHORS = np.array(
+_DISTORTION = np.array(
     [[0.05, 0.09, 0.36], [0.13, 0.35, 0.60], [0.16, 0.60, 0.56], [0.60, 0.80, 0.27], [0.99, 0.91, 0.15]]
 )
 """Dark blue, blue, teal, lime, yellow (sRGB): the way of `distortion_colors` from dark to light."""
+
+_CONFIDENCE = np.array(
+    [[0.30, 0.02, 0.14], [0.62, 0.10, 0.16], [0.90, 0.40, 0.22], [0.98, 0.75, 0.50], [0.99, 0.97, 0.90]]
+)
+"""Dark red, red, orange, sand, nearly white (sRGB): the way of `confidence_colors` from dark to light."""
 
 _LMS_OF_RGB = np.array(
     [
@@ -47,31 +55,50 @@ _LAB_OF_LMS = np.array(
 """The two linear maps of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020)."""
 
 
-def match_colors(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+def match_colors(positions: NDArray[np.float64], weights: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """Give points colours that tell where on the shape they are.
 
     Parameters
     ----------
     positions : (k, 3) array of float
         Where the points are.
+    weights : (k,) array of float, optional
+        How much each counts when the axes and the ends of the shape are found, such as the area around it; if given,
+        a small share of the weight (`_STRAY`) may lie beyond the ends, so that what flies about changes nothing.
 
     Returns
     -------
     (k, 3) array of float
         sRGB colours: the place along the three principal axes as red, green and blue, brightened and made vivid.
     """
-    centred = positions - positions.mean(axis=0)
-    _, _, axes = np.linalg.svd(centred, full_matrices=False)
-    along = centred @ axes.T  # (k, up to 3)
+    stray = 0.0 if weights is None else _STRAY
+    shares = np.full(len(positions), 1 / len(positions)) if weights is None else weights / weights.sum()
+    inner = np.clip(positions, *_ends(positions, shares, stray))  # else what flies about would turn the axes
+    centre = shares @ inner
+    _, axes = np.linalg.eigh((inner - centre).T @ (shares[:, None] * (inner - centre)))
+    axes = axes[:, ::-1]  # the longest first
     # The sign of a principal axis is arbitrary; let the longer tail of the shape point forward.
-    along *= np.where((along**3).sum(axis=0) < 0, -1.0, 1.0)
-    low = along.min(axis=0)
-    extent = along.max(axis=0) - low
+    axes *= np.where(shares @ ((inner - centre) @ axes) ** 3 < 0, -1.0, 1.0)
+    along = (positions - centre) @ axes  # (k, 3)
+    low, high = _ends(along, shares, stray)
+    extent = high - low
     flat = extent <= 1e-6 * float(extent.max())
-    colors = np.full((len(positions), 3), NEUTRAL)
-    colors[:, : along.shape[1]] = np.where(flat, NEUTRAL, (along - low) / np.where(flat, 1.0, extent))
+    colors = np.where(flat, NEUTRAL, np.clip((along - low) / np.where(flat, 1.0, extent), 0.0, 1.0))
     colors -= _SATURATION * colors.min(axis=1, keepdims=True)
     return 0.95 * colors / np.maximum(colors.max(axis=1, keepdims=True), 1e-3)
+
+
+def _ends(
+    values: NDArray[np.float64], shares: NDArray[np.float64], stray: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return between which values of each column (k, c) all but so much of the weight lies at either end, (c,) each."""
+    order = np.argsort(values, axis=0, kind="stable")
+    sums = np.cumsum(shares[order], axis=0)
+    ends = []
+    for end in (stray, 1 - stray):
+        places = [min(int(np.searchsorted(column, end)), len(values) - 1) for column in sums.T]
+        ends.append(np.array([values[order[place, c], c] for c, place in enumerate(places)]))
+    return ends[0], ends[1]
 
 
 def bandwidths(source_pairs: NDArray[np.float64], target_pairs: NDArray[np.float64]) -> tuple[float, float]:
@@ -145,9 +172,19 @@ def distortion_colors(values: NDArray[np.float64], maximum: float) -> NDArray[np
     (n, 3) array of float
         sRGB colours.
     """
-    known = np.isfinite(values)
-    share = np.clip(np.where(known, values, 0.0) / (maximum or 1.0), 0.0, 1.0)
-    anchors = np.cbrt(_linear(_ANCHORS) @ _LMS_OF_RGB.T) @ _LAB_OF_LMS.T  # Oklab: lightness first
+    return _shades(values / (maximum or 1.0), _DISTORTION)
+
+
+def confidence_colors(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Show values (n,) from 0 to 1 as sRGB colours from dark red (zero) to nearly white, lightness growing evenly."""
+    return _shades(values, _CONFIDENCE)
+
+
+def _shades(share: NDArray[np.float64], anchors_srgb: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Go the way through some colours (a, 3), ever lighter, by a share (n,) of it; nan becomes `NEUTRAL` grey."""
+    known = np.isfinite(share)
+    share = np.clip(np.where(known, share, 0.0), 0.0, 1.0)
+    anchors = np.cbrt(_linear(anchors_srgb) @ _LMS_OF_RGB.T) @ _LAB_OF_LMS.T  # Oklab: lightness first
     lightness = anchors[0, 0] + share * (anchors[-1, 0] - anchors[0, 0])
     lab = np.stack([np.interp(lightness, anchors[:, 0], channel) for channel in anchors.T], axis=1)
     linear = np.linalg.solve(_LMS_OF_RGB, np.linalg.solve(_LAB_OF_LMS, lab.T) ** 3).T

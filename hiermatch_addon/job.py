@@ -9,16 +9,21 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..engine import MatchSettings, Progress, SettingsError, match_steps
+from ..engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
+from ..engine.progress import within
 from . import writing
 from .access import mesh_of, view_layer_of
+from .contents import contents
 from .errors import ObjectError
-from .mesh_io import read_mesh, topology
+from .mesh_io import position_digest, read_mesh, topology
 from .pair import check_pair
 from .stored_match import Answer, CornerPoints, StoredMatch, Written
+from .vertex_maps import StoredMaps, add_maps
 
 if TYPE_CHECKING:
-    from ..engine import MatchResult
+    from ..engine import DenseMatch, MatchResult
+    from ..engine.progress import Steps
+    from .vertex_maps import MapPair
 
 __all__ = ["JobOptions", "MatchJob", "Outcome"]
 
@@ -37,8 +42,8 @@ class JobOptions:
         Whether to write the mirrored answer, if there is one.
     prefix : str
         What all names written start with.
-    vertex_groups, match_colors, distortion : bool
-        Which kinds to write.
+    vertex_groups, match_colors, distortion, confidence : bool
+        Which kinds to write; confidence only if the match has dense maps.
     """
 
     settings: MatchSettings
@@ -48,6 +53,7 @@ class JobOptions:
     vertex_groups: bool = True
     match_colors: bool = True
     distortion: bool = True
+    confidence: bool = True
 
     def __post_init__(self) -> None:
         if not self.prefix.strip():
@@ -64,6 +70,8 @@ class Outcome:
         Names of the objects.
     result : MatchResult
         What was written.
+    maps : MapPair or None
+        Its dense maps, if it has any, in the precision in which they are kept.
     stored : StoredMatch
         What is kept of it in the file: both answers.
     seconds : float
@@ -73,8 +81,24 @@ class Outcome:
     source: str
     target: str
     result: MatchResult
+    maps: MapPair | None
     stored: StoredMatch
     seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What the engine found: the result, and the dense maps of its mirrored answer if they are wanted."""
+
+    result: MatchResult
+    mirrored: DenseMatch | None
+
+    def maps(self, *, mirrored: bool) -> StoredMaps | None:
+        """Return what is kept of the dense maps of one answer; None if they were not made."""
+        found = self.mirrored if mirrored else self.result
+        if found is None or found.source_to_target is None or found.target_to_source is None:
+            return None
+        return StoredMaps.of(found.source_to_target, found.target_to_source)
 
 
 class MatchJob:
@@ -114,11 +138,14 @@ class MatchJob:
             _check_points(obj, options.settings.points)
         self._uids = (source.session_uid, target.session_uid)
         self._names = (source.name, target.name)
-        meshes = [read_mesh(obj, depsgraph, use_modifiers=options.use_modifiers) for obj in (source, target)]
-        self._sizes = tuple(mesh.vertex_count for mesh in meshes)
+        self._meshes = (
+            read_mesh(source, depsgraph, use_modifiers=options.use_modifiers),
+            read_mesh(target, depsgraph, use_modifiers=options.use_modifiers),
+        )
         self._topologies = (topology(mesh_of(source)), topology(mesh_of(target)))
-        self._steps = match_steps(meshes[0], meshes[1], options.settings)
-        self._result: MatchResult | None = None
+        self._positions = (position_digest(mesh_of(source)), position_digest(mesh_of(target)))
+        self._steps = self._find_steps()
+        self._found: _Found | None = None
         self.progress = Progress(0.0, "Starting")
 
     def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
@@ -131,14 +158,25 @@ class MatchJob:
         """
         self._objects(view_layer)
         end = time.perf_counter() + seconds
-        while self._result is None:
+        while self._found is None:
             try:
                 self.progress = next(self._steps)
             except StopIteration as stop:
-                self._result = stop.value
+                self._found = stop.value
             if time.perf_counter() >= end:
                 break
-        return self._result is not None
+        return self._found is not None
+
+    def _find_steps(self) -> Steps[_Found]:
+        """Match, and make the dense maps of the mirrored answer if that is to be written."""
+        options, (source, target) = self._options, self._meshes
+        both = options.use_mirrored and options.settings.dense
+        result = yield from within(match_steps(source, target, options.settings), 0.0, 0.7 if both else 1.0)
+        mirrored = result.mirrored
+        if not both or mirrored is None:
+            return _Found(result, None)
+        steps = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
+        return _Found(result, (yield from within(steps, 0.7, 1.0)))
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
         """Write the result on both objects.
@@ -148,40 +186,49 @@ class MatchJob:
         HierMatchError
             If the objects have changed, or the user's own vertex groups or attributes are in the way.
         """
-        if self._result is None:
+        if self._found is None:
             raise RuntimeError("The match has not come to its end yet.")
         objects = self._objects(view_layer)
         for obj, read in zip(objects, self._topologies, strict=True):
             if topology(mesh_of(obj)) != read:
                 raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
-        names = (objects[0].name, objects[1].name)
-        options = self._options
-        stored = self._stored(self._result, names)
-        result = self._result.mirrored if stored.mirrored and self._result.mirrored is not None else self._result
-        prepared = writing.contents(
-            result,
-            options.prefix,
-            vertex_groups=options.vertex_groups,
-            match_colors=options.match_colors,
-            distortion=options.distortion,
-        )
+        names, prefix = (objects[0].name, objects[1].name), self._options.prefix
+        stored = self._stored(self._found, names)
+        direct = self._found.result
+        result = direct.mirrored if stored.mirrored and direct.mirrored is not None else direct
+        stored_maps = self._found.maps(mirrored=stored.mirrored)
+        maps = None if stored_maps is None else stored_maps.between(*self._meshes)
+        prepared = contents(result, prefix, self._options, maps)
+        if stored_maps is not None:
+            add_maps(prepared, prefix, stored_maps, self._found.maps(mirrored=not stored.mirrored))
         for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
-            writing.check_names(obj, content)
+            writing.check_names(obj, content, prefix)
             content.keep.update(kept)
-        writing.write(list(zip(objects, prepared, strict=True)), options.prefix)
-        return Outcome(*names, result, stored, time.perf_counter() - self._start)
+        writing.write(list(zip(objects, prepared, strict=True)), prefix)
+        return Outcome(*names, result, maps, stored, time.perf_counter() - self._start)
 
-    def _stored(self, result: MatchResult, names: tuple[str, str]) -> StoredMatch:
+    def _stored(self, found: _Found, names: tuple[str, str]) -> StoredMatch:
         """Collect what is kept of the match in the file."""
-        options, notes = self._options, list(result.notes)
+        options, result, notes = self._options, found.result, list(found.result.notes)
         if options.use_mirrored and result.mirrored is None:
             notes.append("There is no mirrored match, so the only one was written.")
+        answers = [Answer.of(result, result.quality)]
+        if result.mirrored is not None:
+            answers.append(Answer.of(result.mirrored, found.mirrored.quality if found.mirrored else None))
         return StoredMatch(
             names=names,
             topologies=self._topologies,
-            written=Written(options.use_modifiers, options.vertex_groups, options.match_colors, options.distortion),
+            positions=self._positions,
+            written=Written(
+                options.use_modifiers,
+                options.vertex_groups,
+                options.match_colors,
+                options.distortion,
+                options.confidence,
+                dense=result.source_to_target is not None,
+            ),
             source_points=CornerPoints.of(result.source_points),
-            answers=tuple(Answer.of(answer) for answer in (result, result.mirrored) if answer is not None),
+            answers=tuple(answers),
             mirrored=options.use_mirrored and result.mirrored is not None,
             notes=tuple(notes),
         )
@@ -201,8 +248,8 @@ class MatchJob:
             check_pair(view_layer, *objects)
         except ObjectError as error:
             raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
-        for obj, size in zip(objects, self._sizes, strict=True):
-            if len(mesh_of(obj).vertices) != size:
+        for obj, mesh in zip(objects, self._meshes, strict=True):
+            if len(mesh_of(obj).vertices) != mesh.vertex_count:
                 raise ObjectError(
                     f'"{obj.name}" got another number of vertices while it was being matched. Nothing was written.'
                 )

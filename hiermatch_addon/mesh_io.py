@@ -22,7 +22,22 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["add_colors", "add_values", "add_vertex_group", "read_mesh", "topology"]
+__all__ = [
+    "add_colors",
+    "add_values",
+    "add_vertex_group",
+    "position_digest",
+    "read_mesh",
+    "read_values",
+    "topology",
+]
+
+_MEMBERS: dict[str, tuple[str, type[np.generic], int]] = {
+    "INT": ("value", np.int32, 1),
+    "FLOAT": ("value", np.float32, 1),
+    "FLOAT_VECTOR": ("vector", np.float32, 3),
+}
+"""For each type of attribute with numbers: what its values are called, their number type, and how many there are."""
 
 _TOPOLOGY_MODIFIERS = frozenset(
     {
@@ -70,7 +85,7 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
     -------
     TriangleMesh
         World-space vertices, numbered as in the object's own mesh, and the triangles that Blender draws, with their
-        normals outward even where the object's scale mirrors it.
+        normals outward even where the object's scale mirrors it.  Triangles that use a vertex twice are left out.
 
     Raises
     ------
@@ -84,12 +99,19 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
         corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
         mesh.loop_triangles.foreach_get("vertices", corners)
     matrix = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=np.float64)
-    vertices = positions.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    with np.errstate(invalid="ignore"):  # positions that are no numbers are told below
+        vertices = positions.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     triangles = corners.reshape(-1, 3).astype(np.int64)
     if np.linalg.det(matrix[:3, :3]) < 0:
         triangles = triangles[:, ::-1]
+    proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    if len(triangles) and not proper.any():
+        raise ObjectError(
+            f'"{obj.name}" has no surface: each of its faces uses a vertex twice. Repair the mesh '
+            "(in Edit Mode: Mesh > Clean Up > Degenerate Dissolve)."
+        )
     try:
-        return TriangleMesh(vertices, triangles)
+        return TriangleMesh(vertices, triangles[proper])
     except MeshError as error:
         raise ObjectError(f'"{obj.name}": {error}') from error
 
@@ -104,6 +126,13 @@ def topology(mesh: bpy.types.Mesh) -> str:
     for numbers in (starts, corners):
         digest.update(numbers.astype("<i4").tobytes())
     return digest.hexdigest()
+
+
+def position_digest(mesh: bpy.types.Mesh) -> str:
+    """Return a text that is the same as long as no vertex of a mesh moves within its object."""
+    positions = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", positions)
+    return hashlib.blake2b(positions.astype("<f4").tobytes(), digest_size=16).hexdigest()
 
 
 @contextmanager
@@ -151,7 +180,21 @@ def add_colors(mesh: bpy.types.Mesh, name: str, colors: NDArray[np.float32]) -> 
     attribute.data.foreach_set("color", np.ascontiguousarray(colors, np.float32).ravel())
 
 
-def add_values(mesh: bpy.types.Mesh, name: str, values: NDArray[np.float64]) -> None:
-    """Add an attribute with a number (n,) per vertex."""
-    attribute: Any = mesh.attributes.new(name, "FLOAT", "POINT")
-    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+def add_values(mesh: bpy.types.Mesh, name: str, values: NDArray[Any]) -> None:
+    """Add an attribute with a whole number (n,), a number (n,) or a vector (n, 3) per vertex."""
+    kind = "FLOAT_VECTOR" if values.ndim == 2 else "INT" if np.issubdtype(values.dtype, np.integer) else "FLOAT"
+    member, number, _ = _MEMBERS[kind]
+    attributes: Any = mesh.attributes
+    attribute = attributes.new(name, kind, "POINT")
+    attribute.data.foreach_set(member, np.ascontiguousarray(values, number).ravel())
+
+
+def read_values(mesh: bpy.types.Mesh, name: str, kind: str) -> NDArray[Any] | None:
+    """Read an attribute of the type INT, FLOAT (n,) or FLOAT_VECTOR (n, 3) per vertex; None if there is none such."""
+    attribute: Any = mesh.attributes.get(name)
+    if attribute is None or (attribute.data_type, attribute.domain) != (kind, "POINT"):
+        return None
+    member, number, width = _MEMBERS[kind]
+    values = np.empty(len(mesh.vertices) * width, number)
+    attribute.data.foreach_get(member, values)
+    return values if width == 1 else values.reshape(-1, width)

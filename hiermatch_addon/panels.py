@@ -12,7 +12,7 @@ from .access import layout_of, progress_of, state_of, window_manager_of
 from .pair import selected_meshes
 from .properties import copy_options
 from .running import is_running
-from .setting_groups import shown_groups
+from .setting_groups import APART, shown_groups
 from .setups import current_setup
 
 if TYPE_CHECKING:
@@ -51,7 +51,9 @@ class HIERMATCH_PT_match(bpy.types.Panel):
         _draw_pair(layout, context, state)
         _draw_setup(layout, state)
         layout.prop(state, "points")
-        layout.prop(state, "use_modifiers")
+        switches = layout.column()
+        for name in (*(name for name in APART if name != "points"), "use_modifiers"):
+            switches.prop(state, name)
         _draw_output(layout, state)
         _draw_advanced(layout, state)
         _draw_run(layout, context, state)
@@ -98,6 +100,9 @@ def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
         column.prop(state, "write_vertex_groups")
         column.prop(state, "write_colors")
         column.prop(state, "write_distortion")
+        confidence = column.column()
+        confidence.active = state.dense
+        confidence.prop(state, "write_confidence")
         body.prop(state, "use_mirrored")
 
 
@@ -111,6 +116,8 @@ def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> Non
             if title:
                 column.label(text=title)
             for name in names:
+                # Beside a number, a usual sidebar has no room for names as long as these; inside its field it has.
+                column.use_property_split = state.bl_rna.properties[name].type not in ("INT", "FLOAT")
                 column.prop(state, name)
 
 
@@ -130,10 +137,15 @@ def _draw_run(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIE
 def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summary: HIERMATCH_PG_summary) -> None:
     """Draw how the last match went."""
     box = layout.box().column()
+    if summary.stale:
+        _draw_text(box, context, summary.stale, "ERROR")
     box.label(text=f"{summary.points} points matched", icon="CHECKMARK")
+    if summary.verdict:
+        _draw_text(box, context, summary.verdict, "INFO")
     rows = (
         ("Source", summary.source),
         ("Target", summary.target),
+        ("Confidence", f"{summary.confidence:.0%}" if summary.verdict else ""),
         ("Distortion", f"{summary.distortion:.4g}"),
         ("Worst Point", f"{summary.worst_distortion:.3f}"),
         ("Coarse Match", "optimum proven" if summary.proven else f"within {summary.gap:.0%} of the optimum"),

@@ -96,8 +96,15 @@ _OPTIONS: dict[str, Any] = {
     ),
     "write_distortion": _props.BoolProperty(
         name="Distortion",
-        description="Write how much distances differ around each place, as a color attribute from dark blue (none) to "
-        "yellow (the most), and as an attribute of numbers in units of the square root of the surface area",
+        description="Write how much lengths differ around each place, as a color attribute from dark blue (none) to "
+        "yellow (twice or half as long), and as an attribute of numbers. Without a dense map: how much the distances "
+        "to the matched points differ, yellow being the most",
+        default=True,
+    ),
+    "write_confidence": _props.BoolProperty(
+        name="Confidence",
+        description="Write how far the dense map can be trusted at each place, as a color attribute from dark red (not "
+        "at all) to white (fully)",
         default=True,
     ),
 }
@@ -119,12 +126,14 @@ class MatchOptions:
 
     if TYPE_CHECKING:
         points: int
+        dense: bool
         use_modifiers: bool
         use_mirrored: bool
         prefix: str
         write_vertex_groups: bool
         write_colors: bool
         write_distortion: bool
+        write_confidence: bool
 
 
 def match_settings(options: MatchOptions) -> MatchSettings:
@@ -169,8 +178,7 @@ class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
     distortion: _props.FloatProperty(name="Distortion", description="Distortion of the whole match")
     worst_distortion: _props.FloatProperty(
         name="Worst Point",
-        description="Largest distortion of a point, in units of the square root of the surface area; "
-        "yellow in the distortion colors",
+        description="Largest distortion of a matched point, in units of the square root of the surface area",
     )
     proven: _props.BoolProperty(name="Optimum Proven", description="Whether no coarse match has less distortion")
     gap: _props.FloatProperty(
@@ -186,6 +194,18 @@ class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
     )
     mirrored: _props.BoolProperty(
         name="Mirrored", description="Whether the second answer is the one that is written on the meshes"
+    )
+    verdict: _props.StringProperty(
+        name="Verdict", description="How far the dense map can be trusted, in a sentence; empty if there is none"
+    )
+    confidence: _props.FloatProperty(
+        name="Confidence", description="How far the dense map can be trusted as a whole", subtype="FACTOR"
+    )
+    stale: _props.StringProperty(
+        name="Out of Date", description="Why the match is out of date; empty as long as it is not known to be"
+    )
+    swapped: _props.BoolProperty(
+        name="Swapped", description="Whether source and target were exchanged since they were matched"
     )
     seconds: _props.FloatProperty(name="Seconds", description="How long the match took; zero if that is not known")
     notes: _props.StringProperty(

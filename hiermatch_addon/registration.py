@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import bpy
 
+from .freshness import start_watching, stop_watching
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
@@ -48,10 +49,12 @@ def register() -> None:
     properties: Any = bpy.props
     for owner, group in _ATTACHMENTS:
         owner.hiermatch = properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group)
+    start_watching()
 
 
 def unregister() -> None:
     """Undo `register`."""
+    stop_watching()
     for owner, _ in reversed(_ATTACHMENTS):
         del owner.hiermatch
     for cls in reversed(CLASSES):

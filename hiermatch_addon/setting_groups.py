@@ -10,7 +10,10 @@ from .properties import SETTING_NAMES, setting_of
 if TYPE_CHECKING:
     from .properties import MatchOptions
 
-__all__ = ["shown_groups"]
+__all__ = ["APART", "shown_groups"]
+
+APART: Final = ("points", "dense")
+"""The settings that stand apart from all others, where they are seen first."""
 
 _GROUPS: Final[dict[str, tuple[str, ...]]] = {
     "Metric and Descriptor": (
@@ -53,7 +56,7 @@ def _matters(name: str, options: MatchOptions) -> bool:
 
 
 def shown_groups(options: MatchOptions) -> list[tuple[str, list[str]]]:
-    """List the settings that matter, but for the number of points, which stands apart.
+    """List the settings that matter, but for those of `APART`.
 
     Parameters
     ----------
@@ -66,7 +69,7 @@ def shown_groups(options: MatchOptions) -> list[tuple[str, list[str]]]:
         Title and names of each group; the title of the first, if it is not named above, is empty.
     """
     grouped = {name for names in _GROUPS.values() for name in names}
-    others = [name for name in SETTING_NAMES if name not in grouped and name != "points"]
+    others = [name for name in SETTING_NAMES if name not in (*grouped, *APART)]
     groups: list[tuple[str, Any]] = [("", others), *_GROUPS.items()]
     shown = [(title, [name for name in names if _matters(name, options)]) for title, names in groups]
     return [(title, names) for title, names in shown if names]

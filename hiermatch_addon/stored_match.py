@@ -2,13 +2,13 @@
 """A match as it is kept in the file: both answers, in plain numbers and texts.
 
 Each of the two meshes keeps its own points, the source also what both have in common.  They name each other by a key
-that no renaming, saving or undoing changes.
+that no renaming, saving or undoing changes.  The dense maps are kept beside it, in attributes: see `vertex_maps`.
 """
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..engine import MatchResult
-    from .writing import Points
+    from ..engine import MatchQuality, MatchResult
+    from .contents import Points
 
-__all__ = ["Answer", "CornerPoints", "StoredMatch", "Written"]
+__all__ = ["Answer", "CornerPoints", "Quality", "StoredMatch", "Written"]
 
 _ANSWERS = ("direct", "mirrored")
 
@@ -34,14 +34,18 @@ class Written:
     ----------
     use_modifiers : bool
         Whether the meshes were read as shape keys and modifiers show them.
-    vertex_groups, match_colors, distortion : bool
+    vertex_groups, match_colors, distortion, confidence : bool
         Which kinds are written.
+    dense : bool
+        Whether the meshes keep dense maps.
     """
 
     use_modifiers: bool
     vertex_groups: bool
     match_colors: bool
     distortion: bool
+    confidence: bool = False  # what a file of an older version says nothing of was not written
+    dense: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +89,51 @@ class CornerPoints:
         )
 
 
+@dataclass(frozen=True)
+class Quality:
+    """How far the dense maps of an answer can be trusted; see the engine's `MatchQuality`.
+
+    Attributes
+    ----------
+    orientation, distortion, coverage, disagreement, confidence : float
+        As the engine measured them.
+    margin : float or None
+        By how much the best competing answer is worse; None if there was none.
+    sentence : str
+        The same for a person to read.
+    """
+
+    orientation: float
+    distortion: float
+    coverage: float
+    disagreement: float
+    margin: float | None
+    confidence: float
+    sentence: str
+
+    @classmethod
+    def of(cls, quality: MatchQuality) -> Quality:
+        """Take what is stored of the engine's verdict."""
+        return cls(
+            float(quality.orientation),
+            float(quality.distortion),
+            float(quality.coverage),
+            float(quality.disagreement),
+            None if quality.margin is None else float(quality.margin),
+            float(quality.confidence),
+            quality.sentence,
+        )
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return what is known."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> Quality:
+        """Undo `to_plain`."""
+        return cls(**{"margin": None, **plain})
+
+
 @dataclass(frozen=True, eq=False)
 class Answer:
     """One of the two answers.
@@ -103,6 +152,8 @@ class Answer:
         Whether no coarse match has less distortion.
     gap : float
         By how much, at most, the coarse match can be worse than the best one.
+    quality : Quality or None
+        How far its dense maps can be trusted; None if they were not made.
     """
 
     target_points: CornerPoints
@@ -111,10 +162,11 @@ class Answer:
     orientation: float
     proven: bool
     gap: float
+    quality: Quality | None = None
 
     @classmethod
-    def of(cls, result: MatchResult) -> Answer:
-        """Take what is stored of a result."""
+    def of(cls, result: MatchResult, quality: MatchQuality | None = None) -> Answer:
+        """Take what is stored of a result, and of the quality of its maps."""
         coarse = result.coarse
         return cls(
             CornerPoints.of(result.target_points),
@@ -123,6 +175,7 @@ class Answer:
             result.orientation,
             coarse.proven,
             1 - coarse.lower_bound / coarse.cost if coarse.cost > 0 else 0.0,
+            None if quality is None else Quality.of(quality),
         )
 
     def to_plain(self) -> dict[str, Any]:
@@ -133,14 +186,20 @@ class Answer:
             "orientation": float(self.orientation),
             "proven": bool(self.proven),
             "gap": float(self.gap),
-        }
+        } | ({} if self.quality is None else {"quality": self.quality.to_plain()})
 
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any], points: Mapping[str, Any]) -> Answer:
         """Undo `to_plain`."""
         numbers = dict(plain)
         distortion = np.array(numbers.pop("point_distortion"), np.float64)
-        return cls(CornerPoints.from_plain(points), distortion, **numbers)
+        quality = numbers.pop("quality", None)
+        return cls(
+            CornerPoints.from_plain(points),
+            distortion,
+            **numbers,
+            quality=None if quality is None else Quality.from_plain(quality),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,8 +210,9 @@ class StoredMatch:
     ----------
     names : tuple of str
         Names of source and target when they were matched.
-    topologies : tuple of str
-        What `mesh_io.topology` said of them.
+    topologies, positions : tuple of str
+        What `mesh_io.topology` and `mesh_io.position_digest` said of them; positions may be empty if they are not
+        known, in a file of an older version.
     written : Written
         How it is written.
     source_points : CornerPoints
@@ -163,20 +223,30 @@ class StoredMatch:
         Whether the mirrored one is written.
     notes : tuple of str
         What the user should know.
+    swapped : bool
+        Whether the user exchanged source and target since: what is called the source here is shown as the target.
     """
 
     names: tuple[str, str]
     topologies: tuple[str, str]
+    positions: tuple[str, str]
     written: Written
     source_points: CornerPoints
     answers: tuple[Answer, ...]
     mirrored: bool
     notes: tuple[str, ...]
+    swapped: bool = False
 
     @property
     def answer(self) -> Answer:
         """The answer that is written."""
         return self.answers[self.mirrored]
+
+    def with_quality(self, quality: MatchQuality) -> StoredMatch:
+        """Return the same with another verdict on the maps of the answer that is written."""
+        answers = list(self.answers)
+        answers[self.mirrored] = replace(self.answer, quality=Quality.of(quality))
+        return replace(self, answers=tuple(answers))
 
     @property
     def key(self) -> str:
@@ -190,11 +260,12 @@ class StoredMatch:
     def to_plain(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """Return what the source and what the target keep."""
         names = {"source": self.names[0], "target": self.names[1]}
-        common = {"key": self.key, "names": names, "mirrored": self.mirrored}
+        common = {"key": self.key, "names": names, "mirrored": self.mirrored, "swapped": self.swapped}
         answers = dict(zip(_ANSWERS, self.answers, strict=False))
         source = {
             "role": "source",
             "topology": self.topologies[0],
+            "positions": self.positions[0],
             "points": self.source_points.to_plain(),
             "answers": {which: answer.to_plain() for which, answer in answers.items()},
             "written": dict(vars(self.written)),
@@ -203,6 +274,7 @@ class StoredMatch:
         target = {
             "role": "target",
             "topology": self.topologies[1],
+            "positions": self.positions[1],
             "points": {which: answer.target_points.to_plain() for which, answer in answers.items()},
         }
         return common | source, common | target
@@ -213,6 +285,7 @@ class StoredMatch:
         return cls(
             names=(source["names"]["source"], source["names"]["target"]),
             topologies=(source["topology"], target["topology"]),
+            positions=(source.get("positions", ""), target.get("positions", "")),
             written=Written(**source["written"]),
             source_points=CornerPoints.from_plain(source["points"]),
             answers=tuple(
@@ -222,4 +295,5 @@ class StoredMatch:
             ),
             mirrored=source["mirrored"],
             notes=tuple(source["notes"].splitlines()),
+            swapped=source.get("swapped", False),
         )

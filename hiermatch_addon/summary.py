@@ -24,7 +24,7 @@ def remember(
     stored : StoredMatch
         The match.
     names : tuple of str
-        What source and target are called now.
+        What the objects that were matched as source and target are called now.
     prefix : str
         What all names written start with.
     seconds : float
@@ -32,12 +32,15 @@ def remember(
     """
     answer = stored.answer
     summary.points = len(answer.point_distortion)
-    summary.source, summary.target = names
+    summary.source, summary.target = names[::-1] if stored.swapped else names
+    summary.swapped = stored.swapped
     summary.distortion = answer.distortion
     summary.worst_distortion = float(answer.point_distortion.max())
     summary.proven, summary.gap = answer.proven, answer.gap
     summary.orientation = answer.orientation
     summary.has_mirrored, summary.mirrored = len(stored.answers) > 1, stored.mirrored
+    summary.verdict = answer.quality.sentence if answer.quality else ""
+    summary.confidence = answer.quality.confidence if answer.quality else 0.0
     summary.seconds = seconds
     summary.notes = "\n".join(stored.notes)
     summary.prefix, summary.key = prefix, stored.key

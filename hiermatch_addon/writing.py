@@ -12,12 +12,10 @@ else is ever removed.
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from . import colors, mesh_io
+from . import mesh_io
 from .access import mesh_of
 from .errors import ObjectError
 
@@ -25,16 +23,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     import bpy
-    from numpy.typing import NDArray
+
+    from .contents import Content
 
 __all__ = [
     "MARKER",
-    "Content",
-    "Correspondence",
-    "Points",
+    "change_kept",
     "check_names",
     "clear",
-    "contents",
     "is_marked",
     "kept",
     "prefixes",
@@ -49,159 +45,32 @@ _TEMPORARY = " ~"
 
 _GROUP, _ATTRIBUTE = "group", "attribute"
 
-UNREACHED = -1.0
-"""Value of the distortion where no matched point has a path to."""
 
-
-class Points(Protocol):
-    """What of points on a surface is needed to write them; see `SurfacePoints`."""
-
-    @property
-    def corners(self) -> NDArray[np.int64]:
-        """Vertices of the triangle of each point, (k, 3)."""
-
-    @property
-    def barycentric(self) -> NDArray[np.float64]:
-        """Barycentric coordinates there, (k, 3)."""
-
-    @property
-    def nearest_vertices(self) -> NDArray[np.int64]:
-        """The corner with the largest coordinate, (k,)."""
-
-    @property
-    def positions(self) -> NDArray[np.float64]:
-        """Where the points are, (k, 3)."""
-
-    def __len__(self) -> int: ...
-
-
-class Correspondence(Protocol):
-    """What of a match is needed to write it; see `MatchResult`."""
-
-    @property
-    def source_points(self) -> Points:
-        """Matched points of the source, k."""
-
-    @property
-    def target_points(self) -> Points:
-        """The corresponding points of the target, k."""
-
-    @property
-    def point_distortion(self) -> NDArray[np.float64]:
-        """Distortion of each point, (k,)."""
-
-    @property
-    def source_distances(self) -> NDArray[np.float64]:
-        """Geodesic distance from each point to every vertex of the source, (k, n)."""
-
-    @property
-    def target_distances(self) -> NDArray[np.float64]:
-        """The same on the target, (k, m)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Content:
-    """What shall stand on one object.
-
-    Attributes
-    ----------
-    groups : dict
-        For each vertex group its vertices (c,) and their weights (c,).
-    colors : dict
-        For each color attribute its linear colours, (n, 4).
-    values : dict
-        For each attribute of numbers its values, (n,).
-    keep : dict
-        Plain data to keep with it: numbers, texts, lists of numbers, and such dicts; see `kept`.
-    """
-
-    groups: dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]] = field(default_factory=dict)
-    colors: dict[str, NDArray[np.float32]] = field(default_factory=dict)
-    values: dict[str, NDArray[np.float64]] = field(default_factory=dict)
-    keep: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def shown(self) -> str | None:
-        """The color attribute to make the active one: the first."""
-        return next(iter(self.colors), None)
-
-    @property
-    def kinds(self) -> dict[str, str]:
-        """What each name is: a group or an attribute."""
-        attributes = dict.fromkeys([*self.colors, *self.values], _ATTRIBUTE)
-        return dict.fromkeys(self.groups, _GROUP) | attributes
-
-
-def contents(
-    result: Correspondence, prefix: str, *, vertex_groups: bool, match_colors: bool, distortion: bool
-) -> tuple[Content, Content]:
-    """Prepare what a match writes on the source and on the target.
-
-    Parameters
-    ----------
-    result : MatchResult or other Correspondence
-        The match; its distances are used for colors and distortion only.
-    prefix : str
-        What every name starts with.
-    vertex_groups, match_colors, distortion : bool
-        Which kinds to write.
-
-    Returns
-    -------
-    source, target : Content
-        What to write on each.
-    """
-    prepared = (Content(), Content())
-    sides = ((result.source_points, result.source_distances), (result.target_points, result.target_distances))
-    if vertex_groups:
-        for content, (points, _) in zip(prepared, sides, strict=True):
-            content.groups.update(_groups(points, prefix))
-    if not (match_colors or distortion):
-        return prepared
-    pairs = [distances[:, points.nearest_vertices] for points, distances in sides]
-    reaches = colors.bandwidths(*pairs)
-    # Red, green, blue and the distortion of each point, (k, 4): spread in one go.
-    shown = np.column_stack([colors.match_colors(result.source_points.positions), result.point_distortion])
-    worst = float(result.point_distortion.max())
-    for content, (_, distances), reach in zip(prepared, sides, reaches, strict=True):
-        mixed = colors.spread(shown, distances, reach)
-        if match_colors:
-            content.colors[f"{prefix} Match"] = colors.opaque(colors.to_linear(mixed[:, :3]))
-        if distortion:
-            values = mixed[:, 3]
-            shades = colors.to_linear(colors.distortion_colors(values, worst))
-            content.colors[f"{prefix} Distortion"] = colors.opaque(shades)
-            content.values[f"{prefix} Distortion Value"] = np.where(np.isnan(values), UNREACHED, values)
-    return prepared
-
-
-def _groups(points: Points, prefix: str) -> dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]]:
-    """Name a vertex group for each point: its corners with a positive barycentric coordinate, weighted by it."""
-    groups = {}
-    for number, (corners, weights) in enumerate(zip(points.corners, points.barycentric, strict=True), start=1):
-        positive = weights > 0
-        groups[f"{prefix}.{number:03d}"] = (corners[positive], weights[positive])
-    return groups
-
-
-def check_names(obj: bpy.types.Object, content: Content) -> None:
-    """Make sure that nothing of the user's own stands where the match writes.
+def check_names(obj: bpy.types.Object, content: Content, prefix: str) -> None:
+    """Make sure that nothing else stands where a match writes with a prefix.
 
     Raises
     ------
     ObjectError
-        If a vertex group or attribute of that name exists that a match did not write.
+        If a vertex group or attribute of such a name exists that no match with this prefix wrote.
     """
     mesh = mesh_of(obj)
-    ours = {name for record in _records(mesh).values() for name in record["written"]}
+    writers = {name: writer for writer, record in _records(mesh).items() for name in record["written"]}
     present = dict.fromkeys(obj.vertex_groups.keys(), "a vertex group")
     present |= dict.fromkeys(mesh.attributes.keys(), "an attribute")
-    for name in (*content.kinds, *(name + _TEMPORARY for name in content.kinds)):
-        if name in present and name not in ours:
+    wanted = _kinds(content)
+    for name in (*wanted, *(name + _TEMPORARY for name in wanted)):
+        if name not in present or writers.get(name) == prefix:
+            continue
+        if name in writers:
             raise ObjectError(
-                f'"{obj.name}" already has {present[name]} called "{name}" that HierMatch did not write. '
-                "Rename it, or choose another Prefix."
+                f'"{obj.name}" already has {present[name]} called "{name}", which belongs to the match with the Prefix '
+                f'"{writers[name]}". Choose another Prefix, or clear that match.'
             )
+        raise ObjectError(
+            f'"{obj.name}" already has {present[name]} called "{name}" that HierMatch did not write. '
+            "Rename it, or choose another Prefix."
+        )
 
 
 def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str, *, show: bool = True) -> None:
@@ -214,7 +83,7 @@ def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str, *, show
     with ExitStack() as undo:
         for (obj, content), active in zip(plan, before, strict=True):
             undo.callback(active.restore, obj)
-            undo.callback(_remove, obj, {name + _TEMPORARY: kind for name, kind in content.kinds.items()})
+            undo.callback(_remove, obj, {name + _TEMPORARY: kind for name, kind in _kinds(content).items()})
             _add(obj, content)
         undo.pop_all()
     for (obj, content), active in zip(plan, before, strict=True):
@@ -259,6 +128,19 @@ def clear(obj: bpy.types.Object, prefix: str) -> bool:
     return True
 
 
+def change_kept(obj: bpy.types.Object, prefix: str, **changes: bool) -> None:
+    """Change some of what is kept on an object with what was written with a prefix."""
+    properties: Any = mesh_of(obj)
+    for name, value in changes.items():
+        properties[MARKER][prefix]["kept"][name] = value
+
+
+def _kinds(content: Content) -> dict[str, str]:
+    """Say of each name that is to be written what it is: a group or an attribute."""
+    attributes = dict.fromkeys([*content.colors, *content.values], _ATTRIBUTE)
+    return dict.fromkeys(content.groups, _GROUP) | attributes
+
+
 def _add(obj: bpy.types.Object, content: Content) -> None:
     """Add everything under its temporary name."""
     mesh = mesh_of(obj)
@@ -278,12 +160,13 @@ def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Acti
     if prefix in records:
         before = active.without(records[prefix])
         _remove(obj, records[prefix]["written"])
-    for name, kind in content.kinds.items():
+    written = _kinds(content)
+    for name, kind in written.items():
         owner: Any = obj.vertex_groups if kind == _GROUP else mesh.attributes
         owner[name + _TEMPORARY].name = name
-    if content.kinds:
+    if written:
         records[prefix] = {
-            "written": content.kinds,
+            "written": written,
             "color": before.color,
             "render_color": before.render_color,
             "kept": content.keep,

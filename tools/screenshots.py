@@ -6,12 +6,18 @@
 Any Blender from 4.3 on with NumPy and SciPy will do; the extension is loaded from this source tree.  Writes into
 build/screenshots (or FOLDER), and ends Blender with an error if a step failed:
 
-    panel.png     after a match of the demo pair; docs/images/panel.png is a copy of it, 1200 pixels wide
-    advanced.png  the same with all sections of the panel open
-    flipped.png   the mirrored match
+    before.png      the demo pair, before a match
+    panel.png       after it, with the colors of the match; docs/images/panel.png is a copy of it
+    distortion.png  the colors that show the distortion of the match
+    confidence.png  the colors that show how far it can be trusted
+    flipped.png     the mirrored match
+    stale.png       a mesh was edited since
+    advanced.png    all sections of the panel open
 
 Blender cannot read its own pixels on some screens, virtual ones above all.  There, name a COMMAND that takes a picture
-of the screen and is given the file to write, such as `import -window root -resize 75% -colors 256`.
+of the screen and is given the file to write.  The picture in the documentation was taken with
+`import -window root -crop 1320x760+0+29 +repage -resize 75% +dither -colors 192 -depth 8 -strip`,
+which leaves the viewport.
 """
 
 from __future__ import annotations
@@ -79,6 +85,9 @@ def set_scene() -> None:
         space = view()["space_data"]
         space.show_region_ui = True
         space.shading.color_type = "VERTEX"
+        overlay = space.overlay
+        overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_cursor = False
+        overlay.show_object_origins = overlay.show_outline_selected = False
         bpy.ops.view3d.view_selected()
         eye = space.region_3d
         eye.view_distance *= _ROOM
@@ -101,6 +110,25 @@ def flip() -> None:
     """Write the mirrored match."""
     with bpy.context.temp_override(**view()):
         bpy.ops.hiermatch.flip()
+
+
+def show_colors(name: str) -> Callable[[], None]:
+    """Return a step that shows a color attribute of the match on both meshes."""
+
+    def show() -> None:
+        state = bpy.context.scene.hiermatch
+        for obj in (state.source, state.target):
+            obj.data.attributes.active_color_name = f"{state.prefix} {name}"
+            obj.data.update()
+
+    return show
+
+
+def edit() -> None:
+    """Move a vertex, as editing does."""
+    mesh = bpy.context.scene.hiermatch.source.data
+    mesh.vertices[0].co *= 1.01
+    mesh.update()
 
 
 def open_sections() -> None:
@@ -143,11 +171,19 @@ def main(arguments: list[str]) -> None:
         [
             set_scene,
             choose_tab,
+            picture(folder / "before.png", command),
             match,
             picture(folder / "panel.png", command),
+            show_colors("Distortion"),
+            picture(folder / "distortion.png", command),
+            show_colors("Confidence"),
+            picture(folder / "confidence.png", command),
+            show_colors("Match"),
             flip,
             picture(folder / "flipped.png", command),
             flip,
+            edit,
+            picture(folder / "stale.png", command),
             open_sections,
             picture(folder / "advanced.png", command),
         ]

@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import bpy
 
 from ...engine import HierMatchError
 from ..access import state_of, view_layer_of, window_manager_of
 from ..errors import ObjectError
-from ..flipping import Half, find_half, find_keyed, flip
+from ..flipping import flip
+from ..freshness import refresh
+from ..halves import Half, find_half, find_keyed
 from ..pair import named_object
 from ..running import can_start
 from ..summary import remember
@@ -66,6 +68,7 @@ class HIERMATCH_OT_flip(bpy.types.Operator):
         summary = state_of(context).summary
         same = (summary.prefix, summary.key) == (half.prefix, stored.key)
         remember(summary, stored, names, half.prefix, summary.seconds if same else 0.0)
+        refresh(cast("bpy.types.Scene", context.scene))
         which = "mirrored" if stored.mirrored else "direct"
         self.report({"INFO"}, f'Wrote the {which} match of "{names[0]}" and "{names[1]}"')
         return {"FINISHED"}
@@ -76,7 +79,8 @@ class HIERMATCH_OT_flip(bpy.types.Operator):
         if self.object:
             return find_half(named_object(self.object), self.prefix)
         if summary.key and self.prefix in ("", summary.prefix):
-            return find_keyed(view_layer, summary.key, summary.prefix, "source", summary.source)
+            role = "target" if summary.swapped else "source"
+            return find_keyed(view_layer, summary.key, summary.prefix, role, summary.source)
         if view_layer.objects.active is None:
             raise ObjectError("There is no match to flip. Match two meshes first, or name one that carries a match.")
         return find_half(view_layer.objects.active, self.prefix)

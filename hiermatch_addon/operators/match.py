@@ -4,17 +4,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import bpy
 
 from ...engine import HierMatchError
 from ..access import layout_of, progress_of, state_of, view_layer_of, window_manager_of
+from ..freshness import refresh
 from ..job import JobOptions, MatchJob
 from ..pair import find_pair
 from ..properties import OUTPUT_NAMES, MatchOptions, match_settings
+from ..redraw import redraw_panels
 from ..running import can_start
-from ..setting_groups import shown_groups
+from ..setting_groups import APART, shown_groups
 from ..summary import remember
 
 if TYPE_CHECKING:
@@ -128,14 +130,14 @@ class HIERMATCH_OT_match(MatchOptions, bpy.types.Operator):
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
             workspace.status_text_set(None)
-        _redraw(context)
+        redraw_panels(window_manager_of(context))
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Show the options in the Adjust Last Operation panel."""
         layout = layout_of(self)
         layout.use_property_split = True
         settings = [name for _, names in shown_groups(self) for name in names]
-        for name in ("source", "target", "points", *settings, *OUTPUT_NAMES):
+        for name in ("source", "target", *APART, *settings, *OUTPUT_NAMES):
             layout.prop(self, name)
 
     def _start(self, context: bpy.types.Context) -> MatchJob:
@@ -148,6 +150,7 @@ class HIERMATCH_OT_match(MatchOptions, bpy.types.Operator):
             vertex_groups=self.write_vertex_groups,
             match_colors=self.write_colors,
             distortion=self.write_distortion,
+            confidence=self.write_confidence,
         )
         state = state_of(context)
         source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
@@ -162,11 +165,13 @@ class HIERMATCH_OT_match(MatchOptions, bpy.types.Operator):
         remember(
             state_of(context).summary, outcome.stored, (outcome.source, outcome.target), self.prefix, outcome.seconds
         )
+        refresh(cast("bpy.types.Scene", context.scene))
         for note in outcome.stored.notes:
             self.report({"WARNING"}, note)
         points, seconds = len(outcome.result.source_points), outcome.seconds
         pair = f'"{outcome.source}" and "{outcome.target}"'
-        self.report({"INFO"}, f"Matched {points} points of {pair} in {seconds:.1f} s")
+        said = [f"Matched {points} points of {pair} in {seconds:.1f} s", state_of(context).summary.verdict]
+        self.report({"INFO"}, ". ".join(filter(None, said)))
         return {"FINISHED"}
 
     def _show_progress(self, context: bpy.types.Context) -> None:
@@ -176,12 +181,4 @@ class HIERMATCH_OT_match(MatchOptions, bpy.types.Operator):
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
             workspace.status_text_set(f"Matching: {now.label}, {now.fraction:.0%}    Esc: cancel")
-        _redraw(context)
-
-
-def _redraw(context: bpy.types.Context) -> None:
-    """Ask for the sidebars to be drawn again."""
-    for window in window_manager_of(context).windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+        redraw_panels(window_manager_of(context))

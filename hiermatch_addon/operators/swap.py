@@ -7,10 +7,15 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..access import state_of
+from ..access import mesh_of, state_of
+from ..halves import find_common
+from ..writing import change_kept
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    from ..halves import Half
+    from ..properties import HIERMATCH_PG_summary
 
 __all__ = ["HIERMATCH_OT_swap"]
 
@@ -20,7 +25,9 @@ class HIERMATCH_OT_swap(bpy.types.Operator):
 
     bl_idname = "hiermatch.swap"
     bl_label = "Swap Source and Target"
-    bl_description = "Exchange Source and Target"
+    bl_description = (
+        "Exchange Source and Target; the match that the two carry, with its dense map, then serves the other way round"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -33,7 +40,21 @@ class HIERMATCH_OT_swap(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
-        """Exchange them."""
+        """Exchange them, and with them what the panel calls source and target of a match that they carry."""
         state = state_of(context)
         state.source, state.target = state.target, state.source
+        if state.source is not None and state.target is not None:
+            for half, partner in find_common(state.source, state.target):
+                _set_swapped(state.summary, half, partner)
         return {"FINISHED"}
+
+
+def _set_swapped(summary: HIERMATCH_PG_summary, half: Half, partner: Half) -> None:
+    """Call the first of the two sides of a match the source from now on."""
+    swapped = half.role == "target"
+    for side in (half, partner):
+        if mesh_of(side.obj).library is None:
+            change_kept(side.obj, side.prefix, swapped=swapped)
+    if (summary.prefix, summary.key) == (half.prefix, half.key):
+        summary.swapped = swapped
+        summary.source, summary.target = half.obj.name, partner.obj.name

@@ -29,6 +29,7 @@ def load_extension():
 
 
 if HAS_BLENDER:
+    importlib.import_module("bpy")  # bmesh and its like can be imported only afterwards
     load_extension()
 
 
@@ -49,3 +50,30 @@ def empty_file(extension):
     bpy.ops.wm.read_homefile(use_empty=True)
     assert not bpy.data.objects
     return extension
+
+
+@pytest.fixture(scope="session")
+def dense_file(extension, tmp_path_factory):
+    """A file with a symmetric pair that was matched densely: matching it again for each test would take long."""
+    import bpy
+
+    from tests.addon.scenes import DENSE, add_symmetric_pair
+
+    assert extension
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.context.scene.hiermatch.source, bpy.context.scene.hiermatch.target = add_symmetric_pair()
+    bpy.ops.hiermatch.match(source="Source", target="Target", **DENSE)
+    path = str(tmp_path_factory.mktemp("dense") / "dense.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    return path
+
+
+@pytest.fixture
+def dense_pair(dense_file, empty_file):
+    """Source and target of such a match."""
+    import bpy
+
+    assert empty_file
+    bpy.ops.wm.open_mainfile(filepath=dense_file)
+    return bpy.data.objects["Source"], bpy.data.objects["Target"]

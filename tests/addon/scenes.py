@@ -7,11 +7,23 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
-from hiermatch.engine import CoarseMatch, MatchResult, SurfacePoints
+from hiermatch.engine import CoarseMatch, MatchResult, SurfaceMap, SurfacePoints
 from hiermatch.hiermatch_addon import job
 
-QUICK = {"points": 12, "coarse_points": 4, "coarse_candidates": 8, "samples": 48, "hypotheses": 2}
+QUICK = {"points": 12, "coarse_points": 4, "coarse_candidates": 8, "samples": 48, "hypotheses": 2, "dense": False}
 """Settings with which a small mesh is matched in some tenths of a second."""
+
+DENSE = QUICK | {"points": 24, "dense": True}
+"""Settings with which it gets a dense map, in a second or two."""
+
+MAP_ATTRIBUTES = [
+    "HM Map Vertex 1",
+    "HM Map Vertex 2",
+    "HM Map Vertex 3",
+    "HM Map Weights",
+    "HM Map Confidence",
+]
+"""Names of the attributes that keep a dense map."""
 
 
 def add_blob(name, segments=20, rings=14):
@@ -90,6 +102,18 @@ def made_up_result(source_mesh, target_mesh, points=5, seed=1):
         notes=(),
         seconds={},
     )
+
+
+def made_up_maps(source_mesh, target_mesh, seed=2):
+    """Make random maps of every vertex between two meshes."""
+    random = np.random.default_rng(seed)
+
+    def made_up(domain, image):
+        triangles = random.integers(0, image.triangle_count, domain.vertex_count)
+        barycentric = random.dirichlet([1, 1, 1], domain.vertex_count)
+        return SurfaceMap.from_barycentric(image, triangles, barycentric, random.uniform(size=domain.vertex_count))
+
+    return made_up(source_mesh, target_mesh), made_up(target_mesh, source_mesh)
 
 
 def without_mirrored(monkeypatch):

@@ -52,6 +52,20 @@ class TestMatchColors:
     def test_few_points(self, random, count):
         assert np.isfinite(colors.match_colors(random.normal(size=(count, 3)))).all()
 
+    def test_what_flies_about_changes_nothing_if_it_weighs_nothing(self, random):
+        positions, weights = random.normal(size=(500, 3)) * [5, 2, 1], random.uniform(0.5, 1, 500)
+        expected = colors.match_colors(positions, weights)
+        stray = np.concatenate([positions, [[0, 1e4, 0], [-1e5, 0, 0]]])
+        rgb = colors.match_colors(stray, np.concatenate([weights, [0, 1e-4]]))
+        assert np.quantile(np.abs(rgb[:500] - expected), 0.99) < 0.02
+        assert rgb.min() >= 0
+        assert rgb.max() <= 1
+
+    def test_equal_weights_are_almost_none(self, random):
+        positions = random.uniform(size=(5000, 3)) * [5, 2, 1]
+        weighted = colors.match_colors(positions, np.full(5000, 3.0))
+        assert np.quantile(np.abs(weighted - colors.match_colors(positions)), 0.99) < 0.02
+
 
 class TestBandwidths:
     def test_half_the_spacing_on_a_line(self):
@@ -138,6 +152,19 @@ class TestDistortionColors:
     def test_no_distortion_at_all_is_dark_blue(self):
         rgb = colors.distortion_colors(np.zeros(3), 0.0)
         assert rgb == pytest.approx(colors.distortion_colors(np.array([0.0] * 3), 1.0))
+
+
+class TestConfidenceColors:
+    def test_from_dark_red_to_white(self):
+        dark, light = colors.confidence_colors(np.array([0.0, 1.0]))
+        assert dark.argmax() == 0
+        assert dark.max() < 0.5
+        assert light.min() > 0.85
+
+    def test_lightness_grows_evenly(self):
+        steps = np.diff(lightness(colors.confidence_colors(np.linspace(0, 1, 101))))
+        assert steps.min() > 0
+        assert steps.max() < 2 * steps.min()
 
 
 class TestLinear:

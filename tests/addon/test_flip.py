@@ -7,6 +7,7 @@ import bpy
 import pytest
 
 from tests.addon.scenes import (
+    DENSE,
     QUICK,
     add_blob,
     add_symmetric_pair,
@@ -77,6 +78,8 @@ class TestAnswers:
             {"write_colors": False, "write_distortion": False},
             {"write_vertex_groups": False, "prefix": "Second"},
             {"use_modifiers": True},
+            DENSE,
+            DENSE | {"write_distortion": False, "write_confidence": False, "use_modifiers": True},
         ],
         ids=str,
     )
@@ -85,6 +88,7 @@ class TestAnswers:
         match(use_mirrored=True, **options)
         expected, told = written(), summary_values()
         assert summary().mirrored
+        assert bool(summary().verdict) == options.get("dense", False)
         match(**options)
         assert written() != expected
         no_matching(monkeypatch)

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 from hiermatch.hiermatch_addon import mesh_io
 from hiermatch.hiermatch_addon.errors import ObjectError
-from hiermatch.hiermatch_addon.mesh_io import add_colors, add_values, add_vertex_group, read_mesh
+from hiermatch.hiermatch_addon.mesh_io import (
+    add_colors,
+    add_values,
+    add_vertex_group,
+    position_digest,
+    read_mesh,
+    read_values,
+)
 from mathutils import Matrix
 
 from tests.addon.scenes import add_blob, values_of, weights_of
@@ -130,6 +137,86 @@ def test_faults_of_the_mesh_name_the_object():
     bpy.context.collection.objects.link(obj)
     with pytest.raises(ObjectError, match=r'^"Wire": .*zero area'):
         read(obj)
+
+
+def make(vertices, faces):
+    data = bpy.data.meshes.new("Made")
+    data.from_pydata(vertices, [], faces)
+    obj = bpy.data.objects.new("Made", data)
+    bpy.context.collection.objects.link(obj)
+    return obj
+
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+
+
+def test_triangles_that_use_a_vertex_twice_are_left_out():
+    mesh = read(make(CORNERS, [(0, 1, 2), (0, 2, 2), (1, 1, 1), (0, 2, 3), (0, 1, 1, 3)]))
+    assert (mesh.triangles != np.roll(mesh.triangles, 1, axis=1)).all()
+    assert {(0, 1, 2), (0, 2, 3)} <= {tuple(corners) for corners in mesh.triangles.tolist()}
+    assert mesh.vertex_count == 4
+
+
+def test_a_mesh_of_such_triangles_only_is_told():
+    with pytest.raises(ObjectError, match=r'^"Made" has no surface: each of its faces uses a vertex twice'):
+        read(make(CORNERS, [(0, 2, 2), (1, 1, 1)]))
+
+
+def test_the_winding_of_a_mirrored_object_is_that_of_its_image():
+    obj = make(CORNERS, [(0, 1, 2, 3)])
+    upward = read(obj).triangle_normals
+    obj.scale.x = -2
+    assert read(obj).triangle_normals == pytest.approx(upward)
+    assert read(obj).area == pytest.approx(2)
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.collection.objects.link(parent)
+    parent.scale.y, obj.parent = -1, parent  # mirrored twice: turned
+    assert read(obj).triangle_normals == pytest.approx(upward)
+
+
+class TestPositionDigest:
+    def test_the_object_and_an_undisturbed_edit_do_not_matter(self):
+        obj = add_blob("Blob")
+        before = position_digest(obj.data)
+        obj.location.x, obj.scale, obj.name, obj.data.name = 3, (2, 2, -2), "Other", "Mesh"
+        obj.data.flip_normals()
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        assert position_digest(obj.data) == before
+        assert position_digest(obj.data.copy()) == before
+
+    def test_one_vertex_matters(self):
+        data = add_blob("Blob").data
+        before = position_digest(data)
+        data.vertices[5].co.z += 1e-4
+        assert position_digest(data) != before
+
+
+@pytest.mark.parametrize(
+    ("kind", "values"),
+    [
+        ("INT", np.arange(254)),
+        ("INT", np.arange(254, dtype=np.int32) + 2**30),
+        ("FLOAT", np.linspace(0, 1, 254)),
+        ("FLOAT_VECTOR", np.linspace(0, 1, 762).reshape(254, 3)),
+    ],
+)
+def test_values_come_back(kind, values):
+    data = add_blob("Blob", 18, 15).data
+    assert len(data.vertices) == 254
+    add_values(data, "Values", values)
+    assert data.attributes["Values"].data_type == kind
+    back = read_values(data, "Values", kind)
+    assert back.shape == values.shape
+    assert back == pytest.approx(values, rel=1e-7)
+    assert read_values(data, "Nothing", kind) is None
+    assert read_values(data, "Values", "FLOAT" if kind == "INT" else "INT") is None
+
+
+def test_values_elsewhere_than_at_vertices_are_not_read():
+    data = add_blob("Blob").data
+    data.attributes.new("Values", "INT", "FACE")
+    assert read_values(data, "Values", "INT") is None
 
 
 def test_arrays_arrive_where_they_belong():

@@ -95,11 +95,11 @@ def test_everything_that_can_be_set_is_there_once(context):
     assert seen >= {"source", "target", *OPTION_NAMES}
 
 
-def test_all_settings_but_the_points_are_tucked_away(context):
+def test_all_settings_but_two_are_tucked_away(context):
     drawn = draw(context)
     advanced = drawn.index(("panel", "hiermatch_advanced", True))
     for name in shown_settings(context):
-        assert (drawn.index(("prop", name)) > advanced) == (name != "points")
+        assert (drawn.index(("prop", name)) > advanced) == (name not in ("points", "dense"))
 
 
 def test_only_settings_that_matter_are_shown(context):
@@ -213,6 +213,24 @@ def test_the_switch_between_two_answers(context, mirrored):
     assert "Mirrored Match none" in texts(drawn)
 
 
+def test_how_far_the_dense_map_can_be_trusted(context):
+    summary = context.scene.hiermatch.summary
+    summary.points = 5
+    assert "Confidence" not in texts(draw(context))
+    summary.verdict, summary.confidence = "The map can be trusted.", 0.874
+    shown = texts(draw(context))
+    assert "The map can be trusted." in shown
+    assert "Confidence 87%" in shown
+
+
+def test_a_match_that_is_out_of_date(context):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.stale = 5, 'The match is out of date: "Cat" was edited since.'
+    assert "The match is out of date" in texts(draw(context))
+    summary.points = 0
+    assert "The match is out of date" not in texts(draw(context))
+
+
 def test_no_time_is_shown_if_none_is_known(context):
     summary = context.scene.hiermatch.summary
     summary.points, summary.seconds = 5, 0.0
@@ -227,3 +245,16 @@ def test_drawing_changes_nothing(context):
     before = snapshot()
     draw(context)
     assert snapshot() == before
+
+
+def test_long_names_of_numbers_stand_inside_their_fields(context, monkeypatch):
+    """A usual sidebar has no room for them beside the fields."""
+    split = {}
+    monkeypatch.setattr(
+        Layout, "prop", lambda self, _owner, name, **_names: split.update({name: self.use_property_split})
+    )
+    monkeypatch.setattr(Layout, "use_property_split", True, raising=False)
+    draw(context)
+    assert not split["coarse_candidates"]
+    assert split["metric"]
+    assert split["settle"]

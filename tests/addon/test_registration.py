@@ -9,6 +9,7 @@ from dataclasses import fields
 import bpy
 import pytest
 from hiermatch.engine import MatchSettings
+from hiermatch.hiermatch_addon import freshness
 from hiermatch.hiermatch_addon.properties import OPTION_NAMES, SETTING_NAMES, match_settings
 from hiermatch.hiermatch_addon.registration import CLASSES
 
@@ -32,6 +33,12 @@ def own_properties(cls):
     return {name: rna[name] for name in annotations if name in rna}
 
 
+def our_handlers():
+    """All functions of the add-on that Blender calls by itself."""
+    lists = [getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers) if name.endswith(("_post", "_pre"))]
+    return [function for found in lists for function in found if "hiermatch" in function.__module__]
+
+
 def test_unregister_leaves_nothing_and_register_comes_back(extension):
     extension.unregister()
     try:
@@ -39,9 +46,12 @@ def test_unregister_leaves_nothing_and_register_comes_back(extension):
         assert not hasattr(bpy.types.WindowManager, "hiermatch")
         assert not [name for name in dir(bpy.types) if name.startswith("HIERMATCH_")]
         assert not dir(bpy.ops.hiermatch)
+        assert not our_handlers()
+        assert not bpy.app.timers.is_registered(freshness._look)  # noqa: SLF001
     finally:
         extension.register()
     assert bpy.context.scene.hiermatch.points == MatchSettings().points
+    assert len(our_handlers()) == 4
     assert {cls.bl_idname.split(".")[1] for cls in OPERATORS} == set(dir(bpy.ops.hiermatch))
 
 

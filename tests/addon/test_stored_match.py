@@ -8,11 +8,13 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from hiermatch.engine import SurfacePoints, TriangleMesh
+from hiermatch.engine import MatchQuality, SurfacePoints, TriangleMesh
 from hiermatch.hiermatch_addon.mesh_io import topology
-from hiermatch.hiermatch_addon.stored_match import Answer, CornerPoints, StoredMatch, Written
+from hiermatch.hiermatch_addon.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 
 from tests.addon.scenes import add_blob
+
+QUALITIES = (Quality(0.9, 0.1, 0.8, 0.01, None, 0.7, "Good."), Quality(0.8, 0.2, 0.7, 0.02, 1.5, 0.6, "Fair."))
 
 
 def points(random, count):
@@ -24,10 +26,11 @@ def stored(count=5, answers=2, seed=4, **changes):
     made = StoredMatch(
         names=("Cat", "Lion"),
         topologies=("a", "b"),
-        written=Written(use_modifiers=False, vertex_groups=True, match_colors=False, distortion=True),
+        positions=("c", "d"),
+        written=Written(use_modifiers=False, vertex_groups=True, match_colors=False, distortion=True, dense=True),
         source_points=points(random, count),
         answers=tuple(
-            Answer(points(random, count), random.uniform(size=count), 0.5 + k, 0.8 - k, k == 0, 0.25 * k)
+            Answer(points(random, count), random.uniform(size=count), 0.5 + k, 0.8 - k, k == 0, 0.25 * k, QUALITIES[k])
             for k in range(answers)
         ),
         mirrored=answers == 2,
@@ -59,6 +62,33 @@ def test_comes_back_from_blender_as_it_was(count, answers):
     assert mesh["source"]["points"]["corners"].typecode == "i"
 
 
+def test_maps_that_were_not_made_have_no_quality():
+    before = stored()
+    before = replace(before, answers=(before.answers[0], replace(before.answers[1], quality=None)))
+    assert same(StoredMatch.from_plain(*before.to_plain()), before)
+
+
+def test_a_new_verdict_is_on_the_answer_that_is_written():
+    before = stored(mirrored=False)
+    after = before.with_quality(MatchQuality(0.1, 0.2, 0.3, 0.4, None, 0.5, "New."))
+    assert [answer.quality.sentence for answer in after.answers] == ["New.", "Fair."]
+    assert after.key == before.key
+
+
+def test_a_match_of_an_older_version_can_be_read():
+    source, target = stored().to_plain()
+    for side in (source, target):
+        del side["positions"], side["swapped"]
+    for name in ("confidence", "dense"):
+        del source["written"][name]
+    for answer in source["answers"].values():
+        del answer["quality"]
+    after = StoredMatch.from_plain(source, target)
+    assert not after.written.dense
+    assert not after.swapped
+    assert after.key == stored().key
+
+
 def test_without_notes():
     assert StoredMatch.from_plain(*stored(notes=()).to_plain()).notes == ()
 
@@ -66,7 +96,7 @@ def test_without_notes():
 def test_the_key_is_of_the_answers_and_the_objects():
     key = stored().key
     assert stored().key == key
-    assert stored(mirrored=False).key == key  # else a flipped match would not find itself
+    assert stored(mirrored=False, swapped=True).key == key  # else a flipped or swapped match would not find itself
     others = [
         stored(seed=5),
         stored(answers=1),

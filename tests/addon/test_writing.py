@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon import colors, mesh_io, writing
+from hiermatch.hiermatch_addon.contents import UNREACHED, Content, contents
 from hiermatch.hiermatch_addon.errors import ObjectError
 
 from tests.addon.scenes import add_pair, made_up_result, mesh_snapshot, values_of, weights_of
@@ -26,12 +28,11 @@ def result(pair):
 
 
 def write(pair, result, prefix="HM", *, vertex_groups=True, match_colors=True, distortion=True):
-    prepared = writing.contents(
-        result, prefix, vertex_groups=vertex_groups, match_colors=match_colors, distortion=distortion
-    )
+    kinds = {"vertex_groups": vertex_groups, "match_colors": match_colors, "distortion": distortion}
+    prepared = contents(result, prefix, SimpleNamespace(**kinds, confidence=True))
     plan = list(zip(pair, prepared, strict=True))
     for obj, content in plan:
-        writing.check_names(obj, content)
+        writing.check_names(obj, content, prefix)
     writing.write(plan, prefix)
 
 
@@ -85,13 +86,11 @@ def test_positions_come_back_from_the_groups(pair, result):
 def test_names_stay_in_order_beyond_a_thousand(result):
     points = result.source_points
     many = type(points)(*(np.resize(a, (1001, *a.shape[1:])) for a in vars(points).values()))
-    content = writing.contents(
+    content, _ = contents(
         replace(result, source_points=many, target_points=many, point_distortion=np.zeros(1001)),
         "HM",
-        vertex_groups=True,
-        match_colors=False,
-        distortion=False,
-    )[0]
+        SimpleNamespace(vertex_groups=True, match_colors=False, distortion=False, confidence=False),
+    )
     assert [*content.groups][998:] == ["HM.999", "HM.1000", "HM.1001"]
 
 
@@ -141,7 +140,7 @@ def test_unreachable_vertices_are_grey(pair, result):
     grey = colors.to_linear(np.full(3, colors.NEUTRAL))[0]
     for name in ("HM Match", "HM Distortion"):
         assert values_of(attributes[name]).reshape(-1, 4)[lost, :3] == pytest.approx(grey)
-    assert (values_of(attributes["HM Distortion Value"])[lost] == writing.UNREACHED).all()
+    assert (values_of(attributes["HM Distortion Value"])[lost] == UNREACHED).all()
 
 
 @pytest.mark.parametrize("kind", ["vertex_groups", "match_colors", "distortion"])
@@ -257,6 +256,19 @@ def test_names_of_the_user_are_not_taken(pair, result, name, kind):
     before = [mesh_snapshot(obj) for obj in pair]
     with pytest.raises(ObjectError, match=f'"Target" already has .*"{name}"'):
         write(pair, result)
+    assert [mesh_snapshot(obj) for obj in pair] == before
+
+
+def test_names_of_a_match_with_another_prefix_are_not_taken(pair, result):
+    write(pair, result)
+    before = [mesh_snapshot(obj) for obj in pair]
+    for content in (
+        Content(values={"HM Distortion Value": np.zeros(3)}),
+        Content(groups={"HM.003": (np.empty(0),) * 2}),
+    ):
+        with pytest.raises(ObjectError, match=r'belongs to the match with the Prefix "HM"\. Choose another Prefix'):
+            writing.check_names(pair[1], content, "HM Distortion")
+        writing.check_names(pair[1], content, "HM")
     assert [mesh_snapshot(obj) for obj in pair] == before
 
 

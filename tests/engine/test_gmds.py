@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
-from engine.gmds import gmds_steps, on_whole_surface
+from engine.gmds import gmds_steps
 from engine.surface_distances import EmbeddedDistances, SurfaceDistances
 from tests.shapes import creature, icosphere, plane
 
@@ -148,7 +148,7 @@ def test_only_the_largest_part_is_used_and_results_lie_on_the_whole():
     assert (found.target_points.corners >= len(extra)).all()
     np.testing.assert_array_equal(both.triangles[found.target_points.triangles], found.target_points.corners)
     start = SurfacePoints.at_vertices(target.mesh, target.samples[:8])
-    assert on_whole_surface(target, start).positions == pytest.approx(start.positions)
+    assert target.surface.on_original(start).positions == pytest.approx(start.positions)
     with pytest.raises(MatchError, match="largest part"):
         run(gmds_steps(target, target, 16, start=SurfacePoints.at_vertices(both, np.arange(8))))
 

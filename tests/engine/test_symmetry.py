@@ -152,7 +152,7 @@ def test_only_the_largest_part_is_looked_at_and_the_result_says_so(posed_body, r
     assert np.isnan(other.sides[: len(ball)]).all()
     np.testing.assert_allclose(other.sides[len(ball) :], result.sides)
     np.testing.assert_allclose(other.axis_points.positions, result.axis_points.positions)
-    assert "2 separate parts" in other.notes[0]
+    assert "1 smaller part" in other.notes[0]
 
 
 def test_progress_rises_and_the_work_can_be_dropped(posed_body):

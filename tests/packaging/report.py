@@ -9,6 +9,18 @@ import pytest
 from tests.packaging.environments import ROOT
 from tools.fetch_wheels import read_lock
 
+WRITTEN = {
+    "HM Match",
+    "HM Distortion",
+    "HM Distortion Value",
+    "HM Confidence",
+    "HM Map Vertex 1",
+    "HM Map Vertex 2",
+    "HM Map Vertex 3",
+    "HM Map Weights",
+    "HM Map Confidence",
+}
+
 SCRIPT = ROOT / "tests" / "packaging" / "installed_match.py"
 
 
@@ -23,9 +35,20 @@ def assert_matched(path, scipy_below=None):
         assert list(groups) == [f"HM.{number:03d}" for number in range(1, 25)]
         assert all(1 <= group["vertices"] <= 3 for group in groups.values())
         assert [group["weight"] for group in groups.values()] == pytest.approx([1.0] * 24, abs=1e-3)
-        assert {"HM Match", "HM Distortion"} <= set(attributes)
+        assert set(attributes) >= WRITTEN
     # Of the creature's diagonal; its limbs are 0.2 and more apart, so that no limb is taken for another.
     assert report["mean_error"] < 0.05
+    # The dense map hits the same places everywhere, as it is read from the file, and is known to fit only these meshes.
+    dense = report["dense"]
+    assert dense["verdict"].endswith(".")
+    assert 0.5 < dense["confidence"] <= 1
+    for way in dense["ways"]:
+        assert way["mean_error"] < 0.05
+        low, high = way["confidence"]
+        assert 0 <= low < high <= 1
+    untouched, edited = dense["stale"]
+    assert untouched == ""
+    assert 'The match is out of date: "Target" was edited since' in edited
     assert report["demo"]["status"] == [["FINISHED"]] * 3
     written, left = report["demo"]["groups"]
     assert written - left == 16

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surface prepared for registration: brought to unit area, with what its points are recognised by."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csc_array, diags_array
+from scipy.sparse.linalg import splu
+
+from .closest_points import ClosestPoints
+from .elastic import ElasticSurface
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .laplacian import LaplaceBeltrami
+    from .mesh import TriangleMesh
+
+__all__ = ["DeformableSurface"]
+
+_HEAT_STEPS = 3
+"""Implicit steps in which heat spreads."""
+
+_CURVATURE_TIMES = 1e-3, 3e-3
+"""How long the mean curvature is smoothed by heat, in units of area: over some hundredths of the surface's size."""
+
+
+class DeformableSurface:
+    """A surface of unit area around the origin.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface; every vertex has a triangle.
+    laplace : LaplaceBeltrami
+        Its operator.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The surface, in its own units.
+    vertices : (n, 3) array of float
+        Positions, in units of the square root of the area, the centre of the surface at the origin.
+    triangles : (m, 3) array of int
+        Its triangles.
+    normals : (n, 3) array of float
+        Unit normals at the vertices.
+    mass : (n,) array of float
+        Area of each vertex; they sum to one.
+    """
+
+    def __init__(self, mesh: TriangleMesh, laplace: LaplaceBeltrami) -> None:
+        self.mesh = mesh
+        self._laplace = laplace
+        self._centre = np.average(mesh.vertices, axis=0, weights=mesh.vertex_areas)
+        self._scale = float(np.sqrt(mesh.area))
+        self.vertices = (mesh.vertices - self._centre) / self._scale
+        self.triangles = mesh.triangles
+        self.normals = mesh.vertex_normals
+        self.mass = laplace.mass / laplace.area
+
+    @cached_property
+    def search(self) -> ClosestPoints:
+        """Search for points of the surface, at rest; its triangles serve all searches on it."""
+        return ClosestPoints(self.mesh)
+
+    @cached_property
+    def elastic(self) -> ElasticSurface:
+        """Its resistance to deformation."""
+        return ElasticSurface(self.vertices, self._laplace)
+
+    def in_its_units(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Turn positions (k, 3) around the unit surface into the coordinates of its mesh."""
+        return positions * self._scale + self._centre
+
+    def in_unit_size(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Turn coordinates of its mesh (k, 3) into positions around the unit surface."""
+        return (positions - self._centre) / self._scale
+
+    @cached_property
+    def curvatures(self) -> NDArray[np.float64]:
+        r"""Mean curvature at several scales, smoothed by heat.
+
+        Returns
+        -------
+        (n, 2) array of float
+            :math:`\sqrt{t} \, e^{-t \Delta} H`, positive where the surface bulges outwards; without unit.
+        """
+        # The stiffness applied to the positions is the mean curvature normal, integrated over each vertex's area.
+        integrated = np.einsum("nd,nd->n", self._laplace.stiffness @ self.vertices, self.normals) / 2
+        smoothed = []
+        for time in _CURVATURE_TIMES:
+            system = csc_array(diags_array(self.mass) + time / _HEAT_STEPS * self._laplace.stiffness)
+            factor = splu(
+                system,
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                relax=1,
+                panel_size=1,
+                options={"SymmetricMode": True},
+            )
+            heat = factor.solve(integrated)
+            for _ in range(_HEAT_STEPS - 1):
+                heat = factor.solve(self.mass * heat)
+            smoothed.append(np.sqrt(time) * heat)
+        return np.stack(smoothed, axis=1)

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The map between all points of two surfaces: the most credible start, laid onto the target by registration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .closest_points import FoundPoints
+from .deformable import DeformableSurface
+from .map_hypotheses import MapHypothesis, map_hypotheses_steps
+from .progress import Steps, within
+from .registration import CLOSE, FINE, SOFT, Registration, register_steps, restarted_steps, smooth_start
+from .steering import steered_hypotheses_steps
+from .surface import SurfacePoints
+from .ties import Ties
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from .landmarks import LandmarkPlaces, Landmarks
+    from .map_hypotheses import LandmarkStart
+    from .shape import Shape
+
+__all__ = ["EIGENPAIRS", "Candidate", "RegisteredPair", "registered_pair_steps"]
+
+EIGENPAIRS = 120
+"""Laplace-Beltrami eigenpairs that the dense map is made with."""
+
+_AMBIGUOUS = 2.0
+"""Difference of scores up to which a hypothesis is registered before it is given up."""
+
+_MOST_CANDIDATES = 3
+_ELASTIC_WEIGHT = 4.0
+_SMOOTH = 40
+"""Eigenfunctions that the source is placed by before it is registered."""
+
+_DETAILED = 100
+"""The same before it is registered again."""
+
+_MISFIT_WEIGHT = 20.0
+"""How much the mean squared distance that is left counts against the elastic energy."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A hypothesis, softly registered.
+
+    Attributes
+    ----------
+    hypothesis : MapHypothesis
+        The map it started from.
+    registration : Registration
+        The source on the target.
+    score : float
+        Smaller is more credible: the score of the hypothesis and the logarithm of what the deformation costs.
+    """
+
+    hypothesis: MapHypothesis
+    registration: Registration
+    score: float
+
+
+@dataclass(frozen=True, eq=False)
+class RegisteredPair:
+    """Two surfaces, one laid onto the other.
+
+    Attributes
+    ----------
+    x, y : Shape
+        The shapes.
+    source, target : DeformableSurface
+        Their surfaces.
+    registration : Registration
+        The source on the target.
+    reverse : Registration
+        The target on the source.
+    candidates : tuple of Candidate
+        What was compared, the most credible first.
+    margin : float or None
+        By how much the best candidate that is another map is less credible; None if there was none.
+    landmarks : Landmarks or None
+        What the registration was held at.
+    mirrored : bool
+        Whether `x` is the reflection of the shape that was given, because that is what the landmarks ask for.
+    """
+
+    x: Shape
+    y: Shape
+    source: DeformableSurface
+    target: DeformableSurface
+    registration: Registration
+    reverse: Registration
+    candidates: tuple[Candidate, ...]
+    margin: float | None
+    landmarks: Landmarks | None = None
+    mirrored: bool = False
+
+
+def registered_pair_steps(
+    x: Shape,
+    y: Shape,
+    starts: Sequence[LandmarkStart] = (),
+    *,
+    search: bool = True,
+    landmarks: Landmarks | None = None,
+) -> Steps[RegisteredPair]:
+    """Find the map between two surfaces that keeps left on the left, and refine it.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The surfaces X and Y; their samples have been taken.
+    starts : sequence of LandmarkStart
+        Sparse correspondences that the map may start from.
+    search : bool
+        Whether other starts are looked for as well.
+    landmarks : Landmarks, optional
+        What is known to correspond, and is held together; the samples of the shapes begin with them.
+
+    Returns
+    -------
+    RegisteredPair
+        The surfaces, laid onto one another.
+    """
+    yield from within(x.spectrum_steps(EIGENPAIRS), 0.0, 0.05)
+    yield from within(y.spectrum_steps(EIGENPAIRS), 0.05, 0.1)
+    mirrored = False
+    if landmarks is None:
+        hypotheses = yield from within(map_hypotheses_steps(x, y, starts, search=search), 0.1, 0.4)
+    else:
+        steered = yield from within(steered_hypotheses_steps(x, y, starts, landmarks, search=search), 0.1, 0.4)
+        x, hypotheses, mirrored = steered.x, steered.hypotheses, steered.mirrored
+    source, target = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
+    ties = None if landmarks is None else _ties(x, y, target, landmarks.source, landmarks.target)
+    ties_back = None if landmarks is None else _ties(y, x, source, landmarks.target, landmarks.source)
+    # Both surfaces are seen from outside, so the true map keeps the orientation.
+    keeping = [h for h in hypotheses if h.orientation > 0] or hypotheses
+    plausible = [h for h in keeping if h.score < keeping[0].score + _AMBIGUOUS][:_MOST_CANDIDATES]
+    smooth = _functions(x, _SMOOTH)
+    candidates = []
+    for number, hypothesis in enumerate(plausible):
+        begin, end = (0.4 + 0.3 * (number + i) / len(plausible) for i in (0, 1))
+        candidates.append((yield from within(_candidate_steps(source, target, hypothesis, smooth, ties), begin, end)))
+    candidates.sort(key=lambda candidate: candidate.score)
+    best = candidates[0]
+    first = yield from within(
+        register_steps(source, target, best.registration.positions, (FINE,), ties=ties), 0.7, 0.76
+    )
+    matches = first.on_source, first.on_target
+    steps = restarted_steps(target, source, _functions(y, _DETAILED), matches, stages=(FINE, CLOSE), ties=ties_back)
+    reverse = yield from within(steps, 0.76, 0.88)
+    matches = reverse.on_source, reverse.on_target
+    steps = restarted_steps(source, target, _functions(x, _DETAILED), matches, stages=(FINE, CLOSE), ties=ties)
+    final = yield from within(steps, 0.88, 1.0)
+    margin = _margin(best, candidates, hypotheses)
+    return RegisteredPair(x, y, source, target, final, reverse, tuple(candidates), margin, landmarks, mirrored)
+
+
+def _functions(shape: Shape, count: int) -> NDArray[np.float64]:
+    """First eigenfunctions of a shape of unit area, (n, count)."""
+    functions: NDArray[np.float64] = shape.spectrum.functions[:, :count] * np.sqrt(shape.laplace.area)
+    return functions
+
+
+def _ties(x: Shape, y: Shape, target: DeformableSurface, here: LandmarkPlaces, there: LandmarkPlaces) -> Ties:
+    """Tie the landmarks of the source, wherever they are on its surface, to those of the target."""
+    points, vertices = x.surface.proxy.points, here.main
+    at = SurfacePoints.from_barycentric(x.mesh, points.triangles[vertices], points.barycentric[vertices])
+    places = y.surface.proxy.points.positions[there.main]
+    return Ties.at(x.mesh, at, target.in_unit_size(places))
+
+
+def _candidate_steps(
+    source: DeformableSurface,
+    target: DeformableSurface,
+    hypothesis: MapHypothesis,
+    smooth: NDArray[np.float64],
+    ties: Ties | None,
+) -> Steps[Candidate]:
+    start = smooth_start(source, target, hypothesis.images_on_y, smooth)
+    first = _at_vertices(target, hypothesis.images_on_y), _at_vertices(source, hypothesis.images_on_x)
+    registration = yield from register_steps(source, target, start, (SOFT,), first, ties=ties)
+    cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
+    score = hypothesis.score + _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
+    return Candidate(hypothesis, registration, score)
+
+
+def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
+    points = SurfacePoints.at_vertices(surface.mesh, vertices)
+    return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))
+
+
+def _margin(best: Candidate, candidates: list[Candidate], hypotheses: list[MapHypothesis]) -> float | None:
+    """By how much the second choice is less credible; hypotheses that were not registered count by their own score."""
+    gaps = [candidate.score - best.score for candidate in candidates[1:]]
+    tried = {id(candidate.hypothesis) for candidate in candidates}
+    gaps += [h.score - best.hypothesis.score for h in hypotheses if id(h) not in tried and h.orientation > 0]
+    return float(min(gaps)) if gaps else None

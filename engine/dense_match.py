@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From two registered surfaces to maps between all vertices of the meshes they stand for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from .deformable import DeformableSurface
+from .dense_map import registered_pair_steps
+from .followers import follow
+from .functional_maps import nearest_both_ways
+from .landmarks import placed_at_vertices
+from .laplacian import laplace_beltrami
+from .lifting import lift_steps
+from .map_hypotheses import LandmarkStart
+from .pinning import pinned
+from .progress import Progress, Steps, run, within
+from .proxy import Proxy
+from .quality import MatchQuality, assess_maps, map_confidence
+from .reflection import reflected_mesh, reflected_points
+from .registration import POLISH, Registration, register_steps
+from .shape import Shape
+from .surface import SurfacePoints
+from .surface_map import SurfaceMap
+from .ties import Ties
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from .closest_points import FoundPoints
+    from .dense_map import RegisteredPair
+    from .landmarks import Landmarks
+    from .mesh import TriangleMesh
+    from .prepared_surface import PreparedSurface
+
+__all__ = ["DenseMatch", "dense_match_steps", "densify", "densify_steps"]
+
+_SAMPLES = 512
+"""Samples of each surface that hypotheses are compared at."""
+
+_POLISHED = 40_000
+"""Vertices up to which meshes that have a proxy are registered once more in full resolution."""
+
+
+@dataclass(frozen=True, eq=False)
+class DenseMatch:
+    """The maps between all vertices of two meshes.
+
+    Attributes
+    ----------
+    source_to_target : SurfaceMap
+        For every vertex of the source its point on the target.
+    target_to_source : SurfaceMap
+        For every vertex of the target its point on the source.
+    quality : MatchQuality
+        How far they may be trusted.
+    """
+
+    source_to_target: SurfaceMap
+    target_to_source: SurfaceMap
+    quality: MatchQuality
+
+
+def densify(
+    source: TriangleMesh, target: TriangleMesh, source_points: SurfacePoints, target_points: SurfacePoints
+) -> DenseMatch:
+    """Extend a sparse correspondence to all vertices; see `densify_steps`."""
+    return run(densify_steps(source, target, source_points, target_points))
+
+
+def densify_steps(
+    source: TriangleMesh, target: TriangleMesh, source_points: SurfacePoints, target_points: SurfacePoints
+) -> Steps[DenseMatch]:
+    """Extend a sparse correspondence to all vertices, in steps.
+
+    No other correspondence is tried: also one that mirrors the surface is extended as it is.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    source_points, target_points : SurfacePoints
+        Corresponding points (k,) on them: some twenty, spread over the surface, are needed at least.
+
+    Returns
+    -------
+    DenseMatch
+        The maps.  Where the correspondence mirrors, the orientation in `quality` is that of the mirrored source.
+
+    Raises
+    ------
+    MatchError
+        If a point does not lie on the largest part of its mesh.
+    """
+    x = yield from within(Shape.steps(source, "source"), 0.0, 0.05)
+    y = yield from within(Shape.steps(target, "target"), 0.05, 0.1)
+    start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
+    yield Progress(0.15, "Measuring distances")
+    mirrored = _mirrors(x, y, start)
+    if mirrored:
+        # Seen in a mirror, the source is matched by a map that keeps the orientation.
+        reflected = reflected_mesh(source)
+        source_points = reflected_points(reflected, source_points)
+        x = yield from within(Shape.steps(reflected, "source"), 0.15, 0.2)
+        start = LandmarkStart(_rows(x, source_points), start.target_distances, "given")
+    yield from within(x.sample_steps(_SAMPLES), 0.2, 0.28)
+    yield from within(y.sample_steps(_SAMPLES), 0.28, 0.35)
+    steps = registered_pair_steps(x.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=False)
+    pair = yield from within(steps, 0.35, 0.8)
+    dense = yield from within(dense_match_steps(pair), 0.8, 1.0)
+    if mirrored:
+        dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, source))
+    return dense
+
+
+def _rows(shape: Shape, points: SurfacePoints) -> NDArray[np.float64]:
+    """Distances from the vertices nearest to points (k,) to all vertices, in sqrt(area), (k, n)."""
+    rows: NDArray[np.float64] = shape.solver.distances(shape.surface.on_mesh(points).nearest_vertices) / shape.scale
+    return rows
+
+
+def _seen_directly(to_reflection: SurfaceMap, source: TriangleMesh) -> SurfaceMap:
+    """Turn a map to the reflection of the source into one to the source."""
+    return SurfaceMap(reflected_points(source, to_reflection.points), to_reflection.confidence, source.vertex_count)
+
+
+def _at_landmarks(
+    found: SurfaceMap, image: TriangleMesh, vertices: NDArray[np.int64], partners: NDArray[np.int64]
+) -> SurfaceMap:
+    """Name the images of landmarks by the very vertices that were given, and trust them."""
+    confidence = found.confidence.copy()
+    confidence[vertices] = 1
+    return SurfaceMap(placed_at_vertices(found.points, image, vertices, partners), confidence, image.vertex_count)
+
+
+def _mirrors(x: Shape, y: Shape, start: LandmarkStart) -> bool:
+    """Whether a correspondence turns most of the surface over."""
+    images = nearest_both_ways(start.source_distances.T, start.target_distances.T).on_y
+    return SurfaceMap.from_points(y.mesh, SurfacePoints.at_vertices(y.mesh, images)).orientation(x.mesh, y.mesh) < 0
+
+
+def dense_match_steps(pair: RegisteredPair) -> Steps[DenseMatch]:
+    """Carry a registration to every vertex of the meshes that the surfaces stand for.
+
+    Parameters
+    ----------
+    pair : RegisteredPair
+        The surfaces, one laid onto the other.
+
+    Returns
+    -------
+    DenseMatch
+        The maps between all vertices, parts beside the main ones included.
+    """
+    x, y = pair.x.surface, pair.y.surface
+    there = yield from within(_lifted_steps(x, y, pair.target, pair.registration), 0.0, 0.2)
+    back = yield from within(_lifted_steps(y, x, pair.source, pair.reverse), 0.2, 0.4)
+    main_x, main_y = x.cleaned.mesh, y.cleaned.mesh
+    if max(main_x.vertex_count, main_y.vertex_count) <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
+        there, back = yield from within(_polished_steps(main_x, main_y, (there, back), pair.landmarks), 0.4, 0.8)
+    if pair.landmarks is not None:
+        here, partners = pair.landmarks.source.main, pair.landmarks.target.main
+        there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
+        back = pinned(main_y, main_x, back, partners, here, search=x.dense_search)
+    yield Progress(0.8, "Judging the map")
+    quality = assess_maps(main_x, main_y, there, back, pair.margin)
+    forward = _followed(x, y, there, map_confidence(main_x, main_y, there, back))
+    yield Progress(0.9, "Mapping every vertex")
+    backward = _followed(y, x, back, map_confidence(main_y, main_x, back, there))
+    if pair.landmarks is not None:
+        given, partners = pair.landmarks.source.original, pair.landmarks.target.original
+        forward = _at_landmarks(forward, y.original, given, partners)
+        backward = _at_landmarks(backward, x.original, partners, given)
+    if pair.mirrored:
+        backward = _seen_directly(backward, reflected_mesh(x.original))
+    return DenseMatch(forward, backward, quality)
+
+
+def _polished_steps(
+    main_x: TriangleMesh, main_y: TriangleMesh, maps: tuple[SurfacePoints, SurfacePoints], landmarks: Landmarks | None
+) -> Steps[tuple[SurfacePoints, SurfacePoints]]:
+    """Register once more in full resolution, where what is between the vertices of the proxies counts."""
+    surfaces = [DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (main_x, main_y)]
+    places = None if landmarks is None else (landmarks.source.main, landmarks.target.main)
+    polished = []
+    for here, there, begin in ((0, 1, 0.0), (1, 0, 0.5)):
+        source, target = surfaces[here], surfaces[there]
+        ties = None
+        if places is not None:
+            at = SurfacePoints.at_vertices(source.mesh, places[here])
+            ties = Ties.at(source.mesh, at, target.vertices[places[there]])
+        steps = register_steps(source, target, target.in_unit_size(maps[here].positions), (POLISH,), ties=ties)
+        fine = yield from within(steps, begin, begin + 0.4)
+        lift = lift_steps(
+            source.mesh,
+            Proxy.identity(source.mesh),
+            target.in_its_units(fine.positions),
+            target.mesh,
+            target_proxy=Proxy.identity(target.mesh),
+            proxy_map=_nearest(fine.on_target, target.mesh),
+            search=target.search,
+        )
+        polished.append((yield from within(lift, begin + 0.4, begin + 0.5)))
+    return polished[0], polished[1]
+
+
+def _lifted_steps(
+    x: PreparedSurface, y: PreparedSurface, target: DeformableSurface, registration: Registration
+) -> Steps[SurfacePoints]:
+    """Map every vertex of the main part of one mesh to that of the other."""
+    return lift_steps(
+        x.cleaned.mesh,
+        x.proxy,
+        target.in_its_units(registration.positions),
+        y.cleaned.mesh,
+        target_proxy=y.proxy,
+        proxy_map=_nearest(registration.on_target, y.mesh),
+        search=y.dense_search,
+    )
+
+
+def _nearest(points: FoundPoints, mesh: TriangleMesh) -> NDArray[np.int64]:
+    """Vertices nearest to points (k,) of a mesh, (k,)."""
+    vertices: NDArray[np.int64] = mesh.triangles[points.triangles, points.barycentric.argmax(axis=1)]
+    return vertices
+
+
+def _followed(
+    x: PreparedSurface, y: PreparedSurface, main_map: SurfacePoints, confidence: NDArray[np.float64]
+) -> SurfaceMap:
+    """Extend a map of the main part to all vertices of the original mesh."""
+    followed = follow(x.cleaned, y.cleaned, main_map)
+    triangles = y.kept_triangles[followed.points.triangles]
+    points = SurfacePoints.from_barycentric(y.original, triangles, followed.points.barycentric)
+    return SurfaceMap(points, followed.confidence * confidence[followed.surroundings], y.original.vertex_count)

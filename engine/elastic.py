@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How much a deformation bends and stretches a surface: the as-rigid-as-possible energy with smooth rotations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array, diags_array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .laplacian import LaplaceBeltrami
+
+__all__ = ["ElasticSurface"]
+
+_LEAST_WEIGHT = 1e-4
+"""Least weight of an edge: one without would let its ends drift apart where all triangles around are right-angled."""
+
+_MOST_ROUNDS = 60
+"""Rounds of smoothing at most: finer meshes are meant to be worked on through a coarser one."""
+
+
+class ElasticSurface:
+    r"""A surface that resists deformation.
+
+    The energy of positions x, for rest positions v and a rotation R at each vertex, is
+
+    .. math:: \sum_{ij} w_{ij} | (x_i - x_j) - \tfrac{1}{2} (R_i + R_j) (v_i - v_j) |^2
+
+    over the edges of the intrinsic Delaunay triangulation with their cotangent weights [1]_.  The rotations are those
+    that fit the deformation best, averaged over a neighbourhood, so that bending costs too: without that, noise in
+    what drives the deformation would be followed into every wrinkle.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float
+        Rest positions v.
+    laplace : LaplaceBeltrami
+        The operator of the surface.
+
+    Attributes
+    ----------
+    stiffness : (n, n) csr_array of float
+        Matrix of the energy: its gradient is twice ``stiffness @ x - pull(rotations)``.
+
+    References
+    ----------
+    .. [1] O. Sorkine, M. Alexa, "As-rigid-as-possible surface modeling", SGP 2007.
+    """
+
+    def __init__(self, vertices: NDArray[np.float64], laplace: LaplaceBeltrami) -> None:
+        n = len(vertices)
+        entries = coo_array(laplace.stiffness)
+        between = entries.row < entries.col
+        self._tails, self._heads = entries.row[between], entries.col[between]
+        self._weights = np.maximum(-entries.data[between], _LEAST_WEIGHT)  # (e,)
+        self._edges = vertices[self._tails] - vertices[self._heads]  # (e, 3)
+        count = len(self._tails)
+        ends = (np.concatenate([self._tails, self._heads]), np.tile(np.arange(count), 2))
+        # Sums over the edges around each vertex: of what does not, and of what does change sign with the direction.
+        self._around = csr_array((np.ones(2 * count), ends), shape=(n, count))
+        self._divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
+        self.stiffness = csr_array(self._divergence @ diags_array(self._weights) @ self._divergence.T)
+        one_way = csr_array((np.ones(count), (self._tails, self._heads)), shape=(n, n))
+        neighbours = csr_array(one_way + one_way.T)
+        degree = np.maximum(neighbours.sum(axis=1), 1)
+        self._average = csr_array((diags_array(np.ones(n)) + diags_array(1 / degree) @ neighbours) / 2)
+        self._edge_length = float(np.sqrt(np.square(self._edges).sum(axis=1).mean())) if count else 1.0
+
+    def rotations(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+        """Fit a rotation to the deformation around each vertex.
+
+        Parameters
+        ----------
+        positions : (n, 3) array of float
+            Deformed positions x.
+        radius : float
+            Over what distance, in units of the rest positions, rotations are averaged.
+
+        Returns
+        -------
+        (n, 3, 3) array of float
+            Rotations, never reflections.
+        """
+        now = positions[self._tails] - positions[self._heads]
+        products = self._weights[:, None, None] * now[:, :, None] * self._edges[:, None, :]
+        fit = self._around @ products.reshape(-1, 9)  # the covariance of edges before and after, (n, 9)
+        # Each round spreads by the root of half the squared edge length.
+        rounds = round(2 * (radius / self._edge_length) ** 2)
+        for _ in range(min(max(rounds, 1), _MOST_ROUNDS)):
+            fit = self._average @ fit
+        left, _, right = np.linalg.svd(fit.reshape(-1, 3, 3))
+        left[:, :, 2] *= np.sign(np.linalg.det(left @ right))[:, None]
+        return left @ right
+
+    def pull(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Sum of the rotated edges at each vertex, (n, 3): the right-hand side of the equilibrium."""
+        return self._divergence @ (self._weights[:, None] * self._rotated(rotations))
+
+    def energy(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> float:
+        """Energy of a deformation, an area: a number without unit for a surface of unit area."""
+        misfit = positions[self._tails] - positions[self._heads] - self._rotated(rotations)
+        return float((self._weights * np.square(misfit).sum(axis=1)).sum())
+
+    def _rotated(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rest edges turned by the mean of the rotations at their ends, (e, 3)."""
+        mean = (rotations[self._tails] + rotations[self._heads]) / 2
+        return np.einsum("eab,eb->ea", mean, self._edges)

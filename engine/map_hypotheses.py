@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The few most credible dense maps between two surfaces, the mirrored and turned ones told apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .errors import MatchError
+from .functional_maps import (
+    PointMaps,
+    fit_functional_maps,
+    nearest_both_ways,
+    points_from_functions,
+    points_from_functions_steps,
+    refine_bijective_steps,
+    spectral_sizes,
+)
+from .map_domain import MapDomain
+from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
+from .map_search import MapLead, distinct_leads, rough_maps_steps
+from .progress import Progress, Steps, within
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from .shape import Shape
+
+__all__ = ["LandmarkStart", "MapHypothesis", "map_hypotheses_steps"]
+
+_FINE_SIZES = spectral_sizes(15, 80, 9)
+_DENSE_SIZES = spectral_sizes(80, 110, 3)
+_DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
+_RETURNED = {1: 4, -1: 2}  # most hypotheses that keep the orientation, and that mirror it
+_HOPELESS = 3.0  # excess of the score over the best of the same orientation
+# Rigidity is the strongest cue against half turns; in distances and spectra these are hardly worse than the truth.
+_WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
+_LEAST_TERM = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class LandmarkStart:
+    """Corresponding places that are already known, as distances from them.
+
+    Attributes
+    ----------
+    source_distances : (k, n) array of float
+        Distance from each place to every vertex of X, in units of the square root of its area.
+    target_distances : (k, n') array of float
+        Distance from the corresponding place to every vertex of Y, in units of the square root of its area.
+    origin : str
+        Where they are from.
+    """
+
+    source_distances: NDArray[np.floating[Any]]
+    target_distances: NDArray[np.floating[Any]]
+    origin: str = "landmarks"
+
+
+@dataclass(frozen=True, eq=False)
+class MapHypothesis:
+    """A dense map that may be the true one.
+
+    Attributes
+    ----------
+    images_on_y : (n,) array of int
+        For each vertex of X, the vertex of Y it is taken to.
+    images_on_x : (n',) array of int
+        For each vertex of Y, the vertex of X it is taken to.
+    score : float
+        Smaller is more credible; comparable between hypotheses of one pair.
+    orientation : float
+        From -1 (mirrored everywhere) to 1 (kept everywhere).
+    terms : mapping of str to float
+        The parts of the score, and what else was measured; see `map_scores`.
+    origin : str
+        Where it started: ``"extremities"``, or the origin of a `LandmarkStart`.
+    """
+
+    images_on_y: NDArray[np.int64]
+    images_on_x: NDArray[np.int64]
+    score: float
+    orientation: float
+    terms: Mapping[str, float]
+    origin: str
+
+    @property
+    def isometric_defect(self) -> float:
+        """How far the map is from keeping all distances; below 0.1 where it is nearly an isometry."""
+        return self.terms["commutator"]
+
+
+def map_hypotheses_steps(
+    x: Shape, y: Shape, starts: Sequence[LandmarkStart] = (), *, search: bool = True
+) -> Steps[list[MapHypothesis]]:
+    """Propose dense maps between two surfaces, most credible first.
+
+    Nearly symmetric shapes have several maps that nearly keep all distances: the true one, its reflection, and for
+    people also the half turn, which swaps left with right and front with back, and keeps the orientation.  So a few
+    extremities are matched in many ways, each way is carried over the whole surface and refined by bijective ZoomOut,
+    and the best distinct maps are compared by all that is known of both surfaces.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The surfaces, for which `Shape.sample_steps` and `Shape.spectrum_steps` were run; 512 samples and 120
+        eigenpairs are used, or what there is.
+    starts : sequence of LandmarkStart
+        Correspondences from elsewhere that enter the comparison.
+    search : bool
+        Whether matchings of extremities are tried as well; without, there must be a start.
+
+    Yields
+    ------
+    Progress
+        About every tenth of a second for meshes of some thousand vertices.
+
+    Returns
+    -------
+    list of MapHypothesis
+        Up to four that keep the orientation and two that mirror it, by growing score; what is far less credible than
+        the best of its orientation is left out.
+
+    Raises
+    ------
+    MatchError
+        If a surface has too few samples or eigenfunctions, or distances of a start do not fit it.
+    """
+    for start in starts:
+        _check(start, x, y)
+    size = min(len(x.spectrum), len(y.spectrum))
+    a, b = MapDomain(x, size), MapDomain(y, size)
+    yield Progress(0.05, "Comparing maps")
+    leads = (yield from within(rough_maps_steps(a, b), 0.05, 0.4)) if search else []
+    refined: list[MapLead] = []
+    candidates = [(_on_fine_samples(a, b, lead.points), lead.origin) for lead in leads]
+    candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
+    for number, (points, origin) in enumerate(candidates):
+        begin, end = (0.4 + 0.35 * (number + i) / len(candidates) for i in (0, 1))
+        steps = refine_bijective_steps(a.fine_basis, b.fine_basis, points, _FINE_SIZES)
+        refined.append(_assessed(a, b, (yield from within(steps, begin, end)), origin))
+    kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
+    found = []
+    for number, lead in enumerate(kept):
+        begin, end = (0.75 + 0.25 * (number + i) / len(kept) for i in (0, 1))
+        dense = yield from within(_dense_steps(a, b, lead.points), begin, end)
+        found.append(MapHypothesis(*dense, lead.score, lead.orientation, lead.terms, lead.origin))
+    return found
+
+
+def _on_fine_samples(x: MapDomain, y: MapDomain, points: PointMaps) -> PointMaps:
+    """Carry maps between coarse samples to the fine ones."""
+    size = min(25, x.coarse_basis.size, y.coarse_basis.size)
+    maps = fit_functional_maps(x.coarse_basis, y.coarse_basis, points, size)
+    return points_from_functions(maps, x.fine_basis.functions, y.fine_basis.functions)
+
+
+def _from_landmarks(x: MapDomain, y: MapDomain, start: LandmarkStart) -> PointMaps:
+    """Map fine samples to those at the most similar distances from the landmarks."""
+    return nearest_both_ways(
+        np.asarray(start.source_distances, np.float64)[:, x.vertices].T,
+        np.asarray(start.target_distances, np.float64)[:, y.vertices].T,
+    )
+
+
+def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> MapLead:
+    """Score maps between the fine samples by all that is known."""
+    size = min(_FINE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
+    maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, size)
+    terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
+    terms["distances"] = distance_term(x, y, points)
+    terms["rigidity"] = rigidity_term(x, y, points, _DENSE_SIZES[-1])
+    score = sum(weight * np.log(max(terms[name], _LEAST_TERM)) for name, weight in _WEIGHTS.items())
+    return MapLead(points, float(score), map_orientation(x, y, points, maps)[0], terms, origin)
+
+
+def _dense_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:
+    """Extend maps between the fine samples to all vertices."""
+    points = yield from within(refine_bijective_steps(x.fine_basis, y.fine_basis, points, _DENSE_SIZES), 0.0, 0.3)
+    maps = fit_functional_maps(
+        x.fine_basis, y.fine_basis, points, min(_DENSE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
+    )
+    return (yield from within(points_from_functions_steps(maps, x.functions, y.functions), 0.3, 1.0))
+
+
+def _check(start: LandmarkStart, x: Shape, y: Shape) -> None:
+    counts = (x.mesh.vertex_count, y.mesh.vertex_count)
+    shapes = (np.shape(start.source_distances), np.shape(start.target_distances))
+    if shapes[0][:1] != shapes[1][:1] or shapes[0][1:] != counts[:1] or shapes[1][1:] != counts[1:]:
+        raise MatchError(
+            f"The distances from landmarks should have the shapes (k, {counts[0]}) and (k, {counts[1]}), "
+            f"but have {shapes[0]} and {shapes[1]}."
+        )

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of a mesh is matched: its main part, cleaned and not too dense, and the way back to the mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .cleaning import clean
+from .closest_points import ClosestPoints
+from .errors import MatchError
+from .mesh import TriangleMesh
+from .progress import Progress, Steps, within
+from .proxy import Proxy, proxy_steps
+from .surface import SurfacePoints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .clean_surface import CleanSurface
+
+__all__ = ["PreparedSurface", "prepared_steps"]
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedSurface:
+    """A mesh, and the coarse clean surface that is matched in its place.
+
+    Attributes
+    ----------
+    original : TriangleMesh
+        The mesh as it was given.
+    kept_triangles : (m',) array of int
+        Its triangles that take part: all but those of excluded vertices.
+    cleaned : CleanSurface
+        The mesh of these triangles and all vertices, taken apart into manifolds.
+    proxy : Proxy
+        What stands for the main part.
+    """
+
+    original: TriangleMesh
+    kept_triangles: NDArray[np.int64]
+    cleaned: CleanSurface
+    proxy: Proxy
+
+    @property
+    def mesh(self) -> TriangleMesh:
+        """The surface that is matched, k vertices."""
+        return self.proxy.mesh
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the mesh is matched as it is."""
+        return self.mesh.vertex_count == self.original.vertex_count and not self.cleaned.notes
+
+    @cached_property
+    def dense_search(self) -> ClosestPoints:
+        """Search on the main part in full resolution."""
+        return ClosestPoints(self.cleaned.mesh)
+
+    @cached_property
+    def vertices(self) -> NDArray[np.int64]:
+        """For each vertex of the surface that is matched, a vertex of the original: itself or the nearest, (k,)."""
+        own = self.cleaned.main.original_vertices
+        added = np.flatnonzero(own < 0)  # centres of holes
+        if len(added):
+            own = own.copy()
+            ring = self.cleaned.mesh.edges
+            for first, second in (ring.T, ring.T[::-1]):
+                beside = np.isin(first, added) & (self.cleaned.main.original_vertices[second] >= 0)
+                own[first[beside]] = self.cleaned.main.original_vertices[second[beside]]
+        return own[self.proxy.vertices]
+
+    def on_original(self, points: SurfacePoints) -> SurfacePoints:
+        """Place points of the surface that is matched on the original mesh."""
+        triangles, barycentric = points.triangles, points.barycentric
+        if not self.proxy.is_identity:
+            starts = self.proxy.vertices[points.nearest_vertices]
+            found = self.dense_search.walk(points.positions, starts)
+            triangles, barycentric = found.triangles, found.barycentric
+        triangles, barycentric = self.cleaned.main.to_original(triangles, barycentric)
+        return SurfacePoints.from_barycentric(self.original, self.kept_triangles[triangles], barycentric)
+
+    def on_mesh(self, points: SurfacePoints) -> SurfacePoints:
+        """Place points of the original mesh on the surface that is matched.
+
+        Raises
+        ------
+        MatchError
+            If a point does not lie on the main part of the mesh.
+        """
+        starts = self.mesh_vertices(points.nearest_vertices)
+        found = ClosestPoints(self.mesh).walk(points.positions, starts)
+        return SurfacePoints.from_barycentric(self.mesh, found.triangles, found.barycentric)
+
+    def mesh_vertices(self, vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Find the vertex of the surface that is matched that is nearest to each of some original ones (k,).
+
+        Raises
+        ------
+        MatchError
+            If a vertex does not lie on the main part of the mesh.
+        """
+        if (self.cleaned.vertex_parts[vertices] != 0).any():
+            raise MatchError(
+                "Some points do not lie on the largest part of the mesh, which is the one that is matched. "
+                "Choose points on that part."
+            )
+        dense = self.cleaned.vertex_images[vertices]
+        return dense if self.proxy.is_identity else self.proxy.points.nearest_vertices[dense]
+
+    def spread(self, values: NDArray[np.float64], outside: float) -> NDArray[np.float64]:
+        """Carry functions on the surface that is matched to the vertices of the original mesh.
+
+        Parameters
+        ----------
+        values : (..., k) array of float
+            Values at the vertices of the surface that is matched.
+        outside : float
+            Value at vertices that are not on the main part.
+
+        Returns
+        -------
+        (..., n) array of float
+            Values at the vertices of the original mesh.
+        """
+        if not self.proxy.is_identity:
+            points = self.proxy.points
+            dense = sum(points.barycentric[:, i] * values[..., points.corners[:, i]] for i in range(3))
+            values = np.asarray(dense)
+        whole = np.full((*values.shape[:-1], self.original.vertex_count), outside, np.float64)
+        main = self.cleaned.vertex_parts == 0
+        whole[..., main] = values[..., self.cleaned.vertex_images[main]]
+        return whole
+
+
+def prepared_steps(
+    mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: NDArray[np.bool_] | None = None
+) -> Steps[PreparedSurface]:
+    """Clean a mesh, and make a proxy of its main part where it is dense.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Any mesh.
+    name : str
+        What notes call it.
+    proxy_vertices : int
+        About how many vertices the surface that is matched should have, see `proxy_steps`.
+    excluded : (n,) array of bool, optional
+        Vertices to leave out, with all their triangles.
+
+    Raises
+    ------
+    MatchError
+        If all triangles are excluded, or the mask does not fit the mesh.
+    """
+    yield Progress(0.0, "Cleaning")
+    kept = np.arange(mesh.triangle_count)
+    part = mesh
+    if excluded is not None:
+        if excluded.shape != (mesh.vertex_count,):
+            raise MatchError(
+                f"The vertices to leave out of the {name} should be given by {mesh.vertex_count} values, one for each "
+                f"vertex, not by an array of the shape {excluded.shape}."
+            )
+        kept = np.flatnonzero(~excluded[mesh.triangles].any(axis=1))
+        if not mesh.triangle_areas[kept].any():
+            raise MatchError(f"Nothing of the {name} is left to match: all of its faces are left out.")
+        part = TriangleMesh(mesh.vertices, mesh.triangles[kept]) if len(kept) < mesh.triangle_count else mesh
+    cleaned = clean(part, name)
+    proxy = yield from within(proxy_steps(cleaned.mesh, proxy_vertices), 0.3, 1.0, "Simplifying")
+    return PreparedSurface(mesh, kept, cleaned, proxy)

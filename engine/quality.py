@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far a dense map may be trusted, in numbers and in a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .surface_map import SurfaceMap
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+    from .surface import SurfacePoints
+
+__all__ = ["MatchQuality", "assess_maps", "map_confidence", "round_trips"]
+
+_TRUSTED_ROUND_TRIP = 0.02
+"""Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
+
+_TRUSTED_STRETCH = 1.0
+"""Logarithm of the stretch of the surface around a point at which its confidence is halved."""
+
+_CLEAR_MARGIN = 1.0
+"""Difference of scores to the next candidate from which on the choice between them was clear."""
+
+
+@dataclass(frozen=True)
+class MatchQuality:
+    """How far a dense map may be trusted.
+
+    Attributes
+    ----------
+    orientation : float
+        Part of the source's area on which the map keeps left on the left, minus the part on which it mirrors: 1 if it
+        does everywhere.
+    distortion : float
+        Mean of the absolute logarithm of the stretch of edges, by area: 0 for an isometry, 0.1 for some ten per cent.
+    coverage : float
+        Part of the target's area that the source is mapped to, up to three vertex spacings away.
+    disagreement : float
+        Mean distance between a point of the source and where the two maps bring it, there and back, in units of the
+        square root of the area.
+    margin : float or None
+        By how much the best other candidate, such as the map turned by 180 degrees, was less credible; None if there
+        was no other.  Below one the choice was not clear.
+    confidence : float
+        All of this in one number, 0 to 1.
+    sentence : str
+        The same for a person to read.
+    """
+
+    orientation: float
+    distortion: float
+    coverage: float
+    disagreement: float
+    margin: float | None
+    confidence: float
+    sentence: str
+
+
+def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> NDArray[np.float64]:
+    """Distance between each vertex of the source and where two maps bring it, there and back, (n,).
+
+    `there` holds a point of the target for each vertex of the source, `back` one of the source for each of the target.
+    """
+    returned = np.einsum("kc,kcd->kd", there.barycentric, back.positions[there.corners])
+    return np.linalg.norm(returned - source.vertices, axis=1)
+
+
+def map_confidence(
+    source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints
+) -> NDArray[np.float64]:
+    """Judge each vertex's image by whether the way back leads home, and by how much the surface is stretched there.
+
+    Returns
+    -------
+    (n,) array of float
+        From 0 to 1; a rough guide, averaged over neighbours: no measure tells a well-fitting wrong place.
+    """
+    distances = round_trips(source, there, back) / np.sqrt(source.area)
+    stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
+    confidence = 1 / ((1 + np.square(distances / _TRUSTED_ROUND_TRIP)) * (1 + np.square(stretch / _TRUSTED_STRETCH)))
+    return np.clip(_neighbour_means(source, confidence), 0, 1)
+
+
+def assess_maps(
+    source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints, margin: float | None
+) -> MatchQuality:
+    """Measure a pair of maps between two surfaces.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    there, back : SurfacePoints
+        A point of the target for each vertex of the source, and the other way round.
+    margin : float or None
+        How clear the choice of the map was.
+    """
+    orientation = SurfaceMap.from_points(target, there).orientation(source, target)
+    lengths = np.square(source.edge_lengths)
+    distortion = float(np.average(np.abs(_log_stretch(source, target, there)), weights=lengths))
+    # A point of the target is reached if the way to the source and back does not lead away.
+    spacing = np.sqrt(target.area / target.vertex_count)
+    reached = round_trips(target, back, there) < max(3 * spacing, 0.03 * np.sqrt(target.area))
+    coverage = float(np.average(reached, weights=target.vertex_areas))
+    trips = round_trips(source, there, back) / np.sqrt(source.area)
+    disagreement = float(np.average(trips, weights=source.vertex_areas))
+    confidence = float(np.average(map_confidence(source, target, there, back), weights=source.vertex_areas))
+    confidence *= max(orientation, 0.0)
+    if margin is not None:
+        confidence *= 1 - 0.5 * float(np.exp(-margin / _CLEAR_MARGIN))
+    numbers = (orientation, distortion, coverage, disagreement)
+    return MatchQuality(*numbers, margin, confidence, _sentence(*numbers, margin))
+
+
+def _sentence(orientation: float, distortion: float, coverage: float, disagreement: float, margin: float | None) -> str:
+    """Say the worst that is known."""
+    if orientation < 0.3:
+        return "The map turns large parts of the surface over: do not trust it; try landmarks."
+    if margin is not None and margin < _CLEAR_MARGIN:
+        return "Another map was almost as likely, such as one that swaps left and right: check the sides."
+    if coverage < 0.9:
+        return f"Only {coverage:.0%} of the target is reached: parts of one shape seem to be missing on the other."
+    if disagreement > 0.02 or distortion > 0.5:
+        return "The shapes differ much: the map is a good guess that keeps left and right, but details may slide."
+    if disagreement > 0.008 or distortion > 0.2:
+        return "The shapes correspond, with some stretching where they differ."
+    return "The shapes correspond closely."
+
+
+def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> NDArray[np.float64]:
+    """Logarithm of mapped over original length of each edge, both in units of sqrt(area), (e,)."""
+    first, second = source.edges.T
+    mapped = np.linalg.norm(there.positions[first] - there.positions[second], axis=1) / np.sqrt(target.area)
+    own = source.edge_lengths / np.sqrt(source.area)
+    # Edges shorter than a thousandth of the mean say nothing about stretch.
+    least = 1e-3 * float(own.mean())
+    return np.log(np.maximum(mapped, least) / np.maximum(own, least))
+
+
+def _vertex_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of values per edge (e,) over the edges at each vertex, (n,)."""
+    ends, n = mesh.edges.ravel(), mesh.vertex_count
+    return np.bincount(ends, np.repeat(values, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)
+
+
+def _neighbour_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of values per vertex (n,) over each vertex and its neighbours."""
+    (first, second), n = mesh.edges.T, mesh.vertex_count
+    sums = values + np.bincount(first, values[second], n) + np.bincount(second, values[first], n)
+    return sums / (1 + np.bincount(first, minlength=n) + np.bincount(second, minlength=n))

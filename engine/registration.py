@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Non-rigid registration: one surface is deformed until it lies on another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import splu
+
+from .progress import Progress, Steps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .closest_points import ClosestPoints, FoundPoints
+    from .deformable import DeformableSurface
+    from .ties import Ties
+
+__all__ = [
+    "CLOSE",
+    "FINE",
+    "POLISH",
+    "SOFT",
+    "Registration",
+    "Stage",
+    "register_steps",
+    "restarted_steps",
+    "smooth_start",
+]
+
+_LEAST_AGREEMENT = 0.05
+"""Least part of its area with which a point counts whose normal disagrees with that of its match."""
+
+_SOLVES = 2
+"""How often positions and rotations are found in turn for the same matches."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """How a part of a registration goes.
+
+    Attributes
+    ----------
+    weights : tuple of float
+        How much the distance of matched points counts against the elastic energy, round after round.
+    normal_length, curvature_length : float
+        How many units of length (in sqrt(area)) a unit of difference of the normals, and of the curvatures, counts when
+        points are matched.
+    rotation_radius : float
+        Over what distance the rotations are averaged, in sqrt(area).
+    """
+
+    weights: tuple[float, ...]
+    normal_length: float
+    curvature_length: float
+    rotation_radius: float = 0.03
+
+
+SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2)
+"""From a rough start: the normals and curvatures pull features together while the surface is stiff."""
+
+FINE = Stage((40, 160, 640, 1280), 0.1, 0.05)
+"""Onto the target."""
+
+CLOSE = Stage((640, 640, 1280, 1280), 0.05, 0.0)
+"""At last without the curvatures: features of unlike bodies are not alike to the last detail."""
+
+POLISH = Stage((40, 40, 80, 80, 160, 160, 320, 320, 640, 640, 1280, 1280), 0.05, 0.0)
+"""From a registration of coarser meshes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Registration:
+    """A surface deformed onto another.
+
+    Attributes
+    ----------
+    positions : (n_x, 3) array of float
+        Vertices of the source in the space of the target, `DeformableSurface.vertices`.
+    on_target : FoundPoints
+        For each vertex of the source the matching point of the target, n_x.
+    on_source : FoundPoints
+        For each vertex of the target the matching point of the source, n_y.
+    energy : float
+        Elastic energy of the deformation.
+    misfit : float
+        Mean squared distance of the positions from their matches, in units of area.
+    """
+
+    positions: NDArray[np.float64]
+    on_target: FoundPoints
+    on_source: FoundPoints
+    energy: float
+    misfit: float
+
+
+class _Matcher:
+    """Finds for each point of one surface the point of the other that is most like it, and the other way round."""
+
+    def __init__(self, source: DeformableSurface, target: DeformableSurface, stage: Stage) -> None:
+        self.source, self.target, self.stage = source, target, stage
+        self._source_curvatures = stage.curvature_length * source.curvatures
+        target_curvatures = stage.curvature_length * target.curvatures
+        self.target_features = np.concatenate(
+            [target.vertices, stage.normal_length * target.normals, target_curvatures], axis=1
+        )
+        self.target_search = target.search.moved(self.target_features)
+
+    def source_search(self, positions: NDArray[np.float64]) -> tuple[ClosestPoints, NDArray[np.float64]]:
+        """Search on the deformed source by features, and its normals (n_x, 3)."""
+        normals = self.source.search.moved(positions).vertex_normals
+        features = np.concatenate([positions, self.stage.normal_length * normals, self._source_curvatures], axis=1)
+        return self.source.search.moved(features), normals
+
+    def matches(self, source: ClosestPoints) -> tuple[FoundPoints, FoundPoints]:
+        """Match every vertex of either surface, by the features of the deformed source."""
+        on_target = self.target_search.nearest(source.vertices)
+        on_source = source.nearest(self.target_features)
+        return on_target, on_source
+
+
+def smooth_start(
+    source: DeformableSurface,
+    target: DeformableSurface,
+    images: NDArray[np.int64],
+    functions: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Place the source where a map puts it, without the map's noise.
+
+    Parameters
+    ----------
+    source, target : DeformableSurface
+        The surfaces.
+    images : (n_x,) array of int
+        Vertex of the target for each vertex of the source.
+    functions : (n_x, k) array of float
+        The first Laplace-Beltrami eigenfunctions of the source, orthonormal under its unit mass: what the positions
+        are made of.
+
+    Returns
+    -------
+    (n_x, 3) array of float
+        Positions in the space of the target.
+    """
+    return functions @ (functions.T @ (source.mass[:, None] * target.vertices[images]))
+
+
+def restarted_steps(
+    source: DeformableSurface,
+    target: DeformableSurface,
+    functions: NDArray[np.float64],
+    matches: tuple[FoundPoints, FoundPoints],
+    *,
+    stages: tuple[Stage, ...],
+    ties: Ties | None = None,
+) -> Steps[Registration]:
+    """Register anew from the matches of an earlier registration, of these surfaces or of the two exchanged.
+
+    The source is placed by the matches without their noise, so that folds of the earlier registration open again.  What
+    one direction gets wrong, such as a point on the far side of a fold, the other often gets right.
+
+    Parameters
+    ----------
+    source, target : DeformableSurface
+        The surfaces.
+    functions : (n_x, k) array of float
+        Eigenfunctions to smooth by, see `smooth_start`.
+    matches : pair of FoundPoints
+        The matching point of the target for each vertex of the source, and the other way round.
+    stages, ties
+        As in `register_steps`.
+    """
+    places = _at(matches[0], target.triangles, target.vertices)
+    start = functions @ (functions.T @ (source.mass[:, None] * places))
+    return (yield from register_steps(source, target, start, stages, matches, ties=ties))
+
+
+def register_steps(
+    source: DeformableSurface,
+    target: DeformableSurface,
+    start: NDArray[np.float64],
+    stages: tuple[Stage, ...] = (SOFT, FINE, CLOSE),
+    first: tuple[FoundPoints, FoundPoints] | None = None,
+    *,
+    ties: Ties | None = None,
+) -> Steps[Registration]:
+    r"""Deform a surface onto another, from a rough map.
+
+    In turn, the points of both surfaces are matched, and the source is moved to where its elastic energy and the
+    squared distances of the matches, weighted by area, are least together.  Points are matched in the space of
+    positions, normals and smoothed mean curvatures: in the manner of iterative closest points [1]_, but between
+    vertices and points of triangles, in both directions, and with features that pull tangentially.
+
+    Parameters
+    ----------
+    source, target : DeformableSurface
+        The surfaces X and Y.
+    start : (n_x, 3) array of float
+        Positions of the source's vertices to begin with, see `smooth_start`.
+    stages : tuple of Stage
+        How stiff the surface is, round after round.
+    first : pair of FoundPoints, optional
+        Matches of the source's and of the target's vertices for the first round; by default the closest.
+    ties : Ties, optional
+        Points of the source that are held at places in the space of the target, in every round.
+
+    Yields
+    ------
+    Progress
+        After each round.
+
+    Returns
+    -------
+    Registration
+        The deformed source.
+
+    References
+    ----------
+    .. [1] B. Amberg, S. Romdhani, T. Vetter, "Optimal step nonrigid ICP algorithms for surface registration",
+       CVPR 2007.
+    """
+    positions = start
+    total = sum(len(stage.weights) for stage in stages)
+    done = 0
+    matches = first
+    for stage in stages:
+        matcher = _Matcher(source, target, stage)
+        for weight in stage.weights:
+            search, normals = matcher.source_search(positions)
+            if matches is None:
+                matches = matcher.matches(search)
+            positions = _solved(matcher, positions, normals, matches, weight=weight, ties=ties)
+            matches = None
+            done += 1
+            yield Progress(done / total, "Fitting the surfaces")
+    search, _ = matcher.source_search(positions)
+    on_target, on_source = matcher.matches(search)
+    rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
+    there = _at(on_target, target.triangles, target.vertices)
+    misfit = float(source.mass @ np.square(there - positions).sum(axis=1))
+    return Registration(positions, on_target, on_source, source.elastic.energy(positions, rotations), misfit)
+
+
+def _at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values (n, d) of vertices, interpolated at points (k, d)."""
+    return np.einsum("kc,kcd->kd", points.barycentric, values[triangles[points.triangles]])
+
+
+def _solved(
+    matcher: _Matcher,
+    positions: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    matches: tuple[FoundPoints, FoundPoints],
+    *,
+    weight: float,
+    ties: Ties | None,
+) -> NDArray[np.float64]:
+    """Positions of least energy for given matches."""
+    on_target, on_source = matches
+    source, target = matcher.source, matcher.target
+    wanted = _at(on_target, target.triangles, target.vertices)
+    seen = _at(on_target, target.triangles, target.normals)
+    own = weight * source.mass * _agreement(normals, seen)
+    theirs = weight * target.mass * _agreement(_at(on_source, source.triangles, normals), target.normals)
+    rows = np.repeat(np.arange(len(target.vertices)), 3)
+    corners = source.triangles[on_source.triangles].ravel()
+    evaluate = csr_array(
+        (on_source.barycentric.ravel(), (rows, corners)), shape=(len(target.vertices), len(source.vertices))
+    )
+    weighted = csr_array(evaluate.T @ diags_array(theirs))
+    system = source.elastic.stiffness + diags_array(own) + weighted @ evaluate
+    factor = splu(
+        system.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        relax=1,
+        panel_size=1,
+        options={"SymmetricMode": True},
+    )
+    right = own[:, None] * wanted + weighted @ target.vertices
+    response = None if ties is None else ties.response(factor.solve)
+    for _ in range(_SOLVES):
+        rotations = source.elastic.rotations(positions, matcher.stage.rotation_radius)
+        positions = factor.solve(source.elastic.pull(rotations) + right)
+        if ties is not None and response is not None:
+            positions = ties.held(positions, response)
+    return positions
+
+
+def _agreement(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far normals (k, 3) agree: their product squared, or little where they turn away, (k,)."""
+    lengths = np.maximum(np.linalg.norm(second, axis=1) * np.linalg.norm(first, axis=1), np.finfo(float).tiny)
+    return np.clip(np.einsum("kd,kd->k", first, second) / lengths, _LEAST_AGREEMENT, 1) ** 2

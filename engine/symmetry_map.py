@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The left-right map of a surface for every vertex."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .dense_match import densify_steps
+from .progress import run, within
+from .symmetry import find_symmetry_steps
+
+if TYPE_CHECKING:
+    from .dense_match import DenseMatch
+    from .mesh import TriangleMesh
+    from .progress import Steps
+    from .settings import MatchSettings
+
+__all__ = ["symmetry_map", "symmetry_map_steps"]
+
+
+def symmetry_map(mesh: TriangleMesh, settings: MatchSettings | None = None) -> DenseMatch:
+    """Map every vertex of a surface to its mirror image on the same surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface, in any pose.
+    settings : MatchSettings, optional
+        How the sparse symmetry is searched, see `find_symmetry`.
+
+    Returns
+    -------
+    DenseMatch
+        The map in `source_to_target`, and its inverse in `target_to_source`, which is nearly the same.
+
+    Raises
+    ------
+    MatchError
+        If the surface has too few vertices for the points.
+
+    See Also
+    --------
+    find_symmetry : the sparse symmetry, how symmetric the surface is, and its axis.
+    """
+    return run(symmetry_map_steps(mesh, settings))
+
+
+def symmetry_map_steps(mesh: TriangleMesh, settings: MatchSettings | None = None) -> Steps[DenseMatch]:
+    """Map every vertex to its mirror image in short steps; see `symmetry_map`."""
+    symmetry = yield from within(find_symmetry_steps(mesh, settings), 0.0, 0.5)
+    steps = densify_steps(mesh, mesh, symmetry.source_points, symmetry.target_points)
+    return (yield from within(steps, 0.5, 1.0))

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The choice among hypotheses, and the registration of the best."""
+
+import numpy as np
+import pytest
+
+from engine import Shape, SurfacePoints, TriangleMesh, run
+from engine.dense_map import EIGENPAIRS, registered_pair_steps
+from engine.map_hypotheses import LandmarkStart
+from tests.bodies import mirrored_body
+from tests.shapes import icosphere, rotation
+
+SAMPLES = 150
+
+
+def shape(vertices, triangles):
+    made = Shape(TriangleMesh(vertices, triangles))
+    run(made.sample_steps(SAMPLES))
+    return made
+
+
+def errors(points, triangles, own, other, area):
+    """Distance at rest between the vertices and their images, over the square root of the area."""
+    images = np.einsum("kc,kcd->kd", points.barycentric, other[triangles[points.triangles]])
+    return np.linalg.norm(own - images, axis=1) / np.sqrt(area)
+
+
+def start_from(x, y, vertices_x, vertices_y, origin="given"):
+    rows = x.solver.distances(np.asarray(vertices_x)) / x.scale
+    return LandmarkStart(rows, y.solver.distances(np.asarray(vertices_y)) / y.scale, origin)
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    """A symmetric body, and one like it in another pose and triangulation."""
+    first, second = mirrored_body(0.0, 9), mirrored_body(0.8, 9, seed=1)
+    return shape(*first[:2]), shape(*second[:2]), first[2], second[2]
+
+
+@pytest.fixture(scope="module")
+def watched(bodies):
+    """What a registration yields on the way, and returns."""
+    steps, reports = registered_pair_steps(*bodies[:2]), []
+    while True:
+        try:
+            reports.append(next(steps))
+        except StopIteration as stop:
+            return reports, stop.value
+
+
+@pytest.fixture(scope="module")
+def registered(watched):
+    return watched[1]
+
+
+@pytest.fixture(scope="module")
+def starts(bodies):
+    """Start from twenty true pairs of vertices, and from their mirror images."""
+    x, y, rest_x, rest_y = bodies
+    chosen = x.samples[:20]
+    gaps = [np.linalg.norm(rest_x[chosen][:, None] * [1, side, 1] - rest_y, axis=2) for side in (1, -1)]
+    return [
+        start_from(x, y, chosen, gap.argmin(axis=1), name) for gap, name in zip(gaps, ("true", "mirror"), strict=True)
+    ]
+
+
+def test_left_stays_left_between_the_vertices(registered, bodies):
+    x, y, rest_x, rest_y = bodies
+    there = errors(registered.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area)
+    back = errors(registered.registration.on_source, x.mesh.triangles, rest_y, rest_x, y.mesh.area)
+    for found in (there, back):
+        assert found.mean() < 0.01
+        assert found.max() < 0.08
+    assert registered.candidates[0].hypothesis.orientation > 0.5
+
+
+def test_candidates_are_ordered_and_cost_what_their_registration_costs(registered):
+    scores = [candidate.score for candidate in registered.candidates]
+    assert scores == sorted(scores)
+    for candidate in registered.candidates:
+        cost = candidate.registration.energy + 20 * candidate.registration.misfit
+        assert candidate.score == pytest.approx(candidate.hypothesis.score + 4 * np.log(cost))
+        assert candidate.hypothesis.orientation > 0
+    assert registered.margin is None or registered.margin > 0
+
+
+def test_the_pair_says_what_was_registered(registered, bodies):
+    x, y = bodies[:2]
+    assert registered.x is x
+    assert registered.y is y
+    np.testing.assert_array_equal(registered.source.triangles, x.mesh.triangles)
+    assert registered.registration.positions.shape == x.mesh.vertices.shape
+    assert len(registered.registration.on_source.triangles) == y.mesh.vertex_count
+    assert len(x.spectrum) == EIGENPAIRS
+
+
+def test_a_given_start_is_followed_where_nothing_is_searched(bodies, starts):
+    x, y, rest_x, rest_y = bodies
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true"]
+    assert pair.margin is None
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
+
+
+def test_of_two_starts_the_one_that_keeps_the_orientation_is_taken(bodies, starts):
+    x, y, rest_x, rest_y = bodies
+    pair = run(registered_pair_steps(x, y, starts[::-1], search=False))
+    assert pair.candidates[0].hypothesis.origin == "true"
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
+
+
+def test_motion_and_scale_do_not_matter(registered, bodies):
+    x, y = bodies[:2]
+    turn = rotation([1, -1, 2], 2.5)
+    other = shape(0.01 * y.mesh.vertices @ turn.T + [7, 8, 9], y.mesh.triangles)
+    pair = run(registered_pair_steps(x, other))
+    np.testing.assert_allclose(pair.registration.positions, registered.registration.positions @ turn.T, atol=1e-4)
+    assert pair.candidates[0].score == pytest.approx(registered.candidates[0].score, rel=1e-3)
+
+
+def test_progress_rises(watched):
+    fractions = [report.fraction for report in watched[0]]
+    assert fractions == sorted(fractions)
+    assert fractions[0] >= 0
+    assert fractions[-1] == pytest.approx(1)
+
+
+def test_meshes_with_fewer_vertices_than_eigenpairs_are_registered_too():
+    vertices, triangles = icosphere(3)  # 92 vertices
+    vertices = vertices * [1, 1.3, 1.8] + 0.2 * vertices[:, :1] * vertices[:, 1:2]
+    x, y = shape(vertices, triangles), shape(1.1 * vertices, triangles)
+    start = start_from(x, y, x.samples[:20], x.samples[:20])
+    pair = run(registered_pair_steps(x, y, [start], search=False))
+    points = pair.registration.on_target
+    images = SurfacePoints.from_barycentric(y.mesh, points.triangles, points.barycentric).positions
+    assert np.linalg.norm(images / 1.1 - vertices, axis=1).mean() < 0.05 * x.scale

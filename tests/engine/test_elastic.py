@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The as-rigid-as-possible energy: what costs nothing, what costs a known amount, and its derivative."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine import TriangleMesh
+from engine.elastic import ElasticSurface
+from engine.laplacian import laplace_beltrami
+from tests.shapes import creature, icosphere, permuted, plane, rotation
+
+NEAR = 0.1
+
+
+def elastic_of(vertices, triangles):
+    return ElasticSurface(vertices, laplace_beltrami(TriangleMesh(vertices, triangles)))
+
+
+@pytest.fixture(scope="module")
+def body():
+    vertices, triangles, _ = creature(0.0, 9)
+    return vertices, triangles, elastic_of(vertices, triangles)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    vertices, triangles = icosphere(5)
+    return vertices, triangles, elastic_of(vertices, triangles)
+
+
+@pytest.mark.parametrize(("axis", "angle"), [([1, 0, 0], 0.3), ([1, 2, 3], 2.0), ([0, 1, -1], np.pi)])
+def test_a_rigid_motion_costs_nothing_and_is_found(axis, angle, body):
+    vertices, _, elastic = body
+    turn = rotation(axis, angle)
+    moved = vertices @ turn.T + [3, -2, 5]
+    rotations = elastic.rotations(moved, NEAR)
+    np.testing.assert_allclose(rotations, np.broadcast_to(turn, rotations.shape), atol=1e-9)
+    assert elastic.energy(moved, rotations) == pytest.approx(0, abs=1e-15)
+    np.testing.assert_allclose(elastic.stiffness @ moved, elastic.pull(rotations), atol=1e-9)
+
+
+@pytest.mark.parametrize("scale", [0.5, 0.9, 1.0, 1.3, 2.0])
+def test_uniform_scaling_costs_the_dirichlet_energy_of_the_difference(scale, ball):
+    """Twice the area by the squared change of scale, as the gradient of each position has the squared norm two."""
+    vertices, triangles, elastic = ball
+    rotations = elastic.rotations(scale * vertices, NEAR)
+    np.testing.assert_allclose(rotations, np.broadcast_to(np.eye(3), rotations.shape), atol=1e-9)
+    area = TriangleMesh(vertices, triangles).area
+    assert elastic.energy(scale * vertices, rotations) == pytest.approx(2 * area * (scale - 1) ** 2, rel=1e-9, abs=1e-9)
+
+
+def test_stretching_a_plane_one_way_costs_its_area_by_the_squared_strain():
+    vertices, triangles = plane(12, jitter=0.2)
+    elastic = elastic_of(vertices, triangles)
+    stretched = vertices * [1.4, 1, 1]
+    # No edge is left quite without weight, which is not in the integral.
+    assert elastic.energy(stretched, elastic.rotations(stretched, NEAR)) == pytest.approx(0.4**2, rel=1e-3)
+
+
+def test_the_energy_is_an_area(body):
+    vertices, triangles, elastic = body
+    bent = creature(0.5, 9)[0]
+    cost = elastic.energy(bent, elastic.rotations(bent, NEAR))
+    assert cost > 0
+    large = elastic_of(50 * vertices, triangles)
+    assert large.energy(50 * bent, large.rotations(50 * bent, 50 * NEAR)) == pytest.approx(2500 * cost)
+
+
+def test_the_equilibrium_is_where_the_energy_has_no_slope(body):
+    """The gradient of the energy is twice the stiffness applied to the positions, less the pull."""
+    vertices, _, elastic = body
+    random = np.random.default_rng(1)
+    rotations = elastic.rotations(creature(0.7, 9)[0], NEAR)
+    positions = vertices + 0.1 * random.normal(size=vertices.shape)
+    direction = random.normal(size=vertices.shape)
+    step = 1e-3  # central differences of a square are exact
+    ahead, behind = (elastic.energy(positions + sign * step * direction, rotations) for sign in (1, -1))
+    slope = 2 * (elastic.stiffness @ positions - elastic.pull(rotations))
+    assert (ahead - behind) / (2 * step) == pytest.approx((slope * direction).sum(), rel=1e-6)
+
+
+def test_the_stiffness_is_symmetric_without_negative_modes_and_ignores_where_the_surface_is(body):
+    vertices, _, elastic = body
+    assert abs(elastic.stiffness - elastic.stiffness.T).max() < 1e-12
+    np.testing.assert_allclose(elastic.stiffness @ np.ones(len(vertices)), 0, atol=1e-10)
+    vectors = np.random.default_rng(0).normal(size=(len(vertices), 20))
+    assert (np.einsum("nk,nk->k", vectors, elastic.stiffness @ vectors) > 0).all()
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 10**6), noise=st.floats(0, 3), mirror=st.booleans(), flat=st.booleans())
+def test_rotations_never_reflect(ball, seed, noise, mirror, flat):
+    vertices, _, elastic = ball
+    positions = vertices * [-1 if mirror else 1, 1, 0 if flat else 1]
+    positions = positions + noise * np.random.default_rng(seed).normal(size=vertices.shape)
+    rotations = elastic.rotations(positions, NEAR)
+    np.testing.assert_allclose(np.linalg.det(rotations), 1, atol=1e-9)
+    np.testing.assert_allclose(
+        rotations @ rotations.transpose(0, 2, 1), np.broadcast_to(np.eye(3), rotations.shape), atol=1e-9
+    )
+
+
+def test_a_mirrored_plane_is_one_that_was_turned_over():
+    vertices, triangles = plane(10, jitter=0.2)
+    elastic = elastic_of(vertices, triangles)
+    mirrored = vertices * [-1, 1, 1]
+    rotations = elastic.rotations(mirrored, NEAR)
+    np.testing.assert_allclose(rotations, np.broadcast_to(np.diag([-1, 1, -1]), rotations.shape), atol=1e-9)
+    assert elastic.energy(mirrored, rotations) == pytest.approx(0, abs=1e-15)
+
+
+def test_rotations_are_smooth_over_the_radius(body):
+    vertices, triangles, elastic = body
+    noisy = vertices + 0.02 * np.random.default_rng(2).normal(size=vertices.shape)
+    first, second = TriangleMesh(vertices, triangles).edges.T
+
+    def roughness(radius):
+        rotations = elastic.rotations(noisy, radius)
+        return np.square(rotations[first] - rotations[second]).sum(axis=(1, 2)).mean()
+
+    near, far = roughness(0.05), roughness(0.4)
+    assert far < 0.3 * near
+
+
+def test_bending_costs_far_less_than_noise_as_large(body):
+    vertices, _, elastic = body
+    bent = creature(0.5, 9)[0]
+    noise = np.random.default_rng(0).normal(size=vertices.shape)
+    noisy = vertices + noise * np.linalg.norm(bent - vertices) / np.linalg.norm(noise)
+    bending, wrinkling = (elastic.energy(x, elastic.rotations(x, NEAR)) for x in (bent, noisy))
+    assert 0 < bending < 0.1 * wrinkling
+
+
+def test_the_order_of_the_vertices_does_not_matter(body):
+    vertices, triangles, elastic = body
+    shuffled, faces, new = permuted(vertices, triangles, seed=3)
+    other = elastic_of(shuffled, faces)
+    bent = creature(0.5, 9)[0]
+    bent_there = np.empty_like(bent)
+    bent_there[new] = bent
+    rotations, there = elastic.rotations(bent, NEAR), other.rotations(bent_there, NEAR)
+    np.testing.assert_allclose(there[new], rotations, atol=1e-8)
+    assert other.energy(bent_there, there) == pytest.approx(elastic.energy(bent, rotations), rel=1e-8)

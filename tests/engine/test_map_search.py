@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import numpy as np
+import pytest
+
+from engine import Shape, TriangleMesh
+from engine.functional_maps import PointMaps
+from engine.map_domain import MapDomain
+from engine.map_search import MapLead, distinct_leads, rough_maps_steps
+from engine.progress import run
+from tests.shapes import creature
+
+
+def domain(pose):
+    shape = Shape(TriangleMesh(*creature(pose, 9)[:2]))
+    run(shape.sample_steps(300))
+    run(shape.spectrum_steps(60))
+    return MapDomain(shape, 60)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return domain(0.0), domain(1.0)
+
+
+def error(x, y, lead, sign=1):
+    """Mean distance between images and truth at rest, where vertices correspond by their number."""
+    rest = creature(0.0, 9)[2]
+    images = rest[y.vertices[lead.points.on_y]]
+    return np.linalg.norm(images - rest[x.vertices[: x.coarse_count]] * [1, sign, 1], axis=1).mean()
+
+
+def test_the_truth_is_among_the_rough_maps_and_first_of_its_orientation(pair):
+    leads = run(rough_maps_steps(*pair))
+    keeping = [lead for lead in leads if lead.orientation > 0]
+    assert error(*pair, keeping[0]) < 0.15
+    assert keeping[0].score == min(lead.score for lead in keeping)
+
+
+def test_maps_that_mirror_are_proposed_too(pair):
+    leads = run(rough_maps_steps(*pair))
+    mirroring = [lead for lead in leads if lead.orientation <= 0]
+    assert mirroring
+    assert min(error(*pair, lead, -1) for lead in mirroring) < 0.25
+
+
+def test_groups_are_few(pair):
+    leads = run(rough_maps_steps(*pair))
+    assert sum(lead.orientation > 0 for lead in leads) <= 7
+    assert sum(lead.orientation <= 0 for lead in leads) <= 3
+
+
+def test_progress_grows_to_the_end(pair):
+    fractions = [progress.fraction for progress in rough_maps_steps(*pair)]
+    assert fractions == sorted(fractions)
+    assert 0 <= fractions[0] <= fractions[-1] <= 1
+
+
+def test_the_best_of_equal_maps_is_kept_and_hopeless_ones_are_not(pair):
+    _, y = pair
+    rng = np.random.default_rng(0)
+    same, other, third = (rng.integers(0, y.coarse_count, y.coarse_count) for _ in range(3))
+
+    def lead(images, score, orientation):
+        return MapLead(PointMaps(images, images), score, orientation, {}, "here")
+
+    leads = [lead(same, 2, 0.5), lead(same, 1, 0.5), lead(other, 1.5, 0.4), lead(third, 9, 0.5), lead(same, 5, -0.5)]
+    kept = distinct_leads(y, leads, 0.05, 3.0, {1: 2, -1: 1})
+    assert [each.score for each in kept] == [1, 1.5, 5]
+    assert [each.score for each in distinct_leads(y, leads, 0.05, 3.0, {1: 1})] == [1]
+    assert [each.score for each in distinct_leads(y, leads, 0.05, 30.0, {1: 3})] == [1, 1.5, 9]

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is said of maps whose quality is known."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from engine import ClosestPoints, SurfacePoints, TriangleMesh
+from engine.quality import assess_maps, map_confidence, round_trips
+from tests.bodies import mirrored_body
+from tests.shapes import creature, icosphere, permuted, plane, rotation
+
+
+def at(mesh, vertices=None):
+    return SurfacePoints.at_vertices(mesh, np.arange(mesh.vertex_count) if vertices is None else vertices)
+
+
+def nearest_on(mesh, positions):
+    found = ClosestPoints(mesh).nearest(positions)
+    return SurfacePoints.from_barycentric(mesh, found.triangles, found.barycentric)
+
+
+def by_index(source, target, margin=None):
+    """Assess the map that keeps the indices."""
+    return assess_maps(source, target, at(target), at(source), margin)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return TriangleMesh(*icosphere(6))
+
+
+@pytest.fixture(scope="module")
+def square():
+    return TriangleMesh(*plane(21))
+
+
+@pytest.fixture(scope="module")
+def symmetric():
+    vertices, triangles, rest = mirrored_body(0.0, 9)
+    other = cKDTree(rest).query(rest * [1, -1, 1])[1]
+    return TriangleMesh(vertices, triangles), other
+
+
+def test_the_identity_is_perfect(ball):
+    quality = by_index(ball, ball)
+    assert quality.orientation == pytest.approx(1)
+    assert quality.distortion == pytest.approx(0, abs=1e-12)
+    assert quality.coverage == pytest.approx(1)
+    assert quality.disagreement == pytest.approx(0, abs=1e-12)
+    assert quality.margin is None
+    assert quality.confidence == pytest.approx(1)
+    assert quality.sentence == "The shapes correspond closely."
+    np.testing.assert_allclose(map_confidence(ball, ball, at(ball), at(ball)), 1)
+
+
+def test_size_place_and_order_do_not_matter():
+    source, target = (TriangleMesh(*creature(pose, 9)[:2]) for pose in (0.0, 0.8))
+    first = by_index(source, target, 1.5)
+    turned = TriangleMesh(0.01 * target.vertices @ rotation([1, 2, 3], 2.0).T + 4, target.triangles)
+    second = by_index(TriangleMesh(300 * source.vertices, source.triangles), turned, 1.5)
+    vertices, triangles, new = permuted(source.vertices, source.triangles)
+    shuffled, order = TriangleMesh(vertices, triangles), np.argsort(new)
+    third = assess_maps(shuffled, target, at(target, order), at(shuffled, new), 1.5)
+    for other in (second, third):
+        for name in ("distortion", "coverage", "disagreement", "confidence"):
+            assert getattr(other, name) == pytest.approx(getattr(first, name), rel=1e-6, abs=1e-9)
+        assert other.orientation == pytest.approx(first.orientation, abs=0.01)
+        assert other.sentence == first.sentence
+
+
+def test_the_true_map_of_a_bent_body_corresponds_closely():
+    source, target = (TriangleMesh(*creature(pose, 9)[:2]) for pose in (0.0, 0.8))
+    quality = by_index(source, target)
+    assert quality.orientation > 0.98
+    assert quality.coverage == pytest.approx(1)
+    assert quality.disagreement == pytest.approx(0, abs=1e-12)
+    assert 0 < quality.distortion < 0.1
+    assert quality.confidence > 0.9
+    assert quality.sentence == "The shapes correspond closely."
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.3, 2.0, 4.0])
+def test_the_distortion_of_a_stretched_square(factor, square):
+    """Its sides change by the root of the factor, up and down; the diagonals of its cells by less."""
+    stretched = TriangleMesh(square.vertices * [factor, 1, 1], square.triangles)
+    quality = by_index(square, stretched)
+    side, diagonal = abs(np.log(factor)) / 2, abs(np.log((factor + 1 / factor) / 2)) / 2
+    sides, diagonals = 2 * 21 * 20, 20 * 20
+    expected = (sides * side + 2 * diagonals * diagonal) / (sides + 2 * diagonals)
+    assert quality.distortion == pytest.approx(expected, rel=1e-6)
+    assert quality.orientation == pytest.approx(1)
+    if expected > 0.5:
+        assert "differ much" in quality.sentence
+    elif expected > 0.2:
+        assert "some stretching" in quality.sentence
+    else:
+        assert "closely" in quality.sentence
+
+
+def test_a_mirrored_map_is_not_to_be_trusted(symmetric):
+    body, other = symmetric
+    quality = assess_maps(body, body, at(body, other), at(body, other), None)
+    assert quality.orientation < -0.95
+    assert quality.disagreement == pytest.approx(0, abs=1e-9)
+    assert quality.distortion == pytest.approx(0, abs=1e-6)
+    assert quality.confidence == 0
+    assert "do not trust it" in quality.sentence
+
+
+def test_a_half_that_is_not_reached_is_told(square):
+    folded = nearest_on(square, square.vertices * [0.5, 1, 1])
+    quality = assess_maps(square, square, folded, nearest_on(square, np.minimum(square.vertices * [2, 1, 1], 1)), None)
+    reach = 0.5 + 3 / 21  # what is at most three spacings away counts as reached
+    assert quality.coverage == pytest.approx(reach, abs=0.06)
+    assert f"Only {quality.coverage:.0%} of the target is reached" in quality.sentence
+    assert quality.disagreement == pytest.approx(0, abs=1e-9)
+
+
+def test_a_map_to_one_point_has_no_orientation_and_hardly_any_coverage(ball):
+    point = at(ball, np.zeros(ball.vertex_count, int))
+    quality = assess_maps(ball, ball, point, point, None)
+    assert quality.orientation == 0
+    assert quality.coverage < 0.1
+    assert quality.confidence == 0
+    assert np.isfinite(quality.distortion)
+    assert quality.disagreement == pytest.approx(4 / 3 / np.sqrt(4 * np.pi), rel=0.03)  # mean chord over the root area
+
+
+def test_the_choice_of_the_map_counts(ball):
+    clear, doubtful, even = (by_index(ball, ball, margin) for margin in (20.0, 0.5, 0.0))
+    assert clear.confidence == pytest.approx(1)
+    assert clear.sentence == "The shapes correspond closely."
+    assert even.confidence == pytest.approx(0.5)
+    assert even.confidence < doubtful.confidence < clear.confidence
+    for quality in (doubtful, even):
+        assert "Another map was almost as likely" in quality.sentence
+    assert doubtful.margin == 0.5
+
+
+def test_the_worst_is_said_first(symmetric):
+    body, other = symmetric
+    turned = assess_maps(body, body, at(body, other), at(body, other), 0.1)
+    assert "do not trust it" in turned.sentence
+    point = at(body, np.zeros(body.vertex_count, int))
+    reached = assess_maps(body, body, at(body), point, 0.1)
+    assert "almost as likely" in reached.sentence
+
+
+def test_round_trips_are_distances_from_home(ball):
+    random = np.random.default_rng(3)
+    target = TriangleMesh(*icosphere(4, 2.0))
+    there = SurfacePoints.from_barycentric(
+        target,
+        random.integers(0, target.triangle_count, ball.vertex_count),
+        random.dirichlet(np.ones(3), ball.vertex_count),
+    )
+    back = SurfacePoints.from_barycentric(
+        ball,
+        random.integers(0, ball.triangle_count, target.vertex_count),
+        random.dirichlet(np.ones(3), target.vertex_count),
+    )
+    expected = [
+        np.linalg.norm(sum(w * back.positions[c] for w, c in zip(weights, corners, strict=True)) - home)
+        for weights, corners, home in zip(there.barycentric, there.corners, ball.vertices, strict=True)
+    ]
+    np.testing.assert_allclose(round_trips(ball, there, back), expected)
+
+
+@pytest.mark.parametrize("slide", [0.0, 0.01, 0.02, 0.04])
+def test_confidence_falls_with_the_distance_from_home(slide, square):
+    """It is halved where there and back lead two hundredths of the surface's size away."""
+    back = nearest_on(square, np.minimum(square.vertices + np.array([slide, 0, 0]), 1))
+    confidence = map_confidence(square, square, at(square), back)
+    inner = ((square.vertices > 0.15) & (square.vertices < 0.85))[:, :2].all(axis=1)
+    np.testing.assert_allclose(confidence[inner], 1 / (1 + (slide / 0.02) ** 2), rtol=1e-6)
+    assert assess_maps(square, square, at(square), back, None).disagreement == pytest.approx(slide, rel=0.05, abs=1e-12)
+
+
+def test_confidence_is_low_where_the_map_is_wrong_only(square):
+    wrong = np.linalg.norm(square.vertices - [0.3, 0.7, 0], axis=1) < 0.12
+    images = np.where(wrong, 0, np.arange(square.vertex_count))
+    confidence = map_confidence(square, square, at(square, images), at(square))
+    assert confidence[wrong].max() < 0.5
+    far = np.linalg.norm(square.vertices - [0.3, 0.7, 0], axis=1) > 0.3
+    np.testing.assert_allclose(confidence[far], 1)
+    assert ((confidence >= 0) & (confidence <= 1)).all()
+
+
+def test_edges_and_faces_without_size_do_no_harm():
+    vertices, triangles = icosphere(4)
+    vertices = vertices.copy()
+    vertices[triangles[::20, 0]] = vertices[triangles[::20, 1]]
+    mesh = TriangleMesh(vertices, triangles)
+    quality = by_index(mesh, mesh)
+    assert quality.orientation > 0.99
+    assert quality.distortion == pytest.approx(0, abs=1e-12)
+    assert quality.coverage == pytest.approx(1)
+    assert np.isfinite(map_confidence(mesh, mesh, at(mesh), at(mesh))).all()

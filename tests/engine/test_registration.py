@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces that are deformed onto others, from starts that are near the truth."""
+
+import numpy as np
+import pytest
+
+from engine import Progress, TriangleMesh, run
+from engine.deformable import DeformableSurface
+from engine.eigenpairs import eigenpairs_steps
+from engine.laplacian import laplace_beltrami
+from engine.registration import FINE, POLISH, SOFT, Stage, register_steps, smooth_start
+from tests.shapes import creature, icosphere, permuted, rotation
+
+
+def deformable(vertices, triangles):
+    mesh = TriangleMesh(vertices, triangles)
+    return DeformableSurface(mesh, laplace_beltrami(mesh))
+
+
+def at(points, surface, values):
+    """Values of vertices, interpolated at found points."""
+    return np.einsum("kc,kcd->kd", points.barycentric, values[surface.triangles[points.triangles]])
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    """A body at rest and, in another meshing, bent: surfaces and rest positions."""
+    first, second = creature(0.0, 9), creature(0.7, 9, turn=0.7)
+    return deformable(*first[:2]), deformable(*second[:2]), first[2], second[2]
+
+
+@pytest.fixture(scope="module")
+def near_truth(bodies):
+    """For each vertex of the source, the vertex of the target that is nearest at rest."""
+    return np.linalg.norm(bodies[2][:, None] - bodies[3], axis=2).argmin(axis=1)
+
+
+@pytest.fixture(scope="module")
+def functions(bodies):
+    source = bodies[0]
+    spectrum = run(eigenpairs_steps(laplace_beltrami(source.mesh), 40))
+    return spectrum.functions * np.sqrt(source.mesh.area)
+
+
+@pytest.fixture(scope="module")
+def registered(bodies, near_truth, functions):
+    source, target = bodies[:2]
+    return run(register_steps(source, target, smooth_start(source, target, near_truth, functions)))
+
+
+def assert_valid(points, surface):
+    assert points.triangles.min() >= 0
+    assert points.triangles.max() < len(surface.triangles)
+    assert points.barycentric.min() >= 0
+    np.testing.assert_allclose(points.barycentric.sum(axis=1), 1)
+
+
+def test_a_bent_body_is_recovered_between_the_vertices(registered, bodies):
+    source, target, rest_x, rest_y = bodies
+    size, edge = np.sqrt(source.mesh.area), source.mesh.edge_lengths.mean()
+    for points, own, other, surface in (
+        (registered.on_target, rest_x, rest_y, target),
+        (registered.on_source, rest_y, rest_x, source),
+    ):
+        assert_valid(points, surface)
+        errors = np.linalg.norm(own - at(points, surface, other), axis=1)
+        assert errors.mean() < 0.25 * edge
+        assert errors.mean() < 0.012 * size
+        assert errors.max() < 0.08 * size
+
+
+def test_the_source_lies_on_the_target(registered, bodies):
+    source, target = bodies[:2]
+    there = at(registered.on_target, target, target.vertices)
+    gaps = np.square(registered.positions - there).sum(axis=1)
+    assert registered.misfit == pytest.approx(float(source.mass @ gaps))
+    assert registered.misfit < 1e-4
+    rotations = source.elastic.rotations(registered.positions, FINE.rotation_radius)
+    assert registered.energy == pytest.approx(source.elastic.energy(registered.positions, rotations))
+
+
+def test_there_and_back_leads_home(registered, bodies):
+    source, target = bodies[:2]
+    homes = at(registered.on_source, source, source.vertices)
+    trips = np.linalg.norm(at(registered.on_target, target, homes) - source.vertices, axis=1)
+    assert trips.mean() < 0.01
+    assert trips.max() < 0.06
+
+
+def test_no_triangle_is_turned_over(registered, bodies):
+    source, target = bodies[:2]
+    a, b, c = registered.positions[source.triangles].transpose(1, 0, 2)
+    seen = at(registered.on_target, target, target.normals)[source.triangles].sum(axis=1)
+    kept = np.einsum("td,td->t", np.cross(b - a, c - a), seen) > 0
+    assert np.average(kept, weights=source.mesh.triangle_areas) > 0.97
+
+
+def test_a_body_at_rest_stays_where_it_is(bodies):
+    source = bodies[0]
+    result = run(register_steps(source, source, source.vertices, (FINE,)))
+    gaps = np.linalg.norm(result.positions - source.vertices, axis=1)
+    assert gaps.mean() < 1e-3
+    assert result.energy < 1e-4
+    assert result.misfit < 1e-6
+
+
+def test_a_turned_and_resized_target_gets_the_source_turned(bodies, registered, near_truth, functions):
+    source, target = bodies[:2]
+    turn = rotation([2, -1, 1], 1.9)
+    moved = deformable(0.02 * target.mesh.vertices @ turn.T + [1, 2, 3], target.triangles)
+    result = run(register_steps(source, moved, smooth_start(source, moved, near_truth, functions)))
+    np.testing.assert_allclose(result.positions, registered.positions @ turn.T, atol=1e-6)
+    assert result.energy == pytest.approx(registered.energy, rel=1e-4)
+    assert result.misfit == pytest.approx(registered.misfit, rel=1e-4)
+
+
+def test_the_order_of_the_vertices_does_not_matter(bodies, registered, near_truth, functions):
+    source, target = bodies[:2]
+    vertices, triangles, new = permuted(source.mesh.vertices, source.triangles, seed=2)
+    shuffled = deformable(vertices, triangles)
+    start = np.empty_like(source.vertices)
+    start[new] = smooth_start(source, target, near_truth, functions)
+    result = run(register_steps(shuffled, target, start))
+    np.testing.assert_allclose(result.positions[new], registered.positions, atol=1e-3)
+    assert np.linalg.norm(result.positions[new] - registered.positions, axis=1).mean() < 1e-5
+
+
+def test_given_matches_pull_first(bodies, registered, near_truth):
+    """Even from a place that tells nothing: all of the source in one small ball."""
+    source, target, rest_x, rest_y = bodies
+    back = np.linalg.norm(rest_y[:, None] - rest_x, axis=2).argmin(axis=1)
+    corners = np.eye(3)
+
+    def at_vertices(surface, vertices):
+        first = np.array([np.flatnonzero((surface.triangles == v).any(axis=1))[0] for v in vertices])
+        place = (surface.triangles[first] == vertices[:, None]).argmax(axis=1)
+        return type(registered.on_target)(first, corners[place], np.zeros(len(vertices)))
+
+    first = at_vertices(target, near_truth), at_vertices(source, back)
+    result = run(register_steps(source, target, 1e-3 * source.vertices, (SOFT,), first))
+    errors = np.linalg.norm(rest_x - at(result.on_target, target, rest_y), axis=1) / np.sqrt(source.mesh.area)
+    assert errors.mean() < 0.02
+
+
+def test_the_weights_decide_between_fit_and_shape():
+    """A ball onto one that is longer: stiff it keeps its shape, soft it takes that of the target."""
+    source = deformable(*icosphere(5))
+    vertices, triangles = icosphere(5)
+    target = deformable(vertices * [1, 1, 1.5], triangles)
+    stiff, soft = (
+        run(register_steps(source, target, source.vertices, (Stage((weight,) * 6, 0.1, 0.0),))) for weight in (1, 1000)
+    )
+    assert stiff.energy < soft.energy
+    assert stiff.misfit > 10 * soft.misfit
+
+
+def test_progress_counts_the_rounds(bodies, near_truth, functions):
+    source, target = bodies[:2]
+    start = smooth_start(source, target, near_truth, functions)
+    reports = list(register_steps(source, target, start, (POLISH, Stage((1000,), 0.1, 0.05))))
+    assert all(isinstance(report, Progress) for report in reports)
+    rounds = len(POLISH.weights) + 1
+    np.testing.assert_allclose([report.fraction for report in reports], np.arange(1, rounds + 1) / rounds)
+
+
+def test_a_smooth_start_with_all_functions_is_the_map_itself():
+    ball = deformable(*icosphere(3))
+    spectrum = run(eigenpairs_steps(laplace_beltrami(ball.mesh), len(ball.vertices)))
+    functions = spectrum.functions * np.sqrt(ball.mesh.area)
+    images = np.random.default_rng(0).permutation(len(ball.vertices))
+    if functions.shape[1] == len(ball.vertices):
+        np.testing.assert_allclose(smooth_start(ball, ball, images, functions), ball.vertices[images], atol=1e-6)
+    constant = smooth_start(ball, ball, images, functions[:, :1])
+    np.testing.assert_allclose(constant, np.broadcast_to(ball.mass @ ball.vertices[images], constant.shape), atol=1e-6)
+
+
+def test_a_smooth_start_is_without_the_noise_of_the_map(bodies, near_truth, functions):
+    source, target = bodies[:2]
+    random = np.random.default_rng(1)
+    noisy = np.where(
+        random.random(len(near_truth)) < 0.1, random.integers(0, len(target.vertices), len(near_truth)), near_truth
+    )
+    wanted = target.vertices[near_truth]
+    before = np.linalg.norm(target.vertices[noisy] - wanted, axis=1)
+    after = np.linalg.norm(smooth_start(source, target, noisy, functions) - wanted, axis=1)
+    assert after.max() < 0.6 * before.max()

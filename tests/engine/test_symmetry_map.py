@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The dense left-right map of a posed body whose mirror images are known."""
+
+import numpy as np
+import pytest
+
+from engine import MatchSettings, TriangleMesh, symmetry_map
+from engine.progress import run
+from engine.symmetry_map import symmetry_map_steps
+from tests.bodies import mirrored_body
+
+QUICK = MatchSettings(points=40, samples=200)
+
+
+@pytest.fixture(scope="module")
+def body():
+    vertices, triangles, rest = mirrored_body(0.6, 11, seed=0)
+    return TriangleMesh(vertices, triangles), rest
+
+
+@pytest.fixture(scope="module")
+def mirrored(body):
+    return symmetry_map(body[0], QUICK)
+
+
+def test_every_vertex_goes_to_its_mirror_image(body, mirrored):
+    mesh, rest = body
+    for found in (mirrored.source_to_target, mirrored.target_to_source):
+        gap = np.linalg.norm(found.transfer(rest) - rest * [1, -1, 1], axis=1) / np.sqrt(mesh.area)
+        assert gap.mean() < 0.015
+        assert gap.max() < 0.15
+        assert found.orientation(mesh, mesh) < -0.9
+
+
+def test_twice_the_map_is_nearly_the_identity(body, mirrored):
+    mesh, rest = body
+    found = mirrored.source_to_target
+    gap = np.linalg.norm(found.transfer(found.transfer(rest)) - rest, axis=1) / np.sqrt(mesh.area)
+    assert gap.mean() < 0.02
+
+
+def test_progress_rises(body):
+    fractions = []
+    steps = symmetry_map_steps(body[0], QUICK)
+
+    def watched():
+        while True:
+            try:
+                progress = next(steps)
+            except StopIteration as stop:
+                return stop.value
+            fractions.append(progress.fraction)
+            yield progress
+
+    run(watched())
+    assert fractions == sorted(fractions)
+    assert fractions[0] >= 0
+    assert fractions[-1] <= 1
