@@ -36,7 +36,7 @@ class MatchQuality:
     ----------
     orientation : float
         Part of the source's area on which the map keeps left on the left, minus the part on which it mirrors: 1 if it
-        does everywhere.
+        does everywhere.  Of a map that is wanted to mirror (see `densify_steps`), seen in the mirror.
     distortion : float
         Mean of the absolute logarithm of the stretch of edges, by area: 0 for an isometry, 0.1 for some ten per cent.
     coverage : float
