@@ -12,7 +12,7 @@ from .closest_points import ClosestPoints
 from .errors import MatchError
 from .progress import Progress, Steps
 from .surface import SurfacePoints
-from .untangling import follow_neighbours, heaviest_corners, located, untangle
+from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -130,6 +130,7 @@ def lift_steps(
             starts[part], positions[part], lift.turned(motion, part)
         )
         astray[part] = agreement <= _NORMAL_GATE
+    astray |= torn_vertices(source, located(target, triangles, barycentric))
     yield Progress(0.85, _LABEL)
     starts = follow_neighbours(source, heaviest_corners(target, triangles, barycentric), astray)
     again = np.flatnonzero(astray)

@@ -181,16 +181,16 @@ def _dense_steps(
         starts.append(LandmarkStart(x.sample_rows[: len(places)], y.sample_rows[places], "hierarchy"))
     registered = yield from within(registered_pair_steps(x, y, starts, landmarks=landmarks), 0.0, 0.75)
     clock.lap("registration")
-    count = len(answers[0].points)
-    on_target = registered.registration.on_target
-    samples = x.samples[:count]
-    images = SurfacePoints.from_barycentric(y.mesh, on_target.triangles[samples], on_target.barycentric[samples])
+    dense = yield from within(dense_match_steps(registered), 0.75, 0.9)
+    clock.lap("lift")
+    found, vertices = dense.source_to_target, x.vertices[x.samples[: len(answers[0].points)]]
+    images = y.surface.on_mesh(
+        SurfacePoints.from_barycentric(y.original, found.triangles[vertices], found.barycentric[vertices])
+    )
     if landmarks is not None:
         images = placed_at_vertices(images, y.mesh, np.arange(len(landmarks)), landmarks.target.matched)
-    direct, mirrored = yield from within(_agreeing_steps(answers, images), 0.75, 0.85)
+    direct, mirrored = yield from within(_agreeing_steps(answers, images), 0.9, 1.0)
     clock.lap("agreement")
-    dense = yield from within(dense_match_steps(registered), 0.85, 1.0)
-    clock.lap("lift")
     return direct, mirrored, dense
 
 

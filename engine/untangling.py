@@ -14,12 +14,13 @@ if TYPE_CHECKING:
     from .closest_points import ClosestPoints
     from .mesh import TriangleMesh
 
-__all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "untangle"]
+__all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle"]
 
 _ROUNDS = 4
 _RINGS = 2  # of vertices around a flipped triangle that move with it
 _SWEEPS = 3  # of averaging before each search
 _CHUNK = 200_000
+_TORN = 6.0  # times the median: edges that a map stretches more than this lead to another place
 _TINY = np.finfo(float).tiny
 
 
@@ -55,6 +56,30 @@ def follow_neighbours(mesh: TriangleMesh, values: NDArray[np.int64], astray: NDA
         left = astray[tail]
         tail, head = tail[left], head[left]
     return values
+
+
+def torn_vertices(mesh: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Find the vertices that a map takes far away from where it takes most of their neighbours.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    images : (n, 3) array of float
+        Where its vertices are mapped to.
+
+    Returns
+    -------
+    (n,) array of bool
+        Vertices at least half of whose edges are stretched six times more than the median.
+    """
+    tail, head = mesh.edges.T
+    lengths = np.maximum(mesh.edge_lengths, 1e-3 * mesh.edge_lengths.mean())
+    stretch = np.linalg.norm(images[tail] - images[head], axis=1) / lengths
+    long = np.flatnonzero(stretch > _TORN * np.median(stretch))
+    many = np.bincount(mesh.edges[long].ravel(), minlength=mesh.vertex_count)
+    degree = np.bincount(mesh.edges.ravel(), minlength=mesh.vertex_count)
+    return (many > 0) & (2 * many >= degree)
 
 
 def flipped_triangles(
