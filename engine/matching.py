@@ -264,6 +264,7 @@ def _result(
         source_vertices[:known], target_vertices[:known] = landmarks.source.original, landmarks.target.original
 
     def exact(points: SurfacePoints) -> SurfacePoints:
+        """Put the landmarks among points at the very vertices that were given."""
         rows = np.arange(min(known, len(points)))
         return placed_at_vertices(points, y.original, rows, target_vertices[rows]) if known else points
 

@@ -67,7 +67,7 @@ def flat(pair, precomputation, points, limit):
 
 def hierarchical(known, points):
     start = time.perf_counter()
-    result = match(Shape(known.source), Shape(known.target), MatchSettings(points=points))
+    result = match(Shape(known.source), Shape(known.target), MatchSettings(points=points, dense=False))
     precomputation = result.seconds["geodesics"]
     seconds = time.perf_counter() - start - precomputation
     candidates = max(MatchSettings().samples, 2 * points)

@@ -117,7 +117,7 @@ def _rgb(hue):
 def figure_2(scene, output):
     rows = []
     for key, (name, choices) in SETUPS.items():
-        result = match(*scene.shapes, MatchSettings(points=LEVELS[-1], **choices))
+        result = match(*scene.shapes, MatchSettings(points=LEVELS[-1], dense=False, **choices))
         answers = [(f"({key}) {name}", result, False)]
         if key == "d" and result.mirrored is not None:
             answers.append((f"({key}) {name}, mirrored", result.mirrored, True))
@@ -134,7 +134,7 @@ def figure_2(scene, output):
 
 
 def figure_3(scene, output):
-    result = match(*scene.shapes, MatchSettings(points=LEVELS[-1]))
+    result = match(*scene.shapes, MatchSettings(points=LEVELS[-1], dense=False))
     coarse = result.coarse
     exact = Level(
         points=len(coarse.target_vertices),

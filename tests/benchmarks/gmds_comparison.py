@@ -58,7 +58,7 @@ def compare(pair, points):
     """Outcome of each method on one pair."""
     source, target = pair.shapes
     start = time.process_time()
-    ours = match(source, target, MatchSettings(points=points))
+    ours = match(source, target, MatchSettings(points=points, dense=False))
     seconds = {OURS: time.process_time() - start}
     truth = pair.truth(ours.source_points.nearest_vertices)
     results = {OURS: outcome(truth, ours.target_points, ours.quadratic, seconds[OURS])}

@@ -2,6 +2,7 @@
 """Match real shapes with the operator in Blender, and measure the error against their known correspondence.
 
     python -m tests.benchmarks.real_pairs --data FOLDER [--pairs cat0:cat1,dog0:dog5] [--points 64] [--setup a]
+        [--sparse]
     python -m tests.benchmarks.real_pairs                        the demo pair instead
 
 FOLDER holds .off files and beside them a folder `corres` with NAME.vts and NAME.sym.vts: line i of two shapes names the
@@ -114,9 +115,10 @@ def main():
     parser.add_argument("--pairs", default=PAIRS, help=f"source:target, separated by commas (default {PAIRS})")
     parser.add_argument("--points", type=int, default=64)
     parser.add_argument("--setup", choices=list(SETUPS), default="a", help="setup of the paper's figure 2 (default a)")
+    parser.add_argument("--sparse", action="store_true", help="match the sparse points alone, without the dense map")
     options = parser.parse_args()
     choices = {name: word.upper() for name, word in SETUPS[options.setup][1].items()}
-    choices["points"] = options.points
+    choices |= {"points": options.points, "dense": not options.sparse}
     print(f"{options.points} points; {SETUPS[options.setup][0]}; errors x sqrt(area)")
     if options.data is None:
         means = [report("demo pair", measure_demo(choices))]
