@@ -3,15 +3,18 @@
 
 from .closest_points import ClosestPoints
 from .dense_match import DenseMatch, densify, densify_steps
-from .errors import HierMatchError, MatchError, MeshError, SettingsError
+from .errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
+from .fitted_rig import FittedRig
 from .matching import match, match_steps
 from .mesh import TriangleMesh
 from .progress import Progress, run
 from .quality import MatchQuality
 from .result import CoarseMatch, Level, MatchResult
 from .retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
+from .rig_fit import fit_rig, fit_rig_steps
 from .settings import MatchSettings
 from .shape import Shape
+from .skeleton import Skeleton
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
 from .symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
@@ -21,6 +24,7 @@ __all__ = [
     "ClosestPoints",
     "CoarseMatch",
     "DenseMatch",
+    "FittedRig",
     "HierMatchError",
     "Level",
     "MatchError",
@@ -32,8 +36,10 @@ __all__ = [
     "Retrieval",
     "RetrievalSettings",
     "RetrievedMatch",
+    "RigError",
     "SettingsError",
     "Shape",
+    "Skeleton",
     "SurfaceMap",
     "SurfacePoints",
     "SymmetryResult",
@@ -42,6 +48,8 @@ __all__ = [
     "densify_steps",
     "find_symmetry",
     "find_symmetry_steps",
+    "fit_rig",
+    "fit_rig_steps",
     "match",
     "match_steps",
     "retrieve",

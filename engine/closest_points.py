@@ -256,6 +256,13 @@ class ClosestPoints:
         starts = self._nearest_vertices(points, normals, normal_length, _STARTS)
         return self.walk(points, starts, normals, normal_weight=normal_weight, normal_gate=normal_gate)
 
+    def at_vertices(self, points: NDArray[np.float64], vertices: NDArray[np.int64]) -> FoundPoints:
+        """Name vertices (k,), which must have triangles, as what was found for points (k, 3)."""
+        places = self._rings.starts[vertices]
+        triangles, slot = np.divmod(self._rings.corners[places], 3)
+        squared_distances = np.square(points - self.vertices[vertices]).sum(axis=1)
+        return FoundPoints(triangles, np.eye(3)[slot], squared_distances)
+
     def walk(
         self,
         points: NDArray[np.float64],

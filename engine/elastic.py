@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 
+from .procrustes import nearest_rotations
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -20,6 +22,9 @@ _LEAST_WEIGHT = 1e-4
 
 _MOST_ROUNDS = 60
 """Rounds of smoothing at most: finer meshes are meant to be worked on through a coarser one."""
+
+_LEAST_RATIO = 0.1
+"""Least ratio of squared lengths that is believed: surfaces that collapse or explode locally are not followed there."""
 
 
 class ElasticSurface:
@@ -87,13 +92,16 @@ class ElasticSurface:
         now = positions[self._tails] - positions[self._heads]
         products = self._weights[:, None, None] * now[:, :, None] * self._edges[:, None, :]
         fit = self._around @ products.reshape(-1, 9)  # the covariance of edges before and after, (n, 9)
-        # Each round spreads by the root of half the squared edge length.
-        rounds = round(2 * (radius / self._edge_length) ** 2)
-        for _ in range(min(max(rounds, 1), _MOST_ROUNDS)):
-            fit = self._average @ fit
-        left, _, right = np.linalg.svd(fit.reshape(-1, 3, 3))
-        left[:, :, 2] *= np.sign(np.linalg.det(left @ right))[:, None]
-        return left @ right
+        fit = self._averaged(fit, radius)
+        return nearest_rotations(fit.reshape(-1, 3, 3))
+
+    def scales(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+        """Measure by what factor the deformation lengthens edges, averaged over a radius around each vertex, (n,)."""
+        now = np.square(positions[self._tails] - positions[self._heads]).sum(axis=1)
+        before = self._around @ (self._weights * np.square(self._edges).sum(axis=1))
+        ratio = (self._around @ (self._weights * now)) / np.maximum(before, np.finfo(float).tiny)
+        logarithms = np.log(np.clip(ratio, _LEAST_RATIO, 1 / _LEAST_RATIO)) / 2
+        return np.exp(self._averaged(logarithms, radius))
 
     def pull(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum of the rotated edges at each vertex, (n, 3): the right-hand side of the equilibrium."""
@@ -103,6 +111,14 @@ class ElasticSurface:
         """Energy of a deformation, an area: a number without unit for a surface of unit area."""
         misfit = positions[self._tails] - positions[self._heads] - self._rotated(rotations)
         return float((self._weights * np.square(misfit).sum(axis=1)).sum())
+
+    def _averaged(self, values: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+        """Average values (n, ...) over a neighbourhood."""
+        # Each round spreads by the root of half the squared edge length.
+        rounds = round(2 * (radius / self._edge_length) ** 2)
+        for _ in range(min(max(rounds, 1), _MOST_ROUNDS)):
+            values = self._average @ values
+        return values
 
     def _rotated(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Rest edges turned by the mean of the rotations at their ends, (e, 3)."""

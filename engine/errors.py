@@ -7,7 +7,7 @@ them as they are.  Anything else that escapes the engine is a bug.
 
 from __future__ import annotations
 
-__all__ = ["HierMatchError", "MatchError", "MeshError", "SettingsError"]
+__all__ = ["HierMatchError", "MatchError", "MeshError", "RigError", "SettingsError"]
 
 
 class HierMatchError(ValueError):
@@ -24,3 +24,7 @@ class SettingsError(HierMatchError):
 
 class MatchError(HierMatchError):
     """Two valid meshes and valid settings that together allow no matching."""
+
+
+class RigError(HierMatchError):
+    """Bones or weights that do not describe a rig."""

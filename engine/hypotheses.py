@@ -30,7 +30,7 @@ Result = TypeVar("Result")
 
 _DISTINCT = 0.2  # two coarse matchings are distinct if half the points lie farther apart than this, in sqrt(area)
 _SCREEN_POINTS = 20  # all hypotheses are refined up to this many points,
-_DECISION_POINTS = 64  # the best of them up to this many,
+_DECISION_POINTS = 64  # the best of them up to this many, unless a dense map is to decide,
 _KEPT = 4  # which are so many of each orientation.
 _DISTINCT_SHARE = 0.1  # part of the points that has to differ (by half of _DISTINCT) for two refined ones to be kept
 _CURVATURE_WEIGHT = 6.0
@@ -141,7 +141,8 @@ def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
     list of Hypothesis
         One or two, see `two_answers`.
     """
-    points = min(coarse[0].pair.settings.points, _DECISION_POINTS)
+    settings = coarse[0].pair.settings
+    points = min(settings.points, _SCREEN_POINTS if settings.dense else _DECISION_POINTS)
     sizes = level_sizes(len(coarse[0].matching.assignment), points)
     screen = [size for size in sizes if size <= _SCREEN_POINTS] or sizes[:1]
     further = sizes[len(screen) :]

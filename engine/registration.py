@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
@@ -51,18 +51,23 @@ class Stage:
         points are matched.
     rotation_radius : float
         Over what distance the rotations are averaged, in sqrt(area).
+    matched : str
+        What points are matched with in each round: "vertices", the most similar one; the triangles "around" it; or
+        points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place.  At the
+        end of the registration, the next better is used.
     """
 
     weights: tuple[float, ...]
     normal_length: float
     curvature_length: float
     rotation_radius: float = 0.03
+    matched: Literal["vertices", "around", "anywhere"] = "anywhere"
 
 
-SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2)
+SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2, matched="vertices")
 """From a rough start: the normals and curvatures pull features together while the surface is stiff."""
 
-FINE = Stage((40, 160, 640, 1280), 0.1, 0.05)
+FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
 CLOSE = Stage((640, 640, 1280, 1280), 0.05, 0.0)
@@ -115,11 +120,23 @@ class _Matcher:
         features = np.concatenate([positions, self.stage.normal_length * normals, self._source_curvatures], axis=1)
         return self.source.search.moved(features), normals
 
-    def matches(self, source: ClosestPoints) -> tuple[FoundPoints, FoundPoints]:
+    def matches(self, source: ClosestPoints, *, last: bool = False) -> tuple[FoundPoints, FoundPoints]:
         """Match every vertex of either surface, by the features of the deformed source."""
-        on_target = self.target_search.nearest(source.vertices)
-        on_source = source.nearest(self.target_features)
-        return on_target, on_source
+        searches = _nearest_vertices, _around_nearest_vertices, _anywhere
+        find = searches[min(("vertices", "around", "anywhere").index(self.stage.matched) + last, 2)]
+        return find(self.target_search, source.vertices), find(source, self.target_features)
+
+
+def _nearest_vertices(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
+    return search.at_vertices(points, search.nearest_vertices(points))
+
+
+def _around_nearest_vertices(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
+    return search.walk(points, search.nearest_vertices(points), steps=1)
+
+
+def _anywhere(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
+    return search.nearest(points)
 
 
 def smooth_start(
@@ -237,7 +254,7 @@ def register_steps(
             done += 1
             yield Progress(done / total, "Fitting the surfaces")
     search, _ = matcher.source_search(positions)
-    on_target, on_source = matcher.matches(search)
+    on_target, on_source = matcher.matches(search, last=True)
     rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
     there = _at(on_target, target.triangles, target.vertices)
     misfit = float(source.mass @ np.square(there - positions).sum(axis=1))

@@ -126,6 +126,14 @@ def test_nearest_vertices(star):
     np.testing.assert_array_equal(ClosestPoints(star).nearest_vertices(points), expected)
 
 
+def test_vertices_can_be_named_as_what_was_found(star):
+    points, search = around(star, 200, 0.1)[0], ClosestPoints(star)
+    vertices = search.nearest_vertices(points)
+    found = search.at_vertices(points, vertices)
+    np.testing.assert_allclose(positions(found, star), star.vertices[vertices])
+    np.testing.assert_allclose(found.squared_distances, ((points - star.vertices[vertices]) ** 2).sum(axis=1))
+
+
 def test_nearest_vertices_with_normals(star):
     random = np.random.default_rng(0)
     points, triangles = around(star, 300, 0.2)

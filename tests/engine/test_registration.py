@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces that are deformed onto others, from starts that are near the truth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from engine import Progress, TriangleMesh, run
 from engine.deformable import DeformableSurface
 from engine.eigenpairs import eigenpairs_steps
 from engine.laplacian import laplace_beltrami
-from engine.registration import FINE, POLISH, SOFT, Stage, register_steps, smooth_start
+from engine.registration import CLOSE, FINE, POLISH, SOFT, Stage, register_steps, smooth_start
 from tests.shapes import creature, icosphere, permuted, rotation
 
 
@@ -123,6 +125,19 @@ def test_the_order_of_the_vertices_does_not_matter(bodies, registered, near_trut
     result = run(register_steps(shuffled, target, start))
     np.testing.assert_allclose(result.positions[new], registered.positions, atol=1e-3)
     assert np.linalg.norm(result.positions[new] - registered.positions, axis=1).mean() < 1e-5
+
+
+@pytest.mark.parametrize("matched", ["vertices", "around"])
+def test_cheap_matches_lead_to_nearly_the_same(bodies, registered, near_truth, functions, matched):
+    source, target = bodies[:2]
+    stages = tuple(replace(stage, matched=matched) for stage in (SOFT, FINE, CLOSE))
+    start = smooth_start(source, target, near_truth, functions)
+    cheap = run(register_steps(source, target, start, stages))
+    assert_valid(cheap.on_target, target)
+    moves = np.linalg.norm(
+        at(cheap.on_target, target, target.vertices) - at(registered.on_target, target, target.vertices), axis=1
+    )
+    assert np.sqrt(source.mass @ moves**2) < 0.4 * source.mesh.edge_lengths.mean() / np.sqrt(source.mesh.area)
 
 
 def test_given_matches_pull_first(bodies, registered, near_truth):

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh with the seams closed at which it was cut open, and its parts: what hangs together then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+from .edge_pairs import group_half_edges
+from .vertex_welding import weld_boundaries
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+
+__all__ = ["WeldedParts"]
+
+_SMALL = 0.1
+"""Size of the largest part that counts as small, in units of the root of the area of the whole surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class WeldedParts:
+    """Which vertices of a mesh are one, at seams where it was cut open, and which hang together.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The mesh.
+    welded : (n,) array of int
+        The welded vertex, 0 to w - 1, that each vertex belongs to.
+    triangles : (k, 3) array of int
+        Triangles of welded vertices; those that fell together are left out.
+    labels : (w,) array of int
+        The part that each welded vertex belongs to.
+    """
+
+    mesh: TriangleMesh
+    welded: NDArray[np.int64]
+    triangles: NDArray[np.int64]
+    labels: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, mesh: TriangleMesh) -> WeldedParts:
+        """Weld a mesh along its seams and find its parts."""
+        groups = group_half_edges(mesh.triangles, mesh.vertex_count)
+        representatives = weld_boundaries(mesh.vertices, mesh.triangles, groups)
+        _, welded = np.unique(representatives, return_inverse=True)
+        welded = welded.ravel()
+        triangles = welded[mesh.triangles]
+        triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+        count = int(welded.max()) + 1
+        tail, head = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
+        graph = csr_array((np.ones(len(tail), np.int8), (tail, head)), shape=(count, count))
+        labels = connected_components(graph, directed=False)[1].astype(np.int64)
+        return cls(mesh, welded, triangles, labels)
+
+    @property
+    def welded_count(self) -> int:
+        """Number of welded vertices, w."""
+        return len(self.labels)
+
+    @cached_property
+    def edges(self) -> NDArray[np.int64]:
+        """Each edge between welded vertices once, smaller index first, (e, 2)."""
+        tail, head = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
+        keys = np.unique(np.minimum(tail, head) * self.welded_count + np.maximum(tail, head))
+        return np.stack(np.divmod(keys, self.welded_count), axis=1)
+
+    @property
+    def part_count(self) -> int:
+        """Number of parts, p."""
+        return int(self.labels.max()) + 1
+
+    @property
+    def vertex_labels(self) -> NDArray[np.int64]:
+        """The part that each vertex belongs to, (n,)."""
+        return self.labels[self.welded]
+
+    @cached_property
+    def positions(self) -> NDArray[np.float64]:
+        """Where the welded vertices are, (w, 3)."""
+        return self.mean_over(np.ones(self.mesh.vertex_count, bool)) @ self.mesh.vertices
+
+    @cached_property
+    def sizes(self) -> NDArray[np.float64]:
+        """Length of the longest side of each part's bounding box, (p,)."""
+        positions, labels = self.mesh.vertices, self.vertex_labels
+        low, high = np.full((self.part_count, 3), np.inf), np.full((self.part_count, 3), -np.inf)
+        np.minimum.at(low, labels, positions)
+        np.maximum.at(high, labels, positions)
+        sizes: NDArray[Any] = (high - low).max(axis=1)
+        return sizes
+
+    @cached_property
+    def small(self) -> NDArray[np.bool_]:
+        """Say of each part whether it is small beside the whole, (p,): an eye, a button, a tooth; not a trouser leg."""
+        return self.sizes <= _SMALL * np.sqrt(self.mesh.area)
+
+    def mean_over(self, chosen: NDArray[np.bool_]) -> csr_array:
+        """Return the matrix (w, n) that averages values over the chosen vertices (n,) that each welded one is made of.
+
+        Rows of welded vertices of which none is chosen are empty.
+        """
+        vertices = np.flatnonzero(chosen)
+        home = self.welded[vertices]
+        shares = 1 / np.bincount(home, minlength=self.welded_count)[home]
+        return csr_array((shares, (home, vertices)), shape=(self.welded_count, len(self.welded)))

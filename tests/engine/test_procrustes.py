@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tests of nearest rotations."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from engine.procrustes import nearest_rotations
+
+SMALL = 1e-12
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(5)
+
+
+def agreement(rotations, matrices):
+    return np.einsum("nij,nij->n", rotations, matrices)
+
+
+def best_agreement(matrices):
+    """The most that any rotation can reach: the sum of the singular values, the last with the determinant's sign."""
+    values = np.linalg.svd(matrices, compute_uv=False)
+    values[:, 2] *= np.sign(np.linalg.det(matrices))
+    return values.sum(axis=1)
+
+
+def assert_rotations(rotations):
+    assert np.allclose(rotations @ rotations.transpose(0, 2, 1), np.eye(3), atol=SMALL)
+    assert np.allclose(np.linalg.det(rotations), 1, atol=SMALL)
+
+
+def test_rotations_of_any_angle_are_their_own_nearest():
+    rotations = Rotation.random(9000, random_state=1).as_matrix()
+    assert np.allclose(nearest_rotations(rotations), rotations, atol=SMALL)
+
+
+def test_half_turns_and_no_turn_are_exact():
+    turns = np.array([np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))], float)
+    assert np.allclose(nearest_rotations(turns), turns, atol=SMALL)
+
+
+def test_no_rotation_agrees_better_with_random_matrices_reflections_among_them(rng):
+    matrices = rng.standard_normal((5000, 3, 3))
+    rotations = nearest_rotations(matrices)
+    assert_rotations(rotations)
+    assert np.allclose(agreement(rotations, matrices), best_agreement(matrices), atol=SMALL)
+
+
+def test_covariances_of_edges_in_a_plane_have_a_nearest_rotation(rng):
+    flat = rng.standard_normal((300, 3, 3)) * [1, 1, 0]
+    rotations = nearest_rotations(flat)
+    assert_rotations(rotations)
+    assert np.allclose(agreement(rotations, flat), np.linalg.svd(flat, compute_uv=False).sum(axis=1), atol=SMALL)
+
+
+def test_size_does_not_matter(rng):
+    matrices = rng.standard_normal((50, 3, 3))
+    for size in (1e-100, 1e-9, 1e9):
+        assert np.allclose(nearest_rotations(size * matrices), nearest_rotations(matrices), atol=1e-9)
+
+
+def test_turning_the_matrices_turns_the_rotations(rng):
+    matrices = rng.standard_normal((50, 3, 3))
+    turn = Rotation.random(random_state=2).as_matrix()
+    assert np.allclose(nearest_rotations(turn @ matrices), turn @ nearest_rotations(matrices), atol=1e-9)
+
+
+@pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.outer([1, 2, 3], [4, 5, 6]), -np.eye(3)])
+def test_matrices_without_a_single_nearest_rotation_get_one_of_them(matrix):
+    rotations = nearest_rotations(np.array([matrix], float))
+    assert_rotations(rotations)
+    values = np.linalg.svd(matrix, compute_uv=False)
+    assert agreement(rotations, [matrix])[0] == pytest.approx(values @ [1, 1, np.sign(np.linalg.det(matrix))])
+
+
+def test_none_have_none():
+    assert nearest_rotations(np.empty((0, 3, 3))).shape == (0, 3, 3)

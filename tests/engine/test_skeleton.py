@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import numpy as np
+import pytest
+
+from engine import RigError, Skeleton
+
+
+def skeleton(parents):
+    count = len(parents)
+    return Skeleton(np.array(parents), np.zeros((count, 3)), np.ones((count, 3)))
+
+
+def test_parents_come_before_their_children():
+    bones = skeleton([2, -1, 1, 0, -1])
+    place = np.argsort(bones.order)
+    for bone, parent in enumerate(bones.parents):
+        assert parent < 0 or place[parent] < place[bone]
+    assert sorted(bones.order) == list(range(5))
+    assert bones.children(1).tolist() == [2]
+
+
+def test_no_bones_are_a_skeleton():
+    assert len(skeleton([])) == 0
+
+
+@pytest.mark.parametrize(
+    ("parents", "heads", "message"),
+    [
+        ([-1, 0], np.zeros((1, 3)), "2 bones needs 2 heads"),
+        ([-1, 5], np.zeros((2, 3)), "from -1 to 1"),
+        ([1, 0], np.zeros((2, 3)), "own ancestors"),
+        ([-1, 0], np.full((2, 3), np.nan), "not a finite number"),
+    ],
+)
+def test_what_is_no_skeleton_is_refused(parents, heads, message):
+    with pytest.raises(RigError, match=message):
+        Skeleton(np.array(parents), heads, np.ones((2, 3)))
