@@ -3,21 +3,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar, cast
 
 from ..engine import Shape, densify_steps
 from ..engine.progress import within
 from ..engine.surface_distances import SurfaceDistances, to_all_vertices_steps
-from . import writing
 from .access import mesh_of, view_layer_of
+from .answer_writing import contents_with_maps, restored, write_answer
 from .contents import contents
 from .errors import ObjectError
 from .halves import find_keyed
 from .mesh_io import read_mesh
 from .pair import check_pair
 from .stored_match import StoredMatch
-from .vertex_maps import StoredMaps, add_maps, map_name, place_points
+from .vertex_maps import StoredMaps, map_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,17 +34,6 @@ if TYPE_CHECKING:
 __all__ = ["flip"]
 
 _Result = TypeVar("_Result")
-
-
-@dataclass(frozen=True, eq=False)
-class _Restored:
-    """An answer as the engine had given it; a `Correspondence`."""
-
-    source_points: SurfacePoints
-    target_points: SurfacePoints
-    point_distortion: NDArray[np.float64]
-    source_distances: NDArray[np.float64] | None = None
-    target_distances: NDArray[np.float64] | None = None
 
 
 def flip(
@@ -95,10 +84,7 @@ def flip(
     )
     restore = _with_maps if stored.written.dense else _with_distances
     stored, prepared = restore(stored, objects, (source_mesh, target_mesh), half.prefix, progress)
-    for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
-        writing.check_names(obj, content, half.prefix)
-        content.keep.update(kept)
-    writing.write(list(zip(objects, prepared, strict=True)), half.prefix, show=False)
+    write_answer(objects, stored, prepared, half.prefix)
     return stored, (objects[0].name, objects[1].name)
 
 
@@ -119,17 +105,15 @@ def _with_maps(
     progress: Callable[[float], None],
 ) -> tuple[StoredMatch, tuple[Content, Content]]:
     """Prepare the chosen answer from its dense maps, which are made if the meshes do not keep them."""
-    restored = _placed(stored, meshes)
     source, target = (mesh_of(obj) for obj in objects)
     shown = StoredMaps.read(source, target, map_name(prefix))
     maps = StoredMaps.read(source, target, map_name(prefix, other=True))
     if maps is None:
-        dense = _drive(densify_steps(*meshes, restored.source_points, restored.target_points), progress)
+        points = restored(stored, meshes)
+        dense = _drive(densify_steps(*meshes, points.source_points, points.target_points), progress)
         maps = StoredMaps.of(dense.source_to_target, dense.target_to_source)
         stored = stored.with_quality(dense.quality)
-    prepared = contents(restored, prefix, stored.written, maps.between(*meshes))
-    add_maps(prepared, prefix, maps, shown)
-    return stored, prepared
+    return stored, contents_with_maps(stored, meshes, prefix, maps, shown)
 
 
 def _with_distances(
@@ -140,21 +124,12 @@ def _with_distances(
     progress: Callable[[float], None],
 ) -> tuple[StoredMatch, tuple[Content, Content]]:
     """Prepare the chosen answer from the distances between its points and the vertices."""
-    restored, (source, target) = _placed(stored, meshes), meshes
+    answer, (source, target) = restored(stored, meshes), meshes
     if stored.written.match_colors or stored.written.distortion:
-        from_source = _drive(_distances_steps(source, restored.source_points), lambda done: progress(done / 2))
-        from_target = _drive(_distances_steps(target, restored.target_points), lambda done: progress((1 + done) / 2))
-        restored = replace(restored, source_distances=from_source, target_distances=from_target)
-    return stored, contents(restored, prefix, stored.written)
-
-
-def _placed(stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh]) -> _Restored:
-    """Put the points of the chosen answer on the meshes, without measuring anything there."""
-    sides = (stored.source_points, stored.answer.target_points)
-    source, target = (
-        place_points(mesh, points.corners, points.barycentric) for mesh, points in zip(meshes, sides, strict=True)
-    )
-    return _Restored(source, target, stored.answer.point_distortion)
+        from_source = _drive(_distances_steps(source, answer.source_points), lambda done: progress(done / 2))
+        from_target = _drive(_distances_steps(target, answer.target_points), lambda done: progress((1 + done) / 2))
+        answer = replace(answer, source_distances=from_source, target_distances=from_target)
+    return stored, contents(answer, prefix, stored.written)
 
 
 def _distances_steps(mesh: TriangleMesh, points: SurfacePoints) -> Steps[NDArray[np.float64]]:

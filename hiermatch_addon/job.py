@@ -17,15 +17,17 @@ from .contents import contents
 from .errors import ObjectError
 from .mesh_io import position_digest, read_mesh, topology
 from .pair import check_pair
+from .properties import match_settings
 from .stored_match import Answer, CornerPoints, StoredMatch, Written
 from .vertex_maps import StoredMaps, add_maps
 
 if TYPE_CHECKING:
     from ..engine import DenseMatch, MatchResult
     from ..engine.progress import Steps
+    from .properties import MatchOptions
     from .vertex_maps import MapPair
 
-__all__ = ["JobOptions", "MatchJob", "Outcome"]
+__all__ = ["JobOptions", "MatchJob", "Outcome", "job_options"]
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,26 @@ class JobOptions:
     def __post_init__(self) -> None:
         if not self.prefix.strip():
             raise SettingsError("The Prefix is empty. Enter what the names of the vertex groups shall start with.")
+
+
+def job_options(options: MatchOptions) -> JobOptions:
+    """Read the options of a match, from an operator or from the panel's state.
+
+    Raises
+    ------
+    SettingsError
+        If they contradict each other, or the prefix is empty.
+    """
+    return JobOptions(
+        settings=match_settings(options),
+        use_modifiers=options.use_modifiers,
+        use_mirrored=options.use_mirrored,
+        prefix=options.prefix,
+        vertex_groups=options.write_vertex_groups,
+        match_colors=options.write_colors,
+        distortion=options.write_distortion,
+        confidence=options.write_confidence,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,6 +199,13 @@ class MatchJob:
             return _Found(result, None)
         steps = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
         return _Found(result, (yield from within(steps, 0.7, 1.0)))
+
+    @property
+    def maps(self) -> StoredMaps | None:
+        """The dense maps of the answer that is to be written, as they are kept; None as long as there are none."""
+        if self._found is None:
+            return None
+        return self._found.maps(mirrored=self._options.use_mirrored and self._found.result.mirrored is not None)
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
         """Write the result on both objects.

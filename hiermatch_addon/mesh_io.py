@@ -26,10 +26,12 @@ __all__ = [
     "add_colors",
     "add_values",
     "add_vertex_group",
+    "corner_vertices",
     "position_digest",
     "read_mesh",
     "read_values",
     "topology",
+    "vertex_positions",
 ]
 
 _MEMBERS: dict[str, tuple[str, type[np.generic], int]] = {
@@ -93,14 +95,13 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
         If the mesh is no surface, or its modifiers change the number of vertices.
     """
     with _shown_mesh(obj, depsgraph, use_modifiers=use_modifiers) as mesh:
-        positions = np.empty(3 * len(mesh.vertices), np.float32)
-        mesh.vertices.foreach_get("co", positions)
+        positions = vertex_positions(mesh)
         mesh.calc_loop_triangles()
         corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
         mesh.loop_triangles.foreach_get("vertices", corners)
     matrix = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=np.float64)
     with np.errstate(invalid="ignore"):  # positions that are no numbers are told below
-        vertices = positions.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+        vertices = positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     triangles = corners.reshape(-1, 3).astype(np.int64)
     if np.linalg.det(matrix[:3, :3]) < 0:
         triangles = triangles[:, ::-1]
@@ -118,8 +119,7 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
 
 def topology(mesh: bpy.types.Mesh) -> str:
     """Return a text that is the same as long as the vertices and faces of a mesh are numbered and connected alike."""
-    corners = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
+    corners = corner_vertices(mesh)
     starts = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", starts)
     digest = hashlib.blake2b(len(mesh.vertices).to_bytes(8, "little"), digest_size=16)
@@ -130,9 +130,21 @@ def topology(mesh: bpy.types.Mesh) -> str:
 
 def position_digest(mesh: bpy.types.Mesh) -> str:
     """Return a text that is the same as long as no vertex of a mesh moves within its object."""
+    return hashlib.blake2b(vertex_positions(mesh).astype("<f4").tobytes(), digest_size=16).hexdigest()
+
+
+def vertex_positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Read the positions of a mesh's vertices, in the object's space, (n, 3)."""
     positions = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("co", positions)
-    return hashlib.blake2b(positions.astype("<f4").tobytes(), digest_size=16).hexdigest()
+    return positions.reshape(-1, 3)
+
+
+def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Read the vertex of each corner of a mesh's faces, (l,)."""
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    return corners
 
 
 @contextmanager

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
 from .access import layout_of, progress_of, state_of, window_manager_of
 from .pair import selected_meshes
+from .panel_text import draw_text
 from .properties import copy_options
 from .running import is_running
 from .setting_groups import APART, shown_groups
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from .properties import HIERMATCH_PG_scene, HIERMATCH_PG_summary
 
 __all__ = ["HIERMATCH_PT_match"]
-
-_PIXELS_PER_LETTER = 7
-"""Rough width of a letter at normal interface scale, to wrap sentences."""
 
 _NAME_WIDTH = 3.0
 """Width of the names at the top, narrower than a property split makes them: what they stand before is long."""
@@ -78,7 +75,7 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
         selected = len(selected_meshes(context))
         picked = (state.source is not None) + (state.target is not None)
         if selected + picked < 2:
-            _draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
+            draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
 
 
 def _draw_setup(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
@@ -138,10 +135,10 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
     """Draw how the last match went."""
     box = layout.box().column()
     if summary.stale:
-        _draw_text(box, context, summary.stale, "ERROR")
+        draw_text(box, context, summary.stale, "ERROR")
     box.label(text=f"{summary.points} points matched", icon="CHECKMARK")
     if summary.verdict:
-        _draw_text(box, context, summary.verdict, "INFO")
+        draw_text(box, context, summary.verdict, "INFO")
     rows = (
         ("Source", summary.source),
         ("Target", summary.target),
@@ -162,7 +159,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
     if summary.has_mirrored:
         box.operator("hiermatch.flip", icon="MOD_MIRROR", depress=summary.mirrored)
     for note in summary.notes.splitlines():
-        _draw_text(box, context, note, "ERROR")
+        draw_text(box, context, note, "ERROR")
     shading = cast("bpy.types.SpaceView3D", context.space_data).shading
     if shading.type == "SOLID":
         box.prop(shading, "color_type", text="Viewport Color")
@@ -175,13 +172,3 @@ def _orientation_text(summary: HIERMATCH_PG_summary) -> str:
     else:
         verdict = "kept" if summary.orientation > 0 else "exchanged"
     return f"{verdict} ({summary.orientation:+.2f})"
-
-
-def _draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
-    """Draw a sentence over as many lines as the width of the sidebar asks for."""
-    region, preferences = cast("Any", context.region), cast("Any", context.preferences)
-    width = region.width / (_PIXELS_PER_LETTER * preferences.system.ui_scale)
-    column: Any = layout.column()
-    column.scale_y = 0.8
-    for number, line in enumerate(textwrap.wrap(text, max(16, int(width) - 6))):
-        column.label(text=line, icon="BLANK1" if number else icon)

@@ -11,12 +11,22 @@ from .freshness import start_watching, stop_watching
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
+from .operators.fit_rig import HIERMATCH_OT_fit_rig
 from .operators.flip import HIERMATCH_OT_flip
 from .operators.match import HIERMATCH_OT_match
+from .operators.retarget import HIERMATCH_OT_retarget
 from .operators.swap import HIERMATCH_OT_swap
+from .operators.symmetrise import HIERMATCH_OT_symmetrise
+from .operators.transfer_attributes import HIERMATCH_OT_transfer_attributes
+from .operators.transfer_shape_keys import HIERMATCH_OT_transfer_shape_keys
+from .operators.transfer_uvs import HIERMATCH_OT_transfer_uvs
+from .operators.transfer_weights import HIERMATCH_OT_transfer_weights
 from .operators.use_setup import HIERMATCH_OT_use_setup
+from .operators.wrap import HIERMATCH_OT_wrap
 from .panels import HIERMATCH_PT_match
 from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
+from .retarget_panels import HIERMATCH_PT_retarget, HIERMATCH_PT_symmetry
+from .retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
 
 __all__ = ["CLASSES", "register", "unregister"]
 
@@ -31,15 +41,28 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_swap,
     HIERMATCH_OT_clear,
     HIERMATCH_OT_add_demo_pair,
+    HIERMATCH_PG_report,
+    HIERMATCH_PG_retarget,
+    HIERMATCH_OT_retarget,
+    HIERMATCH_OT_fit_rig,
+    HIERMATCH_OT_transfer_weights,
+    HIERMATCH_OT_transfer_shape_keys,
+    HIERMATCH_OT_transfer_uvs,
+    HIERMATCH_OT_transfer_attributes,
+    HIERMATCH_OT_wrap,
+    HIERMATCH_OT_symmetrise,
     HIERMATCH_PT_match,
+    HIERMATCH_PT_retarget,
+    HIERMATCH_PT_symmetry,
 )
 """Property groups before what contains them."""
 
-_ATTACHMENTS: Final[tuple[tuple[type[Any], type[Any]], ...]] = (
-    (bpy.types.Scene, HIERMATCH_PG_scene),
-    (bpy.types.WindowManager, HIERMATCH_PG_progress),
+_ATTACHMENTS: Final[tuple[tuple[type[Any], str, type[Any]], ...]] = (
+    (bpy.types.Scene, "hiermatch", HIERMATCH_PG_scene),
+    (bpy.types.Scene, "hiermatch_retarget", HIERMATCH_PG_retarget),
+    (bpy.types.WindowManager, "hiermatch", HIERMATCH_PG_progress),
 )
-"""Each owner gets a property `hiermatch` of the group."""
+"""Each owner gets a property of that name and group."""
 
 
 def register() -> None:
@@ -47,15 +70,15 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties: Any = bpy.props
-    for owner, group in _ATTACHMENTS:
-        owner.hiermatch = properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group)
+    for owner, name, group in _ATTACHMENTS:
+        setattr(owner, name, properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group))
     start_watching()
 
 
 def unregister() -> None:
     """Undo `register`."""
     stop_watching()
-    for owner, _ in reversed(_ATTACHMENTS):
-        del owner.hiermatch
+    for owner, name, _ in reversed(_ATTACHMENTS):
+        delattr(owner, name)
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

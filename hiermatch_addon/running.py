@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a match is running, as Blender itself knows it."""
+"""Whether one of our jobs is running, as Blender itself knows it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ __all__ = ["can_start", "is_running"]
 
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
-    """Return whether the match operator runs modally in a window."""
+    """Return whether one of our operators runs modally in a window."""
     return any(
-        operator.bl_idname == "HIERMATCH_OT_match"
+        operator.bl_idname.startswith("HIERMATCH_OT_")
         for window in window_manager.windows
         for operator in window.modal_operators
     )
@@ -25,7 +25,7 @@ def is_running(window_manager: bpy.types.WindowManager) -> bool:
 def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """Tell, and say on the disabled button, whether an operator that writes on objects may start."""
     if is_running(window_manager_of(context)):
-        cls.poll_message_set("A match is running. Wait for it, or cancel it")
+        cls.poll_message_set("HierMatch is at work. Wait for it, or cancel it")
         return False
     if context.mode != "OBJECT":
         cls.poll_message_set("Switch to Object Mode first")

@@ -154,6 +154,8 @@ class Answer:
         By how much, at most, the coarse match can be worse than the best one.
     quality : Quality or None
         How far its dense maps can be trusted; None if they were not made.
+    refined : bool
+        Whether they were made better with a rig since: once is enough.
     """
 
     target_points: CornerPoints
@@ -163,6 +165,7 @@ class Answer:
     proven: bool
     gap: float
     quality: Quality | None = None
+    refined: bool = False
 
     @classmethod
     def of(cls, result: MatchResult, quality: MatchQuality | None = None) -> Answer:
@@ -186,6 +189,7 @@ class Answer:
             "orientation": float(self.orientation),
             "proven": bool(self.proven),
             "gap": float(self.gap),
+            "refined": bool(self.refined),
         } | ({} if self.quality is None else {"quality": self.quality.to_plain()})
 
     @classmethod
@@ -246,6 +250,12 @@ class StoredMatch:
         """Return the same with another verdict on the maps of the answer that is written."""
         answers = list(self.answers)
         answers[self.mirrored] = replace(self.answer, quality=Quality.of(quality))
+        return replace(self, answers=tuple(answers))
+
+    def as_refined(self) -> StoredMatch:
+        """Return the same with the maps of the answer that is written called refined."""
+        answers = list(self.answers)
+        answers[self.mirrored] = replace(self.answer, refined=True)
         return replace(self, answers=tuple(answers))
 
     @property

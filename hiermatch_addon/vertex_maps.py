@@ -130,6 +130,11 @@ class StoredMaps:
         """Take what is kept of the two maps."""
         return cls(VertexMap.of(source_to_target), VertexMap.of(target_to_source))
 
+    @property
+    def reverse(self) -> StoredMaps:
+        """The same with source and target exchanged."""
+        return StoredMaps(self.of_target, self.of_source)
+
     @classmethod
     def read(cls, source: bpy.types.Mesh, target: bpy.types.Mesh, name: str) -> StoredMaps | None:
         """Read both maps of that name; None if one is not there."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cancel the running match."""
+"""Cancel what is running."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ __all__ = ["HIERMATCH_OT_cancel"]
 
 
 class HIERMATCH_OT_cancel(bpy.types.Operator):
-    """End the running match."""
+    """End the running match or transfer."""
 
     bl_idname = "hiermatch.cancel"
-    bl_label = "Cancel Match"
-    bl_description = "End the running match without writing anything"
+    bl_label = "Cancel"
+    bl_description = "End the running match or transfer without writing anything"
     bl_options = {"INTERNAL"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it while a match runs."""
+        """Allow it while something runs."""
         if not is_running(window_manager_of(context)):
-            cls.poll_message_set("No match is running")
+            cls.poll_message_set("Nothing is running")
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
-        """Ask the match to end at its next step."""
+        """Ask it to end at its next step."""
         progress_of(context).cancel = True
         return {"FINISHED"}

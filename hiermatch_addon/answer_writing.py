@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Write an answer of a match that is kept on two meshes anew: another answer, or other maps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from . import writing
+from .contents import contents
+from .vertex_maps import add_maps, place_points
+
+if TYPE_CHECKING:
+    import bpy
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ..engine import SurfacePoints, TriangleMesh
+    from .contents import Content
+    from .stored_match import StoredMatch
+    from .vertex_maps import StoredMaps
+
+__all__ = ["Restored", "contents_with_maps", "restored", "write_answer"]
+
+
+@dataclass(frozen=True, eq=False)
+class Restored:
+    """An answer as the engine had given it; a `Correspondence`."""
+
+    source_points: SurfacePoints
+    target_points: SurfacePoints
+    point_distortion: NDArray[np.float64]
+    source_distances: NDArray[np.float64] | None = None
+    target_distances: NDArray[np.float64] | None = None
+
+
+def restored(stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh]) -> Restored:
+    """Put the points of the chosen answer on the meshes, without measuring anything there."""
+    sides = (stored.source_points, stored.answer.target_points)
+    source, target = (
+        place_points(mesh, points.corners, points.barycentric) for mesh, points in zip(meshes, sides, strict=True)
+    )
+    return Restored(source, target, stored.answer.point_distortion)
+
+
+def contents_with_maps(
+    stored: StoredMatch,
+    meshes: tuple[TriangleMesh, TriangleMesh],
+    prefix: str,
+    shown: StoredMaps,
+    other: StoredMaps | None,
+) -> tuple[Content, Content]:
+    """Prepare the chosen answer with its dense maps, and those of the other one."""
+    prepared = contents(restored(stored, meshes), prefix, stored.written, shown.between(*meshes))
+    add_maps(prepared, prefix, shown, other)
+    return prepared
+
+
+def write_answer(
+    objects: tuple[bpy.types.Object, bpy.types.Object],
+    stored: StoredMatch,
+    prepared: tuple[Content, Content],
+    prefix: str,
+) -> None:
+    """Write it in place of what the match wrote before, and leave what is shown as it is.
+
+    Raises
+    ------
+    ObjectError
+        If the user's own vertex groups or attributes are in the way; nothing is written then.
+    """
+    for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
+        writing.check_names(obj, content, prefix)
+        content.keep.update(kept)
+    writing.write(list(zip(objects, prepared, strict=True)), prefix, show=False)

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A pose of an armature as an action that is kept, but not played."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+from mathutils import Matrix
+
+from .armatures import armature_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["keep_pose", "pose_bases"]
+
+_CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
+
+
+def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.float64]]) -> dict[str, Matrix]:
+    """Find the transforms of pose bones that move them as wanted.
+
+    Parameters
+    ----------
+    armature : bpy.types.Object
+        The armature object.
+    matrices : mapping from str to (4, 4) array of float
+        For each bone how it is to move in world space from its rest.
+
+    Returns
+    -------
+    dict
+        For each bone its transform against its parent, as Blender stores it; what constraints add is not asked.
+    """
+    world = armature.matrix_world
+    into = world.inverted_safe()
+    bones = [bone for bone in armature_of(armature).bones if bone.name in matrices]
+    posed = {bone.name: into @ Matrix(matrices[bone.name].tolist()) @ world @ bone.matrix_local for bone in bones}
+    bases = {}
+    for bone in bones:
+        parent = bone.parent
+        above = {}
+        if parent is not None:
+            above = {
+                "parent_matrix": posed.get(parent.name, parent.matrix_local),
+                "parent_matrix_local": parent.matrix_local,
+            }
+        bases[bone.name] = bone.convert_local_to_pose(posed[bone.name], bone.matrix_local, invert=True, **above)
+    return bases
+
+
+def keep_pose(armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix], *, show: bool) -> bpy.types.Action:
+    """Keep a pose as an action of one frame, of that name, with a fake user; an action of that name is replaced.
+
+    Parameters
+    ----------
+    armature : bpy.types.Object
+        The armature object.
+    name : str
+        Name of the action.
+    bases : mapping
+        The transforms of its bones, from `pose_bases`.
+    show : bool
+        Whether the armature takes the pose; else it stays as it is, with the action that it has.
+
+    Returns
+    -------
+    bpy.types.Action
+        The action.
+    """
+    old = bpy.data.actions.get(name)
+    if old is not None:
+        bpy.data.actions.remove(old)
+    animation: Any = armature.animation_data or armature.animation_data_create()
+    before = animation.action, getattr(animation, "action_slot", None)
+    action = bpy.data.actions.new(name)
+    action.use_fake_user = True
+    animation.action = action
+    pose = cast("bpy.types.Pose", armature.pose)
+    for bone_name, basis in bases.items():
+        bone = pose.bones[bone_name]
+        stood = {channel: list(getattr(bone, channel)) for channel in _CHANNELS}
+        bone.matrix_basis = basis
+        rotation = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
+        for channel in ("location", rotation.get(bone.rotation_mode, "rotation_euler"), "scale"):
+            bone.keyframe_insert(channel, frame=1, group=bone_name)
+        if not show:
+            for channel, value in stood.items():
+                setattr(bone, channel, value)
+    if not show or before[0] is not None:
+        animation.action = before[0]
+        if before[0] is not None and before[1] is not None:
+            animation.action_slot = before[1]
+    return action

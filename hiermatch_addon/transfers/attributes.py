@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Attributes, materials, marked edges and normals, carried from one matched mesh to another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from ...engine.attribute_transfer import Crossing, carry_values_steps
+from ...engine.corner_transfer import carry_normals
+from ...engine.face_transfer import carry_face_values
+from ...engine.local_frames import surface_frames
+from ...engine.progress import Progress, within
+from ..access import mesh_of
+from ..attribute_choice import SEAMS, choose_attributes
+from ..attribute_io import (
+    is_blended,
+    read_attribute,
+    read_corner_normals,
+    read_polygons,
+    read_seams,
+    write_attribute,
+    write_corner_normals,
+    write_seams,
+)
+from ..errors import ObjectError
+from ..material_slots import assign_materials, read_materials
+from ..transfer import TransferReport
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    import bpy
+    from numpy.typing import NDArray
+
+    from ...engine.attribute_transfer import Domain
+    from ...engine.polygons import Polygons
+    from ...engine.progress import Steps
+    from ..attribute_io import AttributeLayout
+    from ..transfer import Passage
+    from .attributes_options import AttributeSettings
+
+__all__ = ["AttributeTransfer"]
+
+_POINT_MARKS = frozenset({"crease_vert", "bevel_weight_vert"})
+"""Attributes of points that mark single ones."""
+
+_NORMAL_RADIUS = 0.03
+"""Over what distance the turn of the surface is averaged for normals, in sqrt(area): that of a finger or a nose."""
+
+
+class AttributeTransfer:
+    """Carries attributes, materials, marked edges and normals; see `Transfer`.
+
+    Parameters
+    ----------
+    settings : AttributeSettings
+        Which of these.
+    """
+
+    label = "Attributes"
+    uses_rig = True
+
+    def __init__(self, settings: AttributeSettings) -> None:
+        self._settings = settings
+        self._values: dict[AttributeLayout, NDArray[Any]] = {}
+        self._faces: tuple[Polygons, Polygons]
+        self._materials: NDArray[np.int64] | None = None
+        self._normals: NDArray[np.float64] | None = None
+        self._to_local = np.eye(3)
+        self._colors = ("", "")
+        self._notes: list[str] = []
+
+    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        """Read what is chosen of the source and both meshes' faces, and make sure that it can be written."""
+        mine, theirs = mesh_of(source), mesh_of(target)
+        choice = choose_attributes(source, target, self._settings)
+        self._notes.extend(choice.notes)
+        for layout in choice.layouts:
+            self._values[layout] = read_seams(mine) if layout == SEAMS else read_attribute(mine, layout.name)
+        if self._settings.materials and len(source.material_slots):
+            self._materials = read_materials(source)[1]
+        if self._settings.normals and mine.has_custom_normals:
+            # Normals turn by the inverse transpose of what positions turn by.
+            self._normals = _unit(read_corner_normals(mine) @ np.linalg.inv(_linear_part(context, source)))
+            self._to_local = _linear_part(context, target)
+        if not self._values and self._materials is None and self._normals is None and not self._notes:
+            raise ObjectError(
+                f'"{source.name}" has nothing of what is to be carried over: no such attributes, materials, marked '
+                "edges or custom normals. Choose other options, or another Source."
+            )
+        self._colors = (mine.attributes.active_color_name or "", mine.attributes.default_color_name or "")
+        self._faces = read_polygons(mine), read_polygons(theirs)
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Compute the values on the target."""
+        yield Progress(0.0, "Finding faces")
+        pair = passage.pair
+        faces = self._faces[0].cut_as(pair.source)
+        crossing = Crossing(
+            pair.source, pair.target, faces, self._faces[1], pair.source_to_target, pair.target_to_source
+        )
+        count = len(self._values) + 1
+        for number, (layout, values) in enumerate(self._values.items()):
+            steps = carry_values_steps(
+                values,
+                cast("Domain", layout.domain),
+                crossing,
+                blended=is_blended(layout.kind),
+                marks=layout.name in _POINT_MARKS,
+            )
+            carried = yield from within(steps, number / count, (number + 1) / count)
+            self._values[layout] = carried.values
+            if carried.lost:
+                lines = "1 line" if carried.lost == 1 else f"{carried.lost} lines"
+                self._notes.append(f'{lines} of "{layout.name}" run where the target has no faces, and were left out.')
+        yield Progress(1 - 1 / count, "Carrying materials and normals")
+        if self._materials is not None:
+            self._materials = carry_face_values(self._materials, faces, crossing.places)
+        if self._normals is not None:
+            frames = surface_frames(pair.target, pair.target_to_source.positions, radius=_NORMAL_RADIUS)
+            turns = frames.rotations.transpose(0, 2, 1)
+            self._normals = carry_normals(self._normals, faces, crossing.places, pair.target, turns) @ self._to_local
+
+    def write(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+        """Write everything."""
+        mesh = mesh_of(target)
+        done = []
+        for layout, values in self._values.items():
+            if layout == SEAMS:
+                write_seams(mesh, values)
+            else:
+                write_attribute(mesh, layout, values)
+        if self._values:
+            done.append(_counted(len(self._values), "attribute"))
+            self._show_colors(mesh)
+        if self._materials is not None:
+            materials = read_materials(source)[0]
+            done.append(_counted(assign_materials(target, materials, self._materials), "material"))
+        if self._normals is not None:
+            write_corner_normals(mesh, _unit(self._normals))
+            done.append("custom normals")
+        mesh.update()
+        return TransferReport(", ".join(done), tuple(self._notes))
+
+    def _show_colors(self, mesh: bpy.types.Mesh) -> None:
+        """Make the source's active color attributes active on a mesh as far as it had none."""
+        written = {layout.name for layout in self._values if layout.kind in ("FLOAT_COLOR", "BYTE_COLOR")}
+        active, render = self._colors
+        attributes = mesh.attributes
+        if active in written and not attributes.active_color_name:
+            attributes.active_color_name = active
+        if render in written and not attributes.default_color_name:
+            attributes.default_color_name = render
+
+
+def _linear_part(context: bpy.types.Context, obj: bpy.types.Object) -> NDArray[np.float64]:
+    """Matrix (3, 3) that takes directions from an object's own space to the world's."""
+    evaluated = obj.evaluated_get(context.evaluated_depsgraph_get())
+    return np.array(evaluated.matrix_world, dtype=np.float64)[:3, :3]
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale vectors (k, 3) to length one, leaving zero vectors alone."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which attributes are carried over: Blender's options, and the plain settings that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+__all__ = ["AttributeOptions", "AttributeSettings", "attribute_settings"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+@dataclass(frozen=True)
+class AttributeSettings:
+    """Which attributes are carried over.
+
+    Attributes
+    ----------
+    colors, values : bool
+        Whether color attributes, and other attributes that somebody added, are carried.
+    names : tuple of str
+        If there are any, only attributes of these names are, of those two kinds.
+    materials : bool
+        Whether faces get materials.
+    sharp, seams, creases : bool
+        Whether sharp edges and flat faces, seams, and creases and bevel weights are carried.
+    normals : bool
+        Whether custom normals are, if the source has any.
+    """
+
+    colors: bool = True
+    values: bool = True
+    names: tuple[str, ...] = ()
+    materials: bool = True
+    sharp: bool = True
+    seams: bool = False
+    creases: bool = True
+    normals: bool = True
+
+
+class AttributeOptions:
+    """The options of attributes, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "attribute_colors": _props.BoolProperty(
+            name="Color Attributes",
+            description="Carry color attributes over; those of the same name are replaced",
+            default=True,
+        ),
+        "attribute_values": _props.BoolProperty(
+            name="Other Attributes",
+            description="Carry over attributes of numbers, vectors and truth values that were added to the source",
+            default=True,
+        ),
+        "attribute_names": _props.StringProperty(
+            name="Names",
+            description="Names of the attributes to carry over, separated by commas; if empty, all",
+        ),
+        "attribute_materials": _props.BoolProperty(
+            name="Materials",
+            description="Give each face the material of the source there; materials are added to the slots of the "
+            "target unless they are there already",
+            default=True,
+        ),
+        "attribute_sharp": _props.BoolProperty(
+            name="Sharp Edges",
+            description="Mark the edges as sharp that follow sharp edges of the source, and shade faces flat where the "
+            "source is, instead of what is marked on the target",
+            default=True,
+        ),
+        "attribute_seams": _props.BoolProperty(
+            name="Seams",
+            description="Mark the edges as seams that follow seams of the source, instead of those of the target. "
+            "UV maps that are carried over bring their own",
+            default=False,
+        ),
+        "attribute_creases": _props.BoolProperty(
+            name="Creases and Bevel Weights",
+            description="Carry creases and bevel weights over to the edges and vertices that follow those of the "
+            "source",
+            default=True,
+        ),
+        "attribute_normals": _props.BoolProperty(
+            name="Custom Normals",
+            description="Carry over how the custom normals of the source deviate from its surface, if it has any",
+            default=True,
+        ),
+    }
+
+    if TYPE_CHECKING:
+        attribute_colors: bool
+        attribute_values: bool
+        attribute_names: str
+        attribute_materials: bool
+        attribute_sharp: bool
+        attribute_seams: bool
+        attribute_creases: bool
+        attribute_normals: bool
+
+
+def attribute_settings(options: AttributeOptions) -> AttributeSettings:
+    """Make the settings of the options."""
+    return AttributeSettings(
+        options.attribute_colors,
+        options.attribute_values,
+        tuple(name.strip() for name in options.attribute_names.split(",") if name.strip()),
+        options.attribute_materials,
+        options.attribute_sharp,
+        options.attribute_seams,
+        options.attribute_creases,
+        options.attribute_normals,
+    )

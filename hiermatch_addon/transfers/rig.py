@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A rig for the target: the source's armature, copied, with its joints where they belong in the target."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from ...engine.joint_placement import place_joints
+from ...engine.progress import Progress
+from ...engine.rest_pose import is_posed, rest_pose
+from ..access import view_layer_of
+from ..armature_copy import copy_armature, move_joints, repoint
+from ..armatures import armature_of, find_armature, read_rig
+from ..binding import bind, made_rig, mark_made
+from ..bone_constraints import adapt_constraints, displaced_bones
+from ..errors import ObjectError
+from ..key_drivers import counterparts
+from ..pair import check_writable
+from ..rest_action import keep_pose, pose_bases
+from ..transfer import TransferReport
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ...engine.joint_placement import PlacedJoints
+    from ...engine.progress import Steps
+    from ...engine.rest_pose import RestPose
+    from ..transfer import Passage
+    from .rig_options import RigSettings
+
+__all__ = ["RigTransfer"]
+
+_LISTED = 3
+"""So many names are written out in a note."""
+
+
+class RigTransfer:
+    """Gives the target an armature like the source's; see `Transfer`.
+
+    Parameters
+    ----------
+    settings : RigSettings
+        How.
+    """
+
+    label = "Rig"
+    uses_rig = True
+
+    def __init__(self, settings: RigSettings) -> None:
+        self._settings = settings
+        self._names: tuple[str, ...] = ()
+        self._normals: NDArray[np.float64] = np.empty((0, 3))
+        self._frames: NDArray[np.float64] = np.empty((0, 3, 3))
+        self._placed: PlacedJoints | None = None
+        self._rest: RestPose | None = None
+        self._notes: list[str] = []
+
+    def read(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        """Read the directions of the source's bones, and make sure that the target can be bound."""
+        check_writable(target)
+        armature = find_armature(source)
+        if armature is None:
+            raise ObjectError(
+                f'"{source.name}" has no armature, so there is no rig to fit. Give it an Armature modifier with its '
+                "armature, or pick another Source."
+            )
+        rig = read_rig(source)
+        if rig is None:
+            raise ObjectError(
+                f'No vertex of "{source.name}" is in a vertex group of a deforming bone of "{armature.name}", so it is '
+                "open what the bones belong to. Bind the Source to its armature with weights first."
+            )
+        matrix = np.array(armature.matrix_world, np.float64)
+        if abs(np.linalg.det(matrix[:3, :3])) <= np.finfo(float).tiny:
+            raise ObjectError(f'The armature "{armature.name}" has a scale of zero. Set its scale first.')
+        if armature.mode == "EDIT":
+            raise ObjectError(f'The armature "{armature.name}" is in Edit Mode. Switch to Object Mode first.')
+        self._names = rig.names
+        axes = [bone.matrix_local.to_3x3().col[2] for bone in armature_of(armature).bones]
+        self._normals = np.array(axes, np.float64) @ matrix[:3, :3].T
+        # The target stands as the source does: in the world, or each in the space of its object.
+        turns = [np.array(obj.matrix_world.to_3x3().normalized(), np.float64) for obj in (source, target)]
+        self._frames = np.stack([np.eye(3), _rotation(turns[1] @ np.linalg.inv(turns[0]))])
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Place the joints, and find the rest pose."""
+        rig, body = passage.rig, passage.pair.source
+        if rig is None or passage.bone_names != self._names:
+            raise ObjectError("The rig of the source was changed meanwhile. Nothing was written.")
+        yield Progress(0.0, "Placing the joints")
+        placed = self._placed = place_joints(rig, body, self._normals, self._frames)
+        if not self._settings.rest or self._settings.pose == "REST":
+            return
+        yield Progress(0.5, "Finding the rest pose")
+        if self._settings.pose == "POSED" or is_posed(rig, body, placed):
+            self._rest = rest_pose(rig, body, placed, self._frames)
+        else:
+            self._notes.append(
+                "The target seems to be in its rest pose already, so none was made. If it is posed, set Pose to Posed."
+            )
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+        """Make the armature, or update the one made before, and bind the target to it."""
+        model = cast("bpy.types.Object", find_armature(source))
+        placed = cast("PlacedJoints", self._placed)
+        made = made_rig(target, model) if self._settings.existing == "UPDATE" else None
+        armature = made or _new_armature(context, target, model)
+        missing = move_joints(context, armature, self._names, placed)
+        if made is None:
+            kept = repoint(armature, counterparts(source, target, model, armature))
+            if kept:
+                self._notes.append(f'Constraints or drivers of "{armature.name}" still point to {_listed(kept)}.')
+            _move_to_collections(context, armature, target)
+            mark_made(armature, model)
+        elif missing:
+            self._notes.append(f'"{armature.name}", which was made before, lacks {_listed(missing)}.')
+        adapt_constraints(model, armature)
+        if self._settings.bind:
+            self._notes += bind(target, armature, source)
+        view_layer_of(context).update()
+        displaced = displaced_bones(armature) if made is None else []
+        if displaced:
+            self._notes.append(
+                f'Constraints or drivers move {_listed(displaced)} of "{armature.name}" away from rest, and the target '
+                "with them. Check them."
+            )
+        if not set(target.vertex_groups.keys()) & set(self._names):
+            self._notes.append(
+                f'"{target.name}" has no weights for the bones of "{armature.name}" yet. Transfer the weights as well.'
+            )
+        done = f'the rig "{armature.name}" with {len(self._names)} bones'
+        if self._rest is not None:
+            action = self._keep_rest(armature)
+            done += f' and the rest pose "{action}"'
+        return TransferReport(done + (", updated" if made else ""), tuple(self._notes))
+
+    def _keep_rest(self, armature: bpy.types.Object) -> str:
+        """Keep the rest pose as an action."""
+        rest = cast("RestPose", self._rest)
+        moves = np.tile(np.eye(4), (len(self._names), 1, 1))
+        moves[:, :3, :3] = rest.turns
+        moves[:, :3, 3] = rest.heads - np.einsum("bij,bj->bi", rest.turns, rest.posed_heads)
+        present = armature_of(armature).bones
+        wanted = {name: move for name, move in zip(self._names, moves, strict=True) if name in present}
+        bases = pose_bases(armature, wanted)
+        return keep_pose(armature, f"{armature.name} Rest", bases, show=self._settings.rest_shown).name
+
+
+def _new_armature(context: bpy.types.Context, target: bpy.types.Object, model: bpy.types.Object) -> bpy.types.Object:
+    """Copy the source's armature to the place of the target, turned and scaled as it is."""
+    armature = copy_armature(context, model, f"{model.name} {target.name}")
+    matrix = model.matrix_world.copy()
+    matrix.translation = target.matrix_world.translation
+    armature.matrix_world = matrix
+    view_layer_of(context).update()
+    return armature
+
+
+def _move_to_collections(context: bpy.types.Context, armature: bpy.types.Object, target: bpy.types.Object) -> None:
+    """Put an armature that is in the scene's own collection where the target is."""
+    scene = cast("Any", context.scene).collection
+    wanted = tuple(target.users_collection)
+    for collection in wanted:
+        if armature.name not in collection.objects:
+            collection.objects.link(armature)
+    if wanted and scene not in wanted:
+        scene.objects.unlink(armature)
+
+
+def _rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Find the rotation nearest to a matrix (3, 3)."""
+    left, _, right = np.linalg.svd(matrix)
+    return left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
+
+
+def _listed(names: list[str]) -> str:
+    """Write names out, or the first of many."""
+    shown = ", ".join(f'"{name}"' for name in names[:_LISTED])
+    return shown if len(names) <= _LISTED else f"{shown} and {len(names) - _LISTED} more"

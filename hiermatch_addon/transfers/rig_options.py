@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How a target gets its rig: Blender's options, and the plain settings that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+__all__ = ["RigOptions", "RigSettings", "rig_settings"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+@dataclass(frozen=True)
+class RigSettings:
+    """How a target gets its rig.
+
+    Attributes
+    ----------
+    existing : str
+        What becomes of an armature that was made for the target before: "UPDATE" or "KEEP".
+    bind : bool
+        Whether the target gets an Armature modifier and a parent.
+    rest : bool
+        Whether a rest pose like the source's is made as well.
+    rest_shown : bool
+        Whether the new armature takes it.
+    pose : str
+        Whether the target is in another pose than the source: "AUTO", "POSED" or "REST".
+    """
+
+    existing: str = "UPDATE"
+    bind: bool = True
+    rest: bool = False
+    rest_shown: bool = False
+    pose: str = "AUTO"
+
+
+class RigOptions:
+    """The options of fitting a rig, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "rig_existing": _props.EnumProperty(
+            name="Existing Rig",
+            description="What becomes of an armature that was made for the target before",
+            items=[
+                ("UPDATE", "Update", "Move its joints; all else that was changed on it since stays"),
+                ("KEEP", "Keep", "Leave it as it is, and make another one"),
+            ],
+            default="UPDATE",
+        ),
+        "rig_bind": _props.BoolProperty(
+            name="Bind",
+            description="Give the target an Armature modifier, set as the source's, and the armature as its parent if "
+            "the source has its own as parent",
+            default=True,
+        ),
+        "rig_rest": _props.BoolProperty(
+            name="Also Rest Pose",
+            description="If the target is in another pose than the source, make an action that takes it to a rest pose "
+            "like the source's",
+        ),
+        "rig_rest_shown": _props.BoolProperty(
+            name="Show Rest Pose",
+            description="Let the new armature take that rest pose at once",
+        ),
+        "rig_pose": _props.EnumProperty(
+            name="Pose",
+            description="Whether the target is in another pose than the source, for the rest pose",
+            items=[
+                ("AUTO", "Automatic", "It is, if a large limb is bent much against the source"),
+                ("POSED", "Posed", "It is: undo all rotations of its bones"),
+                ("REST", "At Rest", "It is in its rest pose already, and only its build is different"),
+            ],
+            default="AUTO",
+        ),
+    }
+
+    if TYPE_CHECKING:
+        rig_existing: str
+        rig_bind: bool
+        rig_rest: bool
+        rig_rest_shown: bool
+        rig_pose: str
+
+
+def rig_settings(options: RigOptions) -> RigSettings:
+    """Make the settings of the options."""
+    return RigSettings(
+        options.rig_existing, options.rig_bind, options.rig_rest, options.rig_rest_shown, options.rig_pose
+    )

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one mesh carries, made symmetric across the map to its own mirror image, in any pose and topology."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+import bpy
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...engine import Progress, symmetry_map_steps
+from ...engine.progress import within
+from ...engine.symmetrising import Symmetriser
+from ..access import mesh_of, view_layer_of
+from ..attribute_io import attribute_layouts, read_attribute, write_attribute
+from ..deform_layer import check_weights_writable, read_weights, write_weights
+from ..errors import ObjectError
+from ..mesh_io import corner_vertices, position_digest, read_mesh, topology, vertex_positions
+from ..pair import check_object
+from ..shape_key_io import (
+    KeySettings,
+    add_keys,
+    check_keys_writable,
+    keys_of,
+    linear_part,
+    read_offsets,
+    shape_key_names,
+)
+from ..side_names import flipped_name, partners, side_of
+from ..transfer import TransferReport
+from ..written_names import written_names
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...engine.progress import Steps
+    from .symmetrise_options import SymmetriseSettings
+
+__all__ = ["SymmetriseJob"]
+
+
+class SymmetriseJob:
+    """Makes one mesh symmetric; a `Job`.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the object is.
+    obj : bpy.types.Object
+        The mesh object.
+    settings : SymmetriseSettings
+        What is made symmetric.
+
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
+    seconds : float
+        How long it took, once finished.
+
+    Raises
+    ------
+    ObjectError
+        If the object cannot be read or written, or carries nothing that could be made symmetric.
+    """
+
+    def __init__(self, context: bpy.types.Context, obj: bpy.types.Object, settings: SymmetriseSettings) -> None:
+        self._start = time.perf_counter()
+        check_object(view_layer_of(context), obj)
+        check_weights_writable(obj)
+        self._uid, self._name, self._state = obj.session_uid, obj.name, _state(obj)
+        self._parts: list[_Weights | _Keys | _Colors] = []
+        if settings.weights:
+            self._parts.append(_Weights(obj, create=settings.create))
+        if settings.keys:
+            self._parts.append(_Keys(context, obj, create=settings.create))
+        if settings.colors:
+            self._parts.append(_Colors(obj))
+        if not any(part.names for part in self._parts):
+            raise ObjectError(
+                f'"{obj.name}" carries nothing of what is to be made symmetric: no vertex groups, shape keys or color '
+                "attributes. Choose another object, or turn more of them on."
+            )
+        self._mesh = read_mesh(obj, context.evaluated_depsgraph_get(), use_modifiers=False)
+        self._hints = _hints(obj) * (1.0 if settings.side == "LEFT" else -1.0)
+        self._steps = self._all_steps()
+        self._done = False
+        self.progress = Progress(0.0, "Starting")
+        self.seconds = 0.0
+
+    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
+        """Work for about so long, but for one step at least; return whether everything is computed."""
+        self._object(view_layer)
+        end = time.perf_counter() + seconds
+        while not self._done:
+            try:
+                self.progress = next(self._steps)
+            except StopIteration:
+                self._done = True
+            if time.perf_counter() >= end:
+                break
+        return self._done
+
+    def close(self) -> None:
+        """Drop the work."""
+        self._steps.close()
+
+    def finish(self, context: bpy.types.Context) -> TransferReport:
+        """Write everything.
+
+        Raises
+        ------
+        ObjectError
+            If the object has changed since it was read.
+        """
+        obj = self._object(view_layer_of(context))
+        if _state(obj) != self._state:
+            raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
+        done = [part.write(obj) for part in self._parts if part.names]
+        self.seconds = time.perf_counter() - self._start
+        return TransferReport(", ".join(done))
+
+    def _all_steps(self) -> Steps[None]:
+        """Find the mirror images, and compute what is to be written."""
+        found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
+        yield Progress(0.9, "Telling the sides apart")
+        symmetriser = Symmetriser.of(self._mesh, found.source_to_target, self._hints)
+        yield Progress(0.95, "Mirroring")
+        for part in self._parts:
+            if part.names:
+                part.compute(symmetriser)
+
+    def _object(self, view_layer: bpy.types.ViewLayer) -> bpy.types.Object:
+        """Look the object up again."""
+        for obj in bpy.data.objects:
+            if obj.session_uid == self._uid:
+                check_object(view_layer, obj)
+                return obj
+        raise ObjectError(f'"{self._name}" was deleted meanwhile. Nothing was written.')
+
+
+class _Weights:
+    """The weights of the vertex groups that are neither locked nor a match's, nor without a partner."""
+
+    def __init__(self, obj: bpy.types.Object, *, create: bool) -> None:
+        ours = written_names(obj)
+        locked = {group.name for group in obj.vertex_groups if group.lock_weight}
+        free = [name for name in obj.vertex_groups.keys() if name not in ours | locked]  # noqa: SIM118 - not a dict
+        missing = [flipped_name(name) for name in free if flipped_name(name) not in obj.vertex_groups]
+        if create:
+            free += missing
+        self.names = [name for name in free if flipped_name(name) in free]
+        read = read_weights(obj)
+        empty = csr_array((read.shape[0], 1))
+        columns = [obj.vertex_groups.find(name) for name in self.names]
+        blocks = [empty if column < 0 else read[:, [column]] for column in columns]
+        self._weights = csr_array(_side_by_side(blocks, read.shape[0]))
+
+    def compute(self, symmetriser: Symmetriser) -> None:
+        """Make them symmetric."""
+        self._weights = symmetriser.weights(self._weights, partners(self.names))
+
+    def write(self, obj: bpy.types.Object) -> str:
+        """Write them."""
+        write_weights(obj, self.names, self._weights)
+        return f"{len(self.names)} vertex groups"
+
+
+class _Keys:
+    """All shape keys; those of one side only get a partner."""
+
+    def __init__(self, context: bpy.types.Context, obj: bpy.types.Object, *, create: bool) -> None:
+        self.names = list(shape_key_names(obj))
+        if not self.names:
+            return
+        check_keys_writable(obj, self.names)
+        blocks = cast("bpy.types.Key", keys_of(obj)).key_blocks
+        settings = [KeySettings.of(blocks[name], ()) for name in self.names]
+        present = {*self.names, blocks[0].name}
+        self._missing = [one for one in settings if create and flipped_name(one.name) not in present]
+        matrix = linear_part(context, obj)
+        self._offsets = read_offsets(obj, self.names, from_reference=self.names) @ matrix.T
+        self._to_local = np.linalg.inv(matrix).T
+        self._made = np.empty((0, *self._offsets.shape[1:]))
+
+    def compute(self, symmetriser: Symmetriser) -> None:
+        """Make them symmetric."""
+        places = {name: place for place, name in enumerate(self.names)}
+        made = [symmetriser.mirrored_offsets(self._offsets[places[one.name]]) for one in self._missing]
+        other = partners(self.names)
+        paired = np.flatnonzero(other >= 0)
+        renumber = np.full(len(other), -1)
+        renumber[paired] = np.arange(len(paired))
+        self._offsets[paired] = symmetriser.offsets(self._offsets[paired], renumber[other[paired]])
+        self._offsets = self._offsets @ self._to_local
+        self._made = np.array(made).reshape(-1, *self._offsets.shape[1:]) @ self._to_local
+
+    def write(self, obj: bpy.types.Object) -> str:
+        """Write them, with nothing else of the keys changed."""
+        blocks = cast("bpy.types.Key", keys_of(obj)).key_blocks
+        before = [KeySettings.of(blocks[name], self.names) for name in self.names]
+        new = [replace(one, name=flipped_name(one.name), vertex_group=_flipped_group(one)) for one in self._missing]
+        add_keys(obj, [*before, *new], np.concatenate([self._offsets, self._made]))
+        return f"{len(before) + len(new)} shape keys"
+
+
+class _Colors:
+    """The color attributes that are not a match's, at vertices or at the corners of faces."""
+
+    def __init__(self, obj: bpy.types.Object) -> None:
+        mesh, ours = mesh_of(obj), written_names(obj)
+        self.names = [attribute.name for attribute in mesh.color_attributes if attribute.name not in ours]
+        self._corners = corner_vertices(mesh)
+        self._values = {name: _colors(mesh, name) for name in self.names}
+
+    def compute(self, symmetriser: Symmetriser) -> None:
+        """Make them symmetric; what is mirrored to the corners of a vertex is the mean there."""
+        n = len(symmetriser.own)
+        for name, (domain, values) in self._values.items():
+            if domain == "POINT":
+                made = symmetriser.values(values)
+            else:
+                counts = np.maximum(np.bincount(self._corners, minlength=n), 1)[:, None]
+                sums = np.stack([np.bincount(self._corners, axis, n) for axis in values.T], axis=1)
+                own = symmetriser.own[self._corners, None]
+                made = own * values + (1 - own) * symmetriser.mirror.transfer(sums / counts)[self._corners]
+            self._values[name] = (domain, made)
+
+    def write(self, obj: bpy.types.Object) -> str:
+        """Write them."""
+        mesh = mesh_of(obj)
+        for name, (_, values) in self._values.items():
+            write_attribute(mesh, attribute_layouts(mesh)[name], values)
+        mesh.update()
+        return f"{len(self.names)} color attributes"
+
+
+def _state(obj: bpy.types.Object) -> tuple[str, str]:
+    return topology(mesh_of(obj)), position_digest(mesh_of(obj))
+
+
+def _side_by_side(columns: list[csr_array], rows: int) -> csr_array:
+    """Put columns (n, 1) side by side."""
+    entries = [column.tocoo() for column in columns]
+    data = np.concatenate([np.empty(0), *(entry.data for entry in entries)])
+    row = np.concatenate([np.empty(0, np.int64), *(entry.row for entry in entries)])
+    number = np.repeat(np.arange(len(entries)), [entry.nnz for entry in entries])
+    return csr_array((data, (row, number)), shape=(rows, len(columns)))
+
+
+def _colors(mesh: bpy.types.Mesh, name: str) -> tuple[str, NDArray[np.float64]]:
+    """Read the domain of a color attribute and its colours (k, 4)."""
+    return attribute_layouts(mesh)[name].domain, read_attribute(mesh, name).astype(np.float64)
+
+
+def _flipped_group(settings: KeySettings) -> str:
+    return flipped_name(settings.vertex_group) if settings.vertex_group else ""
+
+
+def _hints(obj: bpy.types.Object) -> NDArray[np.float64]:
+    """Tell left, positive, from right: by the weights of groups named for a side, or else by the X axis."""
+    mesh = mesh_of(obj)
+    ours = written_names(obj)
+    names = [group.name for group in obj.vertex_groups]
+    sides = np.array([0 if name in ours else side_of(name) for name in names], float)
+    hints = read_weights(obj) @ sides if names else np.zeros(len(mesh.vertices))
+    if hints.any():
+        return hints
+    return vertex_positions(mesh)[:, 0].astype(np.float64)

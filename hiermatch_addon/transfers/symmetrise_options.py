@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of a mesh is made symmetric: Blender's options, and the plain settings that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+__all__ = ["SymmetriseOptions", "SymmetriseSettings", "symmetrise_settings"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+@dataclass(frozen=True)
+class SymmetriseSettings:
+    """What of a mesh is made symmetric.
+
+    Attributes
+    ----------
+    side : str
+        The side that is taken to the other: "LEFT" or "RIGHT".
+    weights, keys, colors : bool
+        Whether the weights of vertex groups, shape keys, and color attributes are made symmetric.
+    create : bool
+        Whether groups and shape keys are added of which only one side is there.
+    """
+
+    side: str = "LEFT"
+    weights: bool = True
+    keys: bool = True
+    colors: bool = True
+    create: bool = True
+
+
+class SymmetriseOptions:
+    """The options of symmetrising, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "symmetrise_side": _props.EnumProperty(
+            name="Direction",
+            description="Which side is taken to the other. The sides are told apart by vertex groups with names such "
+            "as Arm.L and Arm.R, or else by the object's X axis, which points to the left",
+            items=[
+                ("LEFT", "Left to Right", "The left side is good"),
+                ("RIGHT", "Right to Left", "The right side is good"),
+            ],
+            default="LEFT",
+        ),
+        "symmetrise_weights": _props.BoolProperty(
+            name="Weights",
+            description="Make the weights of vertex groups symmetric; locked groups are left alone",
+            default=True,
+        ),
+        "symmetrise_keys": _props.BoolProperty(
+            name="Shape Keys", description="Make shape keys symmetric", default=True
+        ),
+        "symmetrise_colors": _props.BoolProperty(
+            name="Colors", description="Make color attributes symmetric", default=True
+        ),
+        "symmetrise_create": _props.BoolProperty(
+            name="Create Missing Sides",
+            description="Add vertex groups and shape keys of the other side where only one side is there",
+            default=True,
+        ),
+    }
+
+    if TYPE_CHECKING:
+        symmetrise_side: str
+        symmetrise_weights: bool
+        symmetrise_keys: bool
+        symmetrise_colors: bool
+        symmetrise_create: bool
+
+
+def symmetrise_settings(options: SymmetriseOptions) -> SymmetriseSettings:
+    """Make the settings of the options."""
+    return SymmetriseSettings(
+        options.symmetrise_side,
+        options.symmetrise_weights,
+        options.symmetrise_keys,
+        options.symmetrise_colors,
+        options.symmetrise_create,
+    )

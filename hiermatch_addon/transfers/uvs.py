@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""UV layers, carried from one matched mesh to another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...engine.face_places import FacePlaces
+from ...engine.progress import Progress, within
+from ...engine.uv_transfer import carry_uvs_steps
+from ..access import mesh_of
+from ..attribute_io import (
+    AttributeLayout,
+    attribute_layouts,
+    read_attribute,
+    read_polygons,
+    write_attribute,
+    write_seams,
+)
+from ..errors import ObjectError
+from ..transfer import TransferReport
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ...engine.polygons import Polygons
+    from ...engine.progress import Steps
+    from ...engine.uv_transfer import CarriedUVs
+    from ..transfer import Passage
+    from .uvs_options import UVSettings
+
+__all__ = ["UVTransfer"]
+
+_MOST_LAYERS = 8
+"""How many UV maps Blender allows a mesh."""
+
+
+class UVTransfer:
+    """Carries UV layers; see `Transfer`.
+
+    Parameters
+    ----------
+    settings : UVSettings
+        Which layers, and whether seams are marked.
+    """
+
+    label = "UV Maps"
+    uses_rig = True
+
+    def __init__(self, settings: UVSettings) -> None:
+        self._settings = settings
+        self._layers: dict[str, NDArray[Any]] = {}
+        self._active, self._render = "", ""
+        self._faces: tuple[Polygons, Polygons]
+        self._carried: dict[str, CarriedUVs] = {}
+        self._notes: list[str] = []
+
+    def read(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        """Read the source's layers and both meshes' faces, and make sure that the layers can be written."""
+        mine, theirs = mesh_of(source), mesh_of(target)
+        present = attribute_layouts(theirs)
+        for name in self._chosen(source):
+            layout = _layout(name)
+            if present.get(name, layout) != layout or name in target.vertex_groups:
+                self._notes.append(
+                    f'"{target.name}" already has a vertex group or another attribute called "{name}", so that UV map '
+                    "was left out. Rename one of them."
+                )
+            else:
+                self._layers[name] = read_attribute(mine, name)
+        count = len({layer.name for layer in theirs.uv_layers} | self._layers.keys())
+        if count > _MOST_LAYERS:
+            raise ObjectError(
+                f'"{target.name}" would have {count} UV maps, but Blender allows {_MOST_LAYERS}. '
+                "Remove some of them first, or carry fewer over."
+            )
+        active = mine.uv_layers.active
+        self._active = active.name if active else ""
+        self._render = next((layer.name for layer in mine.uv_layers if layer.active_render), "")
+        self._faces = read_polygons(mine), read_polygons(theirs)
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Compute the UVs of the target's corners."""
+        if not self._layers:
+            return
+        yield Progress(0.0, "Finding faces")
+        pair = passage.pair
+        faces = self._faces[0].cut_as(pair.source)
+        places = FacePlaces(pair.source, self._faces[1], pair.target_to_source)
+        areas = self._faces[1].face_areas(pair.target.vertices)
+        for number, (name, uvs) in enumerate(self._layers.items()):
+            start, end = ((number + part) / len(self._layers) for part in (0, 1))
+            self._carried[name] = yield from within(carry_uvs_steps(uvs, faces, places, areas), start, end)
+
+    def write(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+        """Write layers and seams."""
+        if not self._carried:
+            return TransferReport("", tuple(self._notes))
+        mesh = mesh_of(target)
+        for name, carried in self._carried.items():
+            write_attribute(mesh, _layout(name), carried.uvs)
+            self._notes.extend(_remarks(name, carried, source, target))
+        layers: Any = mesh.uv_layers
+        if self._active in self._carried:
+            layers.active_index = layers.find(self._active)
+        if self._render in self._carried:
+            layers[self._render].active_render = True
+        if self._settings.seams:
+            leading = self._active if self._active in self._carried else next(iter(self._carried))
+            write_seams(mesh, self._carried[leading].seams)
+        mesh.update()
+        count = len(self._carried)
+        return TransferReport("1 UV map" if count == 1 else f"{count} UV maps", tuple(self._notes))
+
+    def _chosen(self, source: bpy.types.Object) -> list[str]:
+        """Names of the layers to carry, in the order of the source."""
+        layers = mesh_of(source).uv_layers
+        names = [layer.name for layer in layers]
+        if not names:
+            raise ObjectError(f'"{source.name}" has no UV map to carry over. Unwrap it, or choose another Source.')
+        if self._settings.choice == "ACTIVE":
+            return [layers.active.name if layers.active else names[0]]
+        if self._settings.choice == "NAMED":
+            if not self._settings.names:
+                raise ObjectError("No UV map is named. Enter the Names of some, separated by commas.")
+            unknown = [name for name in self._settings.names if name not in names]
+            if unknown:
+                raise ObjectError(f'"{source.name}" has no UV map "{unknown[0]}". Check the Names.')
+            return [name for name in names if name in self._settings.names]
+        return names
+
+
+def _layout(name: str) -> AttributeLayout:
+    """Say what a UV layer is among the attributes."""
+    return AttributeLayout(name, "FLOAT2", "CORNER")
+
+
+def _remarks(name: str, carried: CarriedUVs, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
+    """Sentences on the islands that are not well placed."""
+    notes = []
+    if carried.lost:
+        notes.append(
+            f'{carried.lost} of {carried.island_count} islands of "{name}" lie where "{target.name}" has no faces, '
+            f'such as the inside of a mouth that only "{source.name}" has.'
+        )
+    if carried.untrusted:
+        notes.append(
+            f'{carried.untrusted} of {carried.island_count} islands of "{name}" lie where the match has no '
+            f'confidence. Check them on "{target.name}".'
+        )
+    return notes

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How UV layers are carried over: Blender's options, and the plain settings that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+__all__ = ["UVOptions", "UVSettings", "uv_settings"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+@dataclass(frozen=True)
+class UVSettings:
+    """How UV layers are carried over.
+
+    Attributes
+    ----------
+    choice : str
+        Which layers: "ALL", "ACTIVE" or "NAMED".
+    names : tuple of str
+        Their names if they are chosen by name.
+    seams : bool
+        Whether the edges between islands are marked as seams.
+    """
+
+    choice: str = "ALL"
+    names: tuple[str, ...] = ()
+    seams: bool = True
+
+
+class UVOptions:
+    """The options of UV layers, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "uv_layers": _props.EnumProperty(
+            name="UV Maps",
+            description="Which UV maps of the source are carried over. Those of the same name are replaced",
+            items=[
+                ("ALL", "All", "All UV maps"),
+                ("ACTIVE", "Active", "The active UV map"),
+                ("NAMED", "By Name", "The UV maps that are named"),
+            ],
+            default="ALL",
+        ),
+        "uv_names": _props.StringProperty(
+            name="Names",
+            description="Names of the UV maps to carry over, separated by commas",
+        ),
+        "uv_seams": _props.BoolProperty(
+            name="Mark Seams",
+            description="Mark the edges between the islands of the active UV map as seams on the target, instead of "
+            "the seams that it has",
+            default=True,
+        ),
+    }
+
+    if TYPE_CHECKING:
+        uv_layers: str
+        uv_names: str
+        uv_seams: bool
+
+
+def uv_settings(options: UVOptions) -> UVSettings:
+    """Make the settings of the options."""
+    names = tuple(name.strip() for name in options.uv_names.split(",") if name.strip())
+    return UVSettings(options.uv_layers, names, options.uv_seams)

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How weights are carried over: Blender's options, and the plain settings that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+__all__ = ["WeightOptions", "WeightSettings", "weight_settings"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+@dataclass(frozen=True)
+class WeightSettings:
+    """How weights are carried over.
+
+    Attributes
+    ----------
+    groups : str
+        Which vertex groups: "ALL", "DEFORM", "SELECTED" or "ACTIVE".
+    mode : str
+        What becomes of weights that are there: "REPLACE" or "ADD".
+    mix : float
+        How much the carried weights count, 0 to 1.
+    normalise : bool
+        Whether the weights of bones sum to one at each vertex afterwards.
+    limit : int
+        How many bones may move a vertex; 0 for any number.
+    clean : float
+        Weights below this are dropped.
+    fill : bool
+        Whether vertices that the map tears away from their neighbours take the weights around them, and small loose
+        parts move as one.
+    mark : bool
+        Whether a color attribute shows these vertices.
+    prefix : str
+        What the name of that attribute starts with.
+    """
+
+    groups: str = "ALL"
+    mode: str = "REPLACE"
+    mix: float = 1.0
+    normalise: bool = True
+    limit: int = 0
+    clean: float = 0.001
+    fill: bool = True
+    mark: bool = False
+    prefix: str = "HM"
+
+
+class WeightOptions:
+    """The options of weights, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "weight_groups": _props.EnumProperty(
+            name="Vertex Groups",
+            description="Which vertex groups of the source are carried over. Those that a match wrote never are",
+            items=[
+                ("ALL", "All", "All vertex groups"),
+                ("DEFORM", "Deforming Bones", "The vertex groups of bones that deform"),
+                ("SELECTED", "Selected Bones", "The vertex groups of the bones that are selected in the source's rig"),
+                ("ACTIVE", "Active", "The active vertex group"),
+            ],
+            default="ALL",
+        ),
+        "weight_mode": _props.EnumProperty(
+            name="Mode",
+            description="What becomes of the weights that the target has in these groups",
+            items=[
+                ("REPLACE", "Replace", "The carried weights take their place"),
+                ("ADD", "Add", "The carried weights are added to them"),
+            ],
+            default="REPLACE",
+        ),
+        "weight_mix": _props.FloatProperty(
+            name="Mix Factor",
+            description="How much the carried weights count against those that are there",
+            default=1.0,
+            min=0.0,
+            max=1.0,
+            subtype="FACTOR",
+        ),
+        "weight_normalise": _props.BoolProperty(
+            name="Normalize",
+            description="Let the weights of all bones sum to one at each vertex. Locked groups keep theirs. If only "
+            "some groups are carried, the others of the target give way to them",
+            default=True,
+        ),
+        "weight_limit": _props.IntProperty(
+            name="Limit",
+            description="How many bones may move a vertex: the smallest weights go, and fade before they do. 0 for any "
+            "number",
+            default=0,
+            min=0,
+            max=32,
+        ),
+        "weight_clean": _props.FloatProperty(
+            name="Clean",
+            description="Weights below this are dropped, but for the largest of each vertex",
+            default=0.001,
+            min=0.0,
+            max=0.5,
+            precision=3,
+        ),
+        "weight_fill": _props.BoolProperty(
+            name="Fill",
+            description="Where the map tears vertices away from their neighbors, take the weights from around them "
+            "along the surface; and let small loose parts move as one, such as eyes, if they do on the source",
+            default=True,
+        ),
+        "weight_mark": _props.BoolProperty(
+            name="Mark Rejected",
+            description="Write a color attribute that shows in red which vertices were torn away from their neighbors, "
+            "so that their own weights were rejected",
+            default=False,
+        ),
+    }
+
+    if TYPE_CHECKING:
+        weight_groups: str
+        weight_mode: str
+        weight_mix: float
+        weight_normalise: bool
+        weight_limit: int
+        weight_clean: float
+        weight_fill: bool
+        weight_mark: bool
+
+
+def weight_settings(options: WeightOptions, prefix: str = "") -> WeightSettings:
+    """Make the settings of the options; `prefix` is that of the match, if it is known."""
+    return WeightSettings(
+        groups=options.weight_groups,
+        mode=options.weight_mode,
+        mix=options.weight_mix,
+        normalise=options.weight_normalise,
+        limit=options.weight_limit,
+        clean=options.weight_clean,
+        fill=options.weight_fill,
+        mark=options.weight_mark,
+        prefix=prefix or WeightSettings.prefix,
+    )

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One mesh laid onto another, as a shape key: its slider morphs one into the other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from ...engine.morphing import in_between
+from ...engine.progress import Progress, within
+from ...engine.wrapping import kept_in_place, wrap_steps
+from .. import writing
+from ..access import mesh_of
+from ..mesh_io import vertex_positions
+from ..shape_key_io import (
+    KeySettings,
+    add_keys,
+    check_keys_writable,
+    key_positions,
+    key_value_path,
+    keys_of,
+    world_matrix,
+)
+from ..transfer import TransferReport
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ...engine.progress import Steps
+    from ..transfer import Passage
+    from .wrap_options import WrapSettings
+
+__all__ = ["WrapTransfer", "wrap_key_name"]
+
+_LEAST_HELD = 0.9
+"""If less of the vertices lies on the other mesh, that is told."""
+
+_MOST_FOLDED = 0.002
+"""If more of the area is folded, that is told."""
+
+_NAME_BYTES = 60
+"""Longest name, in bytes, that Blender allows a shape key, with the number of an in-between."""
+
+
+def wrap_key_name(other: str) -> str:
+    """Return the name of the shape key that wraps a mesh to another of that name."""
+    name = f"Wrap to {other}"
+    while len(name.encode()) > _NAME_BYTES - len(" 15/16"):
+        name = name[:-1]
+    return name
+
+
+class WrapTransfer:
+    """Lays source or target onto the other; see `Transfer`.
+
+    Parameters
+    ----------
+    settings : WrapSettings
+        Which, and what is made of it.
+    """
+
+    label = "Wrap"
+    uses_rig = True
+
+    def __init__(self, settings: WrapSettings) -> None:
+        self._settings = settings
+        self._from_world: NDArray[np.float64] = np.eye(4)
+        self._shapes: NDArray[np.float64] = np.empty((0, 0, 3))  # the wrapped one, and the in-betweens
+        self._notes: list[str] = []
+
+    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        """Make sure that the result can be written."""
+        moved, other = self._roles(source, target)
+        if self._settings.result == "KEY":
+            check_keys_writable(moved, self._names(other.name))
+        self._from_world = np.linalg.inv(world_matrix(context, moved))
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Compute the wrapped shape and those in between, in the space of the object."""
+        forward = self._settings.moved == "SOURCE"
+        pair = passage.pair if forward else passage.pair.reverse
+        registered = passage.rig.registered if forward and passage.rig is not None else None
+        maps = (pair.source_to_target, pair.target_to_source)
+        wrapped = yield from within(wrap_steps(pair.source, pair.target, *maps, registered), 0.0, 0.8)
+        positions = wrapped.positions
+        if self._settings.place == "OWN":
+            positions = kept_in_place(pair.source, positions)
+        yield Progress(0.8, "Finding shapes in between")
+        count = self._settings.in_betweens
+        shapes = positions[None]
+        if count:
+            between = in_between(pair.source, positions, np.arange(1, count + 1) / (count + 1))
+            shapes = np.concatenate([shapes, between])
+        self._shapes = shapes @ self._from_world[:3, :3].T + self._from_world[:3, 3]
+        if wrapped.held.mean() < _LEAST_HELD:
+            self._notes.append(
+                f"{1 - wrapped.held.mean():.0%} of the vertices have no place on the other mesh and follow their "
+                "surroundings."
+            )
+        if wrapped.folded > _MOST_FOLDED:
+            self._notes.append(f"The wrapped surface is folded in places, {wrapped.folded:.1%} of it.")
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+        """Write the shape keys."""
+        moved, other = self._roles(source, target)
+        made = moved
+        if self._settings.result == "OBJECT":
+            made = _duplicate(context, moved, f"{moved.name} to {other.name}")
+        names = self._names(other.name)
+        add_keys(made, self._key_settings(made, names), self._offsets(made))
+        _drive(cast("bpy.types.Key", keys_of(made)), names)
+        what = f'the shape key "{names[0]}" on "{made.name}"'
+        return TransferReport(f"{what}, a new object" if made != moved else what, tuple(self._notes))
+
+    def _roles(self, source: bpy.types.Object, target: bpy.types.Object) -> tuple[bpy.types.Object, bpy.types.Object]:
+        """Tell which one is laid onto which."""
+        return (source, target) if self._settings.moved == "SOURCE" else (target, source)
+
+    def _names(self, other: str) -> list[str]:
+        """Names of the key and of its in-betweens."""
+        name, count = wrap_key_name(other), self._settings.in_betweens
+        return [name, *(f"{name} {number}/{count + 1}" for number in range(1, count + 1))]
+
+    def _key_settings(self, made: bpy.types.Object, names: list[str]) -> list[KeySettings]:
+        """Show the new shape, unless it is already another's."""
+        keys = keys_of(made)
+        start = wrap_key_name("")
+        others = [] if keys is None else [key for key in keys.key_blocks if key.name not in names]
+        shown = not any(key.name.startswith(start) and key.value for key in others)
+        return [KeySettings(name, value=float(shown and not number)) for number, name in enumerate(names)]
+
+    def _offsets(self, made: bpy.types.Object) -> NDArray[np.float64]:
+        """Return what is to be added to the basis: by the in-betweens, what lacks on the straight way."""
+        keys, mesh = keys_of(made), mesh_of(made)
+        rest = vertex_positions(mesh).astype(np.float64) if keys is None else key_positions(keys.reference_key)
+        offsets = self._shapes - rest
+        fractions = np.arange(1, len(offsets)) / len(offsets)
+        offsets[1:] -= fractions[:, None, None] * offsets[0]
+        return offsets
+
+
+def _duplicate(context: bpy.types.Context, obj: bpy.types.Object, name: str) -> bpy.types.Object:
+    """Copy a mesh object without what moves it, its shape keys, and what matches wrote."""
+    matrix = obj.matrix_world.copy()
+    copy, mesh = obj.copy(), mesh_of(obj).copy()
+    copy.name, mesh.name = name, name
+    copy.data = mesh
+    copy.animation_data_clear()
+    copy.modifiers.clear()
+    copy.constraints.clear()
+    copy.parent = None
+    copy.matrix_world = matrix
+    if mesh.shape_keys is not None:
+        copy.shape_key_clear()
+    for prefix in writing.prefixes(copy):
+        writing.clear(copy, prefix)
+    collections = obj.users_collection or (cast("bpy.types.Scene", context.scene).collection,)
+    for collection in collections:
+        collection.objects.link(copy)
+    return copy
+
+
+def _drive(keys: bpy.types.Key, names: list[str]) -> None:
+    """Let the slider of the first key turn the others on and off again, one after the other."""
+    for number, name in enumerate(names[1:], start=1):
+        path = key_value_path(name)
+        keys.driver_remove(path)
+        driver = cast("bpy.types.Driver", keys.driver_add(path).driver)
+        driver.type = "SCRIPTED"
+        variable = driver.variables.new()
+        variable.name, variable.type = "wrap", "SINGLE_PROP"
+        place = variable.targets[0]
+        place.id_type, place.id, place.data_path = "KEY", keys, key_value_path(names[0])
+        driver.expression = f"max(0, 1 - abs(wrap * {len(names)} - {number}))"

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which vertex groups and attributes of an object are a match's own, and none of the artist's."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from . import writing
+from .access import mesh_of
+
+if TYPE_CHECKING:
+    import bpy
+
+__all__ = ["written_names"]
+
+
+def written_names(obj: bpy.types.Object) -> set[str]:
+    """Return the names of all that matches wrote on an object and recorded there."""
+    mesh: Any = mesh_of(obj)
+    if not writing.is_marked(mesh):
+        return set()
+    return {name for record in mesh[writing.MARKER].to_dict().values() for name in record["written"]}

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator `hiermatch.wrap`."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from hiermatch.hiermatch_addon.transfers.wrap import wrap_key_name
+from scipy.spatial import cKDTree
+
+from tests.addon.scenes import mesh_snapshot
+from tests.addon.shape_keys import positions
+
+
+@pytest.fixture
+def pair(dense_pair):
+    bpy.context.scene.hiermatch.source = bpy.context.scene.hiermatch.target = None
+    return dense_pair
+
+
+def wrap(**options):
+    return bpy.ops.hiermatch.wrap(**({"source": "Source", "target": "Target", "refine": False} | options))
+
+
+def shown(obj):
+    """Vertices (n, 3) in the world, as shape keys and drivers make them."""
+    bpy.context.view_layer.update()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    evaluated = obj.evaluated_get(depsgraph)
+    found = np.array([evaluated.matrix_world @ vertex.co for vertex in evaluated.to_mesh().vertices])
+    evaluated.to_mesh_clear()
+    return found
+
+
+def in_world(obj):
+    matrix = np.array(obj.matrix_world)
+    return positions(obj) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def gaps(points, obj):
+    """Distances of points from the vertices of an object, of both sides of its surface's edges' lengths."""
+    return cKDTree(in_world(obj)).query(points)[0]
+
+
+def test_the_slider_leads_from_one_shape_to_the_other(pair):
+    source, target = pair
+    before, own = in_world(source), mesh_snapshot(target)
+    assert wrap() == {"FINISHED"}
+    key = source.data.shape_keys.key_blocks["Wrap to Target"]
+    assert key.value == 1
+    edge = np.mean([np.linalg.norm(in_world(target)[list(edge.vertices)].ptp(axis=0)) for edge in target.data.edges])
+    assert gaps(shown(source), target).max() < 1.5 * edge
+    key.value = 0
+    np.testing.assert_allclose(shown(source), before, atol=1e-5)
+    assert mesh_snapshot(target) == own
+    assert wrap() == {"FINISHED"}  # again, it is replaced
+    assert [key.name for key in source.data.shape_keys.key_blocks] == ["Basis", "Wrap to Target"]
+
+
+def test_the_target_can_be_laid_onto_the_source_as_a_new_object(pair):
+    source, target = pair
+    before = [mesh_snapshot(obj) for obj in pair]
+    assert wrap(wrap_moved="TARGET", wrap_result="OBJECT") == {"FINISHED"}
+    assert [mesh_snapshot(obj) for obj in pair] == before
+    assert source.data.shape_keys is None
+    assert target.data.shape_keys is None
+    made = bpy.data.objects["Target to Source"]
+    assert made.matrix_world == target.matrix_world
+    assert not [name for name in made.vertex_groups.keys() if name.startswith("HM")]  # noqa: SIM118
+    assert "hiermatch" not in made.data
+    assert gaps(shown(made), source).max() < 0.5
+
+
+def test_the_own_place_is_kept(pair):
+    source = pair[0]
+    centre = shown(source).mean(axis=0)
+    assert wrap(wrap_place="OWN") == {"FINISHED"}
+    assert np.linalg.norm(shown(source).mean(axis=0) - centre) < 0.2
+
+
+def test_in_betweens_follow_the_slider(pair):
+    source = pair[0]
+    assert wrap(wrap_in_betweens=3) == {"FINISHED"}
+    blocks = source.data.shape_keys.key_blocks
+    assert [key.name for key in blocks][1:] == [
+        "Wrap to Target",
+        "Wrap to Target 1/4",
+        "Wrap to Target 2/4",
+        "Wrap to Target 3/4",
+    ]
+    for value, expected in ((0.0, [0, 0, 0]), (0.375, [0.5, 0.5, 0]), (0.5, [0, 1, 0]), (1.0, [0, 0, 0])):
+        blocks[1].value = value
+        bpy.context.view_layer.update()
+        evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.shape_keys.key_blocks
+        assert [evaluated[key.name].value for key in list(blocks)[2:]] == pytest.approx(expected, abs=1e-6)
+    assert wrap(wrap_in_betweens=3) == {"FINISHED"}
+    assert len(source.data.shape_keys.animation_data.drivers) == 3
+
+
+def test_names_fit_into_blender():
+    assert wrap_key_name("Cube") == "Wrap to Cube"
+    assert len((wrap_key_name("Ä" * 60) + " 15/16").encode()) <= 63
+
+
+def test_shared_meshes_are_refused(pair):
+    source = pair[0]
+    bpy.data.objects.new("Sharer", source.data)
+    with pytest.raises(RuntimeError, match="shared with other objects"):
+        wrap()
+    assert source.data.shape_keys is None
