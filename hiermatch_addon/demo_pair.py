@@ -20,6 +20,7 @@ from mathutils.interpolate import poly_3d_calc
 
 from .access import mesh_of, view_layer_of
 from .demo_cat import add_modifier, build_body
+from .demo_rig import rig_cat
 from .demo_skeleton import BONES, STANDING, WALKING, bone_weights, build_armature, set_pose
 
 if TYPE_CHECKING:
@@ -63,8 +64,15 @@ class _Surface(NamedTuple):
     faces: list[list[int]]
 
 
+class _Posed(NamedTuple):
+    """Vertices (n, 3) in a pose, and how far they were lifted onto the ground after it."""
+
+    vertices: NDArray[np.float64]
+    lift: float
+
+
 def add_demo_pair(
-    context: bpy.types.Context, *, source_vertices: int = 5500, target_vertices: int = 4000
+    context: bpy.types.Context, *, source_vertices: int = 5500, target_vertices: int = 4000, rigged: bool = False
 ) -> tuple[bpy.types.Object, bpy.types.Object]:
     """Add the two cats to the scene, beside the 3D cursor, selected and with the source active.
 
@@ -74,6 +82,8 @@ def add_demo_pair(
         Where to add them; in Object Mode.
     source_vertices, target_vertices : int
         About how many vertices the meshes get; the source is mostly quads, the target triangles.
+    rigged : bool
+        Whether the source gets an armature, weights, shape keys and a UV map.
 
     Returns
     -------
@@ -89,11 +99,14 @@ def add_demo_pair(
         target_rest = _remeshed(scene, rest, target_vertices, _TARGET_ATTITUDE)
         source_posed = _posed(scene, armature, STANDING, source_rest, rest)
         target_posed = _posed(scene, armature, WALKING, target_rest, rest)
-    source = _finished(SOURCE_NAME, source_rest, source_posed, Matrix())
-    target = _finished(TARGET_NAME, target_rest, target_posed, Matrix.Scale(_TARGET_UNIT, 4) @ _Y_UP)
+        source = _finished(SOURCE_NAME, source_rest, source_posed.vertices, Matrix())
+        place = _standing_at(_SOURCE_PLACE, _SOURCE_HEADING)
+        source.matrix_world = Matrix.Translation(cast("bpy.types.Scene", context.scene).cursor.location) @ place
+        if rigged:
+            rig_cat(context, source, armature, rest.weights_at(source_rest.vertices), source_posed.lift)
+    target = _finished(TARGET_NAME, target_rest, target_posed.vertices, Matrix.Scale(_TARGET_UNIT, 4) @ _Y_UP)
     cursor = Matrix.Translation(cast("bpy.types.Scene", context.scene).cursor.location)
     unit = Matrix.Scale(_TARGET_SIZE / _TARGET_UNIT, 4) @ _Y_UP.inverted()
-    source.matrix_world = cursor @ _standing_at(_SOURCE_PLACE, _SOURCE_HEADING)
     target.matrix_world = cursor @ _standing_at(_TARGET_PLACE, _TARGET_HEADING) @ unit
     _show(context, source, target)
     return source, target
@@ -255,9 +268,7 @@ def _with_quads(surface: _Surface) -> _Surface:
         return _Surface(surface.vertices, _faces_of(build))
 
 
-def _posed(
-    scene: bpy.types.Scene, armature: bpy.types.Object, pose: Pose, surface: _Surface, rest: _Rest
-) -> NDArray[np.float64]:
+def _posed(scene: bpy.types.Scene, armature: bpy.types.Object, pose: Pose, surface: _Surface, rest: _Rest) -> _Posed:
     """Move the vertices of a surface in rest with the bones; feet on the ground."""
     thing = _new_object(scene, surface)
     weights = rest.weights_at(surface.vertices)
@@ -268,7 +279,8 @@ def _posed(
     add_modifier(thing, "ARMATURE", object=armature, use_deform_preserve_volume=True)
     set_pose(armature, pose)
     vertices = _evaluated(scene, thing).vertices
-    return vertices - [0, 0, vertices[:, 2].min()]
+    lift = -float(vertices[:, 2].min())
+    return _Posed(vertices + np.array([0, 0, lift]), lift)
 
 
 def _finished(name: str, rest: _Surface, posed: NDArray[np.float64], frame: Matrix) -> bpy.types.Object:

@@ -40,6 +40,11 @@ class HIERMATCH_OT_add_demo_pair(bpy.types.Operator):
         max=15_000,
     )
 
+    rigged: bpy.props.BoolProperty(
+        name="Rigged",
+        description="Give the standing cat an armature, weights, shape keys and a UV map, to try Retarget on",
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object Mode."""
@@ -47,5 +52,10 @@ class HIERMATCH_OT_add_demo_pair(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Build the cats."""
-        add_demo_pair(context, source_vertices=self.source_vertices, target_vertices=self.target_vertices)
+        add_demo_pair(
+            context,
+            source_vertices=self.source_vertices,
+            target_vertices=self.target_vertices,
+            rigged=self.rigged,
+        )
         return {"FINISHED"}

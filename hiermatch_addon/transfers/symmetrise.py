@@ -32,6 +32,7 @@ from ..shape_key_io import (
 from ..side_names import flipped_name, partners, side_of
 from ..transfer import TransferReport
 from ..written_names import written_names
+from .wrap import wrap_key_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -170,16 +171,17 @@ class _Weights:
 
 
 class _Keys:
-    """All shape keys; those of one side only get a partner."""
+    """The shape keys that do not wrap the whole onto another mesh; those of one side only get a partner."""
 
     def __init__(self, context: bpy.types.Context, obj: bpy.types.Object, *, create: bool) -> None:
-        self.names = list(shape_key_names(obj))
+        wraps = wrap_key_name("")
+        self.names = [name for name in shape_key_names(obj) if not name.startswith(wraps)]
         if not self.names:
             return
         check_keys_writable(obj, self.names)
         blocks = cast("bpy.types.Key", keys_of(obj)).key_blocks
         settings = [KeySettings.of(blocks[name], ()) for name in self.names]
-        present = {*self.names, blocks[0].name}
+        present = {key.name for key in blocks}
         self._missing = [one for one in settings if create and flipped_name(one.name) not in present]
         matrix = linear_part(context, obj)
         self._offsets = read_offsets(obj, self.names, from_reference=self.names) @ matrix.T

@@ -130,9 +130,10 @@ class WeightTransfer:
             self._write_mark(target)
         filled = int(self._torn.sum())
         if filled:
+            many = "1 vertex" if filled == 1 else f"{filled} vertices"
             self._notes.append(
-                f'{filled} vertices of "{target.name}" lay apart from their neighbors on "{source.name}"; their '
-                "weights were filled in from around them."
+                f'Weights of {many} of "{target.name}" were filled in from the neighbors, far from whose places on '
+                f'"{source.name}" the map had led.'
             )
         return TransferReport(_counted(int((columns.new & ~columns.locked).sum())), tuple(self._notes))
 

@@ -108,11 +108,13 @@ def test_shape_keys_are_mirrored(body):
     bump = np.exp(-((rest - [0.45, 0.2, -0.9]) ** 2).sum(axis=1) / 0.05)[:, None]
     add_key(obj, "Kick.L", 0.1 * bump * [1, 0, 0]).slider_max = 2
     add_key(obj, "Both", 0.1 * bump * [1, 0, 0])
+    add_key(obj, "Wrap to Other", bump * [1, 0, 0])
     assert symmetrise(symmetrise_weights=False) == {"FINISHED"}
     names = [key.name for key in obj.data.shape_keys.key_blocks]
-    assert names == ["Basis", "Kick.L", "Both", "Kick.R"]
+    assert names == ["Basis", "Kick.L", "Both", "Wrap to Other", "Kick.R"]
     assert obj.data.shape_keys.key_blocks["Kick.R"].slider_max == 2
     np.testing.assert_allclose(offsets_of(obj, "Kick.L"), 0.1 * bump * [1, 0, 0], atol=1e-6)
+    np.testing.assert_allclose(offsets_of(obj, "Wrap to Other"), bump * [1, 0, 0], atol=1e-6)
     made = np.linalg.norm(offsets_of(obj, "Kick.R"), axis=1)
     expected = 0.1 * np.exp(-((rest - [0.45, -0.2, -0.9]) ** 2).sum(axis=1) / 0.05)
     assert np.linalg.norm(made - expected) < 0.2 * np.linalg.norm(expected)
