@@ -1,38 +1,55 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The matching engine of HierMatch: NumPy and SciPy only, no Blender."""
+"""The engine of HierMatch: NumPy and SciPy only, no Blender."""
 
 from .closest_points import ClosestPoints
 from .dense_match import DenseMatch, densify, densify_steps
 from .errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .fitted_rig import FittedRig
+from .joint_placement import PlacedJoints, place_joints
+from .local_frames import LocalFrames, bone_frames, surface_frames
 from .matching import match, match_steps
 from .mesh import TriangleMesh
+from .morphing import in_between
+from .polygons import Polygons
 from .progress import Progress, run
 from .quality import MatchQuality
+from .rest_pose import RestPose, rest_pose
 from .result import CoarseMatch, Level, MatchResult
 from .retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
 from .rig_fit import fit_rig, fit_rig_steps
 from .settings import MatchSettings
 from .shape import Shape
+from .shape_key_transfer import carry_offsets_steps
 from .skeleton import Skeleton
+from .skin_weights import carried as carry_weights
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
+from .symmetrising import Symmetriser
 from .symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
 from .symmetry_map import symmetry_map, symmetry_map_steps
+from .uv_transfer import CarriedUVs, carry_uvs_steps
+from .weight_transfer import CarriedWeights, carry_weights_steps
+from .wrapping import WrappedSurface, wrap_steps
 
 __all__ = [
+    "CarriedUVs",
+    "CarriedWeights",
     "ClosestPoints",
     "CoarseMatch",
     "DenseMatch",
     "FittedRig",
     "HierMatchError",
     "Level",
+    "LocalFrames",
     "MatchError",
     "MatchQuality",
     "MatchResult",
     "MatchSettings",
     "MeshError",
+    "PlacedJoints",
+    "Polygons",
     "Progress",
+    "RestPose",
     "Retrieval",
     "RetrievalSettings",
     "RetrievedMatch",
@@ -42,19 +59,31 @@ __all__ = [
     "Skeleton",
     "SurfaceMap",
     "SurfacePoints",
+    "Symmetriser",
     "SymmetryResult",
     "TriangleMesh",
+    "WrappedSurface",
+    "bone_frames",
+    "carry_offsets_steps",
+    "carry_uvs_steps",
+    "carry_weights",
+    "carry_weights_steps",
     "densify",
     "densify_steps",
     "find_symmetry",
     "find_symmetry_steps",
     "fit_rig",
     "fit_rig_steps",
+    "in_between",
     "match",
     "match_steps",
+    "place_joints",
+    "rest_pose",
     "retrieve",
     "retrieve_steps",
     "run",
+    "surface_frames",
     "symmetry_map",
     "symmetry_map_steps",
+    "wrap_steps",
 ]

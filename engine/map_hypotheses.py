@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,14 +15,13 @@ from .functional_maps import (
     fit_functional_maps,
     nearest_both_ways,
     points_from_functions,
-    points_from_functions_steps,
     refine_bijective_steps,
     spectral_sizes,
 )
 from .map_domain import MapDomain
 from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
 from .map_search import MapLead, distinct_leads, rough_maps_steps
-from .progress import Progress, Steps, within
+from .progress import Progress, Steps, run, within
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -67,10 +67,10 @@ class MapHypothesis:
 
     Attributes
     ----------
-    images_on_y : (n,) array of int
-        For each vertex of X, the vertex of Y it is taken to.
-    images_on_x : (n',) array of int
-        For each vertex of Y, the vertex of X it is taken to.
+    domains : pair of MapDomain
+        The surfaces.
+    points : PointMaps
+        The map between their fine samples.
     score : float
         Smaller is more credible; comparable between hypotheses of one pair.
     orientation : float
@@ -81,12 +81,27 @@ class MapHypothesis:
         Where it started: ``"extremities"``, or the origin of a `LandmarkStart`.
     """
 
-    images_on_y: NDArray[np.int64]
-    images_on_x: NDArray[np.int64]
+    domains: tuple[MapDomain, MapDomain]
+    points: PointMaps
     score: float
     orientation: float
     terms: Mapping[str, float]
     origin: str
+
+    @cached_property
+    def images(self) -> PointMaps:
+        """The map between all vertices: extended when it is asked for, as many hypotheses never are."""
+        return _between_all_vertices(*self.domains, self.points)
+
+    @property
+    def images_on_y(self) -> NDArray[np.int64]:
+        """For each vertex of X, the vertex of Y it is taken to, (n,)."""
+        return self.images.on_y
+
+    @property
+    def images_on_x(self) -> NDArray[np.int64]:
+        """For each vertex of Y, the vertex of X it is taken to, (n',)."""
+        return self.images.on_x
 
     @property
     def isometric_defect(self) -> float:
@@ -140,16 +155,11 @@ def map_hypotheses_steps(
     candidates = [(_on_fine_samples(a, b, lead.points), lead.origin) for lead in leads]
     candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
     for number, (points, origin) in enumerate(candidates):
-        begin, end = (0.4 + 0.35 * (number + i) / len(candidates) for i in (0, 1))
+        begin, end = (0.4 + 0.6 * (number + i) / len(candidates) for i in (0, 1))
         steps = refine_bijective_steps(a.fine_basis, b.fine_basis, points, _FINE_SIZES)
         refined.append(_assessed(a, b, (yield from within(steps, begin, end)), origin))
     kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
-    found = []
-    for number, lead in enumerate(kept):
-        begin, end = (0.75 + 0.25 * (number + i) / len(kept) for i in (0, 1))
-        dense = yield from within(_dense_steps(a, b, lead.points), begin, end)
-        found.append(MapHypothesis(*dense, lead.score, lead.orientation, lead.terms, lead.origin))
-    return found
+    return [MapHypothesis((a, b), lead.points, lead.score, lead.orientation, lead.terms, lead.origin) for lead in kept]
 
 
 def _on_fine_samples(x: MapDomain, y: MapDomain, points: PointMaps) -> PointMaps:
@@ -178,13 +188,13 @@ def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Map
     return MapLead(points, float(score), map_orientation(x, y, points, maps)[0], terms, origin)
 
 
-def _dense_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:
+def _between_all_vertices(x: MapDomain, y: MapDomain, points: PointMaps) -> PointMaps:
     """Extend maps between the fine samples to all vertices."""
-    points = yield from within(refine_bijective_steps(x.fine_basis, y.fine_basis, points, _DENSE_SIZES), 0.0, 0.3)
+    points = run(refine_bijective_steps(x.fine_basis, y.fine_basis, points, _DENSE_SIZES))
     maps = fit_functional_maps(
         x.fine_basis, y.fine_basis, points, min(_DENSE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
     )
-    return (yield from within(points_from_functions_steps(maps, x.functions, y.functions), 0.3, 1.0))
+    return points_from_functions(maps, x.functions, y.functions)
 
 
 def _check(start: LandmarkStart, x: Shape, y: Shape) -> None:

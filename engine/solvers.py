@@ -206,9 +206,9 @@ def at_samples(answer: Answer, levels: list[Refined]) -> Answer:
 
 
 def moved(answer: Answer, points: SurfacePoints) -> Answer:
-    """Move the images of an answer to other points of the target, for which its metric has been prepared."""
+    """Move the images of an answer to other points of the target; its metric was prepared for the nearest vertices."""
     pair = answer.coarse.pair
-    distances = symmetric_roots(pair.target_metric.squares_between(points))
+    distances = symmetric_roots(pair.target_metric.squares_by_nearest(points))
     there = replace(answer, points=points, distances=distances, linear=_linear(pair, points))
     on_original = pair.target.surface.on_original(points)
     last = replace(answer.levels[-1], distortion=there.distortion, target_points=on_original)

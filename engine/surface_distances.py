@@ -10,13 +10,13 @@ from scipy.sparse import csr_array
 
 from .descriptors import squared_differences
 from .progress import Progress, Steps, run
+from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh import TriangleMesh
     from .shape import Shape
-    from .surface import SurfacePoints
 
 __all__ = [
     "EmbeddedDistances",
@@ -49,6 +49,12 @@ class PointDistances(Protocol):
 
     def squares_between(self, points: SurfacePoints) -> NDArray[np.float64]:
         """Squared distances between points (k,), prepared: (k, k)."""
+
+    def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
+        """Compute what `squares_by_nearest` needs for some points, in short steps: less than `prepare_steps` does."""
+
+    def squares_by_nearest(self, points: SurfacePoints) -> NDArray[np.float64]:
+        """Squared distances between points (k,) far from each other: almost those of `squares_between`."""
 
     def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
         """Squared lengths, in this metric, of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
@@ -106,6 +112,10 @@ class SurfaceDistances:
         """Compute the rows that distances from some points need, if they are not there yet."""
         run(self.prepare_steps(points))
 
+    def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
+        """Compute the rows of the vertices nearest to some points, a third of all that `prepare_steps` computes."""
+        yield from self.prepare_steps(SurfacePoints.at_vertices(self.mesh, points.nearest_vertices))
+
     def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
         """Squared distances from points (k,), prepared, to vertices (v,) of the part: (k, v).
 
@@ -126,6 +136,18 @@ class SurfaceDistances:
         square = self._gather(corners, corners)
         np.square(square, out=square)
         return (weights @ (weights @ square).T).T - offsets[:, None] - offsets
+
+    def squares_by_nearest(self, points: SurfacePoints) -> NDArray[np.float64]:
+        r"""Squared distances between points (k,), of which only the nearest vertices are prepared: (k, k).
+
+        From the nearest vertices p' and q', by :math:`d^2(p, q) = d^2(p', q) + d^2(p, q') - d^2(p', q')`.  In the plane
+        this lacks the product of p - p' and q - q', less than the square of an edge.
+        """
+        nearest = points.nearest_vertices
+        corners, weights = _weights(points)
+        rows = np.square(self._gather(nearest, corners))
+        mixed = (weights @ rows.T).T - self._offsets(points)  # from the vertex nearest to i to point j
+        return mixed + mixed.T - rows[:, np.searchsorted(corners, nearest)]
 
     def between(self, points: SurfacePoints) -> NDArray[np.float64]:
         """Distances between points (k,), prepared: (k, k), symmetric with a zero diagonal."""
@@ -194,6 +216,14 @@ class EmbeddedDistances:
     def prepare_steps(self, points: SurfacePoints) -> Steps[None]:  # noqa: ARG002  (see PointDistances)
         """Do nothing: the distances need no preparation."""
         yield from ()
+
+    def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
+        """Do nothing, as `prepare_steps`."""
+        yield from self.prepare_steps(points)
+
+    def squares_by_nearest(self, points: SurfacePoints) -> NDArray[np.float64]:
+        """Squared distances between points (k,): (k, k); exact ones."""
+        return self.squares_between(points)
 
     def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
         """Squared distances from points (k,) to vertices (v,): (k, v)."""

@@ -20,6 +20,9 @@ RIG_NAME: Final = "Demo Cat Rig"
 
 _LEAST_WEIGHT = 1e-4
 
+_TOGETHER = 1e-4
+"""Distance up to which a head is at the parent's tail."""
+
 # The shape keys: the bone around whose middle each moves the skin outwards, over what distance and how far.
 _KEYS: Final = {"Well Fed": ("loin", 0.28, 0.09), "Big Nose": ("head", 0.09, 0.05)}
 
@@ -90,7 +93,7 @@ def _armature(
         edited.head, edited.tail = head.tolist(), tail.tolist()
         if bone.parent:
             edited.parent = bones.edit_bones[bone.parent]
-            edited.use_connect = bool(np.allclose(edited.parent.tail, edited.head, atol=1e-4))
+            edited.use_connect = (edited.parent.tail - edited.head).length < _TOGETHER
     bpy.ops.object.mode_set(mode="OBJECT")
     return armature
 
@@ -145,7 +148,7 @@ def _unwrap(cat: bpy.types.Object) -> None:
 def _paint(cat: bpy.types.Object) -> None:
     """Give the cat a checkered fur, laid out by its UV map."""
     material = bpy.data.materials.new("Demo Cat Fur")
-    if not material.use_nodes:  # from Blender 5 on they always do
+    if bpy.app.version < (5, 0):  # from then on they always do
         material.use_nodes = True
     tree: Any = material.node_tree
     shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")

@@ -15,6 +15,8 @@ from . import writing
 from .access import mesh_of, view_layer_of
 from .contents import contents
 from .errors import ObjectError
+from .excluded_regions import excluded_vertices
+from .landmarks import find_landmarks, landmark_array
 from .mesh_io import position_digest, read_mesh, topology
 from .pair import check_pair
 from .properties import match_settings
@@ -42,6 +44,10 @@ class JobOptions:
         Whether to match the meshes as shape keys and modifiers show them.
     use_mirrored : bool
         Whether to write the mirrored answer, if there is one.
+    use_landmarks : bool
+        Whether to keep to the landmarks that the two meshes have in common.
+    exclude_source, exclude_target : str
+        Names of the regions to leave out; empty if there are none.
     prefix : str
         What all names written start with.
     vertex_groups, match_colors, distortion, confidence : bool
@@ -51,6 +57,9 @@ class JobOptions:
     settings: MatchSettings
     use_modifiers: bool = False
     use_mirrored: bool = False
+    use_landmarks: bool = True
+    exclude_source: str = ""
+    exclude_target: str = ""
     prefix: str = "HM"
     vertex_groups: bool = True
     match_colors: bool = True
@@ -74,6 +83,9 @@ def job_options(options: MatchOptions) -> JobOptions:
         settings=match_settings(options),
         use_modifiers=options.use_modifiers,
         use_mirrored=options.use_mirrored,
+        use_landmarks=options.use_landmarks,
+        exclude_source=options.exclude_source,
+        exclude_target=options.exclude_target,
         prefix=options.prefix,
         vertex_groups=options.write_vertex_groups,
         match_colors=options.write_colors,
@@ -166,6 +178,11 @@ class MatchJob:
         )
         self._topologies = (topology(mesh_of(source)), topology(mesh_of(target)))
         self._positions = (position_digest(mesh_of(source)), position_digest(mesh_of(target)))
+        self._landmarks = landmark_array(find_landmarks(source, target)) if options.use_landmarks else None
+        self._excluded = (
+            excluded_vertices(source, options.exclude_source),
+            excluded_vertices(target, options.exclude_target),
+        )
         self._steps = self._find_steps()
         self._found: _Found | None = None
         self.progress = Progress(0.0, "Starting")
@@ -193,7 +210,9 @@ class MatchJob:
         """Match, and make the dense maps of the mirrored answer if that is to be written."""
         options, (source, target) = self._options, self._meshes
         both = options.use_mirrored and options.settings.dense
-        result = yield from within(match_steps(source, target, options.settings), 0.0, 0.7 if both else 1.0)
+        steering = {"landmarks": self._landmarks, "excluded": self._excluded}
+        steps = match_steps(source, target, options.settings, **steering)
+        result = yield from within(steps, 0.0, 0.7 if both else 1.0)
         mirrored = result.mirrored
         if not both or mirrored is None:
             return _Found(result, None)

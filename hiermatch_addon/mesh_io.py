@@ -27,6 +27,7 @@ __all__ = [
     "add_values",
     "add_vertex_group",
     "corner_vertices",
+    "face_corner_counts",
     "position_digest",
     "read_mesh",
     "read_values",
@@ -145,6 +146,13 @@ def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     corners = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("vertex_index", corners)
     return corners
+
+
+def face_corner_counts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Read how many corners each face of a mesh has, (f,)."""
+    counts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", counts)
+    return counts
 
 
 @contextmanager

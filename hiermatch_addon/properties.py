@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ..engine import MatchSettings
+from .excluded_regions import region_names
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
 __all__ = [
     "OPTION_NAMES",
@@ -66,6 +67,17 @@ _CHOICES = {
     if "choices" in setting.metadata
 }
 
+def _search_regions(role: str) -> Callable[[Any, bpy.types.Context, str], list[str]]:
+    """Make what lists the regions of one of the two objects, as they are picked or named."""
+
+    def search(owner: Any, _context: bpy.types.Context, _text: str) -> list[str]:  # noqa: ANN401 - options of a match
+        picked = getattr(owner, role)
+        obj = bpy.data.objects.get(picked) if isinstance(picked, str) else picked
+        return region_names(obj) if obj is not None and obj.type == "MESH" else []
+
+    return search
+
+
 _OPTIONS: dict[str, Any] = {
     "use_modifiers": _props.BoolProperty(
         name="Use Modifiers",
@@ -76,6 +88,23 @@ _OPTIONS: dict[str, Any] = {
         name="Mirrored Match",
         description="For a symmetric shape, let the match write the second answer, in which left and right are "
         "exchanged",
+    ),
+    "use_landmarks": _props.BoolProperty(
+        name="Use Landmarks",
+        description="Keep to the landmarks that the two meshes have in common and that are switched on",
+        default=True,
+    ),
+    "exclude_source": _props.StringProperty(
+        name="Leave Out of Source",
+        description="Vertex group, boolean attribute or material of the source whose vertices are not matched. In the "
+        "dense map they follow what is around them",
+        search=_search_regions("source"),
+    ),
+    "exclude_target": _props.StringProperty(
+        name="Leave Out of Target",
+        description="Vertex group, boolean attribute or material of the target whose vertices are not matched. In the "
+        "dense map they follow what is around them",
+        search=_search_regions("target"),
     ),
     "prefix": _props.StringProperty(
         name="Prefix",
@@ -129,6 +158,9 @@ class MatchOptions:
         dense: bool
         use_modifiers: bool
         use_mirrored: bool
+        use_landmarks: bool
+        exclude_source: str
+        exclude_target: str
         prefix: str
         write_vertex_groups: bool
         write_colors: bool

@@ -12,11 +12,14 @@ if TYPE_CHECKING:
 
 __all__ = ["can_start", "is_running"]
 
+_PICKING = "HIERMATCH_OT_pick_landmarks"
+"""This one waits for clicks and does no work."""
+
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
     """Return whether one of our operators runs modally in a window."""
     return any(
-        operator.bl_idname.startswith("HIERMATCH_OT_")
+        operator.bl_idname.startswith("HIERMATCH_OT_") and operator.bl_idname != _PICKING
         for window in window_manager.windows
         for operator in window.modal_operators
     )

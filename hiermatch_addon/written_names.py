@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import writing
 from .access import mesh_of
+from .landmark_layer import LANDMARKS
 
 if TYPE_CHECKING:
     import bpy
@@ -15,8 +16,8 @@ __all__ = ["written_names"]
 
 
 def written_names(obj: bpy.types.Object) -> set[str]:
-    """Return the names of all that matches wrote on an object and recorded there."""
+    """Return the names of all that matches wrote on an object and recorded there, and of what keeps its landmarks."""
     mesh: Any = mesh_of(obj)
     if not writing.is_marked(mesh):
-        return set()
-    return {name for record in mesh[writing.MARKER].to_dict().values() for name in record["written"]}
+        return {LANDMARKS}
+    return {LANDMARKS} | {name for record in mesh[writing.MARKER].to_dict().values() for name in record["written"]}

@@ -65,6 +65,23 @@ def test_on_a_sphere_they_are_closer_than_those_of_the_nearest_vertices():
     assert error.mean() < 0.3 * np.abs(rounded - great_circle)[smooth].mean()
 
 
+@pytest.mark.parametrize("surface", [plane(15, size=3.0, jitter=0.35, seed=2), torus(30, 15)])
+def test_by_nearest_vertices_they_are_almost_the_same(surface):
+    shape = shape_of(surface)
+    points = random_points(shape.mesh, 50)
+    distances, fewer = SurfaceDistances(shape), SurfaceDistances(shape)
+    distances.prepare(points)
+    run(fewer.prepare_nearest_steps(points))
+    exact, near = (
+        np.square(symmetric_roots(d)) for d in (distances.squares_between(points), fewer.squares_by_nearest(points))
+    )
+    edge = shape.mesh.edge_lengths.max() / shape.scale
+    far = exact > (3 * edge) ** 2
+    rounded = np.square(fewer.between(SurfacePoints.at_vertices(shape.mesh, points.nearest_vertices)))
+    assert np.percentile(np.abs(near - exact)[far], 95) < edge**2
+    assert np.abs(near - exact)[far].mean() < 0.1 * np.abs(rounded - exact)[far].mean()
+
+
 def test_at_vertices_they_are_the_solvers():
     shape = shape_of(torus(20, 10))
     vertices = np.array([3, 50, 120, 121])

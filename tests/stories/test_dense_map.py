@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import importlib
 import importlib.util
 
 import pytest
+
+from tests.stories.blender_session import blender_session
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="Blender as a module is not installed")
 
@@ -14,17 +15,8 @@ pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason=
 @pytest.fixture
 def bpy():
     """Blender with the extension and an empty file."""
-    module = importlib.import_module("bpy")
-    from tests.addon.conftest import load_extension
-
-    package = load_extension()
-    ours = not hasattr(module.types.Scene, "hiermatch")  # unless another test of the session has registered it
-    if ours:
-        package.register()
-    module.ops.wm.read_homefile(use_empty=True)
-    yield module
-    if ours:
-        package.unregister()
+    with blender_session() as module:
+        yield module
 
 
 @pytest.mark.slow

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Regions of a mesh that a match leaves out, as artists mark them: vertex groups, attributes and materials."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .access import mesh_of
+from .attribute_io import read_attribute
+from .deform_layer import read_weights
+from .errors import ObjectError
+from .material_slots import read_materials
+from .mesh_io import corner_vertices, face_corner_counts
+from .written_names import written_names
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+__all__ = ["excluded_vertices", "region_names"]
+
+_HALF = 0.5
+"""From which weight on a vertex belongs to a region."""
+
+
+def region_names(obj: bpy.types.Object) -> list[str]:
+    """Return what names of regions a mesh object has."""
+    ours = written_names(obj)
+    groups = [group.name for group in obj.vertex_groups if group.name not in ours]
+    marked = [
+        attribute.name
+        for attribute in mesh_of(obj).attributes
+        if attribute.data_type == "BOOLEAN"
+        and attribute.domain in ("POINT", "FACE")
+        and attribute.name not in ours
+        and not attribute.name.startswith(".")
+    ]
+    materials = [slot.material.name for slot in obj.material_slots if slot.material is not None]
+    return list(dict.fromkeys([*groups, *marked, *materials]))
+
+
+def excluded_vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_] | None:
+    """Find the vertices of a region.
+
+    Parameters
+    ----------
+    obj : bpy.types.Object
+        A mesh object, in Object Mode.
+    name : str
+        Name of a vertex group, whose vertices of at least half the full weight are meant; or else of a boolean
+        attribute of vertices or of faces; or else of a material.  Of faces, those vertices are meant that have no
+        others.  If empty, there is no region.
+
+    Returns
+    -------
+    (n,) array of bool or None
+        Which vertices are in it; None if there is no region.
+
+    Raises
+    ------
+    ObjectError
+        If the object has nothing of that name, or the region is empty or everything.
+    """
+    if not name:
+        return None
+    found = _vertices(obj, name)
+    if not found.any():
+        raise ObjectError(
+            f'No vertex of "{obj.name}" is in "{name}", which is to be left out. Assign vertices to it, or empty the '
+            "field."
+        )
+    if found.all():
+        raise ObjectError(
+            f'All of "{obj.name}" is in "{name}", which is to be left out, so nothing remains to match. Choose a '
+            "smaller region."
+        )
+    return found
+
+
+def _vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_]:
+    mesh = mesh_of(obj)
+    if name in obj.vertex_groups:
+        column = read_weights(obj)[:, [obj.vertex_groups[name].index]]
+        weights: NDArray[np.float64] = np.asarray(column.todense()).ravel()
+        return weights >= _HALF
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and attribute.data_type == "BOOLEAN" and attribute.domain in ("POINT", "FACE"):
+        values = read_attribute(mesh, name).astype(bool)
+        return values if attribute.domain == "POINT" else _of_faces(mesh, values)
+    materials, slots = read_materials(obj)
+    chosen = [number for number, material in enumerate(materials) if material is not None and material.name == name]
+    if chosen:
+        return _of_faces(mesh, np.isin(slots, chosen))
+    raise ObjectError(
+        f'"{obj.name}" has no vertex group, boolean attribute or material called "{name}", which is to be left out. '
+        "Choose another one, or empty the field."
+    )
+
+
+def _of_faces(mesh: bpy.types.Mesh, faces: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Find the vertices that have faces, all of them among these (f,)."""
+    count, vertices = len(mesh.vertices), corner_vertices(mesh)
+    chosen = np.repeat(faces, face_corner_counts(mesh))
+    inside = np.bincount(vertices[chosen], minlength=count)
+    outside = np.bincount(vertices[~chosen], minlength=count)
+    return (inside > 0) & (outside == 0)
