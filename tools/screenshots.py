@@ -13,6 +13,7 @@ build/screenshots (or FOLDER), and ends Blender with an error if a step failed:
     flipped.png     the mirrored match
     stale.png       a mesh was edited since
     advanced.png    all sections of the panel open
+    retarget.png    a rigged cat has lent its rig to the other one, which has been posed with it
 
 Blender cannot read its own pixels on some screens, virtual ones above all.  There, name a COMMAND that takes a picture
 of the screen and is given the file to write.  The picture in the documentation was taken with
@@ -76,12 +77,12 @@ def view() -> dict[str, Any]:
     return {"window": window, "area": area, "region": region, "space_data": area.spaces.active}
 
 
-def set_scene() -> None:
+def set_scene(*, rigged: bool = False) -> None:
     """Put the demo pair into an empty scene and look at it."""
     with bpy.context.temp_override(**view()):
         for thing in list(bpy.data.objects):
             bpy.data.objects.remove(thing)
-        bpy.ops.hiermatch.add_demo_pair()
+        bpy.ops.hiermatch.add_demo_pair(rigged=rigged)
         space = view()["space_data"]
         space.show_region_ui = True
         space.shading.color_type = "VERTEX"
@@ -139,6 +140,30 @@ def open_sections() -> None:
     view()["area"].tag_redraw()
 
 
+def retarget() -> None:
+    """Let the walking cat have the rig of the standing one, and lift a leg and its head with it."""
+    set_scene(rigged=True)
+    with bpy.context.temp_override(**view()):
+        bpy.ops.hiermatch.retarget()
+        view()["space_data"].shading.color_type = "MATERIAL"
+        target = bpy.context.scene.hiermatch.target
+        armature = next(modifier.object for modifier in target.modifiers if modifier.type == "ARMATURE")
+        for name, turn in {"upper_arm.L": -1.0, "forearm.L": 0.9, "neck": -0.5, "tail.1": -0.8}.items():
+            bone = armature.pose.bones[name]
+            bone.rotation_mode = "XYZ"
+            bone.rotation_euler = (turn, 0.0, 0.0)
+        bpy.context.view_layer.update()
+
+
+def scroll_down() -> None:
+    """Scroll the sidebar to its end."""
+    place = view()
+    place["region"] = next(region for region in place["area"].regions if region.type == "UI")
+    with bpy.context.temp_override(**place):
+        for _ in range(40):
+            bpy.ops.view2d.scroll_down()
+
+
 def picture(path: Path, command: list[str]) -> Callable[[], None]:
     """Return a step that takes a picture of the window, or of the screen by a command."""
 
@@ -184,6 +209,10 @@ def main(arguments: list[str]) -> None:
             flip,
             edit,
             picture(folder / "stale.png", command),
+            retarget,
+            scroll_down,
+            picture(folder / "retarget.png", command),
+            set_scene,
             open_sections,
             picture(folder / "advanced.png", command),
         ]
