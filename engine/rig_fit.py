@@ -12,6 +12,7 @@ from scipy.sparse import csr_array, vstack
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .cleaning import clean
 from .closest_points import ClosestPoints, FoundPoints
+from .digit_fit import with_digits
 from .errors import RigError
 from .fitted_rig import FittedRig
 from .followers import follow
@@ -126,7 +127,7 @@ def fit_rig_steps(
     maps = source_to_target, target_to_source
     missed = np.linalg.norm(bones.posed - positions, axis=1)[x.main.original_vertices >= 0]
     if refine and np.median(missed) < _EXPLAINED * np.sqrt(y.mesh.area):
-        sliding = _sliding_steps(_Pair(x, y, moving, skeleton), bones)
+        sliding = _sliding_steps(_Pair(x, y, moving, skeleton), bones, back)
         found = yield from within(sliding, 0.1, 1.0, "Fitting the rig")
         if found is not None:
             bones, positions, maps = found.bones, found.positions, found.maps
@@ -269,7 +270,7 @@ class _Slid:
     maps: tuple[SurfaceMap, SurfaceMap]
 
 
-def _sliding_steps(pair: _Pair, bones: BoneTransforms) -> Steps[_Slid | None]:
+def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Steps[_Slid | None]:
     """Let the body slide onto the target and find its bones, in turn; None if it does not come to lie there."""
     proxy = yield from within(proxy_steps(pair.x.mesh, _WORKED), 0.0, 0.1)
     target_proxy = yield from within(proxy_steps(pair.y.mesh, _WORKED), 0.1, 0.2)
@@ -277,7 +278,10 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms) -> Steps[_Slid | None]:
     weights = _proxy_weights(proxy, pair.weights)
     evidence = _Evidence(body, weights, target, pair.skeleton)
     registration = PosedRegistration(body, laplace_beltrami(body), target)
-    posed = skinned(body.vertices, weights, bones.linear, bones.translations)
+    found = _on_proxies(pair, back, proxy, target_proxy)
+    bones = with_digits(body, weights, pair.skeleton, target, found, bones=bones)
+    yield Progress(0.3, "Posing hands")
+    posed = bones.posed
     positions, matches = posed, registration.matched(posed)
     shares = body.vertex_areas / body.area, target.vertex_areas / target.area
     for number, stiffness in enumerate(_STIFFNESS):
@@ -285,7 +289,7 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms) -> Steps[_Slid | None]:
         matches = registration.matched(positions)
         bones = evidence.bones(positions, matches, *shares)
         posed = bones.posed
-        yield Progress(0.2 + 0.6 * (number + 1) / len(_STIFFNESS), "Sliding")
+        yield Progress(0.3 + 0.5 * (number + 1) / len(_STIFFNESS), "Sliding")
     covered = matches.squared_distances <= _NEAR**2 * target.area
     if shares[1][covered].sum() < _LEAST_COVERED:
         return None
@@ -296,6 +300,19 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms) -> Steps[_Slid | None]:
     maps = _maps(pair, positions)
     bones = BoneTransforms(bones.linear, bones.translations, bones.rotations, bones.scales, whole)
     return _Slid(bones, positions, maps)
+
+
+def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Proxy) -> FoundPoints:
+    """Name the images of the vertices of the target's proxy on that of the body."""
+    chosen = FoundPoints(
+        *(array[target_proxy.vertices] for array in (back.triangles, back.barycentric, back.squared_distances))
+    )
+    if proxy.is_identity:
+        return chosen
+    corners = pair.x.mesh.triangles[chosen.triangles]
+    places = np.einsum("kc,kcd->kd", chosen.barycentric, pair.x.mesh.vertices[corners])
+    starts = proxy.points.nearest_vertices[corners[np.arange(len(corners)), chosen.barycentric.argmax(axis=1)]]
+    return ClosestPoints(proxy.mesh).walk(places, starts)
 
 
 def _proxy_weights(proxy: Proxy, weights: csr_array) -> csr_array:
