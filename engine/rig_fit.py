@@ -304,9 +304,8 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
 
 def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Proxy) -> FoundPoints:
     """Name the images of the vertices of the target's proxy on that of the body."""
-    chosen = FoundPoints(
-        *(array[target_proxy.vertices] for array in (back.triangles, back.barycentric, back.squared_distances))
-    )
+    rows = target_proxy.vertices
+    chosen = FoundPoints(back.triangles[rows], back.barycentric[rows], back.squared_distances[rows])
     if proxy.is_identity:
         return chosen
     corners = pair.x.mesh.triangles[chosen.triangles]
