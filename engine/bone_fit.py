@@ -46,8 +46,8 @@ _LENIENT = 4.0
 _MOST_SCALE = 2.5
 """Largest factor between the scale of a bone and that of the whole body."""
 
-_COMMON_SCALE = 0.3
-"""How far a bone's scale is drawn to the body's in each round."""
+_COMMON_LENGTH, _COMMON_WIDTH = 0.5, 0.1
+"""How far a bone's stretch along itself, and that across, is drawn to the body's in each round."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +126,8 @@ def fit_bones(
     leaders = _leaders(skeleton, active)
     above = np.where(skeleton.parents[active] >= 0, leaders[skeleton.parents[active]], len(active))
     joints = _joints(skeleton, active, above)
-    system = _System(vertices, positions, areas, csr_array(weights[:, active]), joints)
+    axes = skeleton.tails[active] - skeleton.heads[active]
+    system = _System(vertices, positions, areas, csr_array(weights[:, active]), joints, axes=axes)
     linear, translations = system.solved()
     whole = _similarity(vertices, positions, areas)
     linear = np.concatenate([linear, whole[0][None]])[leaders]
@@ -202,7 +203,11 @@ class _System:
         areas: NDArray[np.float64],
         weights: csr_array,
         joints: _Joints,
+        *,
+        axes: NDArray[np.float64],
     ) -> None:
+        lengths = np.linalg.norm(axes, axis=1, keepdims=True)
+        self._axes = np.where(lengths > 0, axes / np.maximum(lengths, np.finfo(float).tiny), [0.0, 0.0, 1.0])
         self._positions, self._areas, count = positions, areas, weights.shape[1]
         # Around the middle of the body and in its size, so that the four columns of a bone are of one magnitude.
         self._middle = areas @ vertices
@@ -253,7 +258,7 @@ class _System:
             wanted = np.concatenate([similar.transpose(0, 2, 1), np.zeros((count, 1, 3))], axis=1).reshape(-1, 3)
             right = weighted @ self._positions + self._pull.ravel()[:, None] * wanted
             unknowns = splu((weighted @ self._design + self._ties + pull).tocsc()).solve(right)
-            similar = self._similar(unknowns.reshape(count, 4, 3)[:, :3].transpose(0, 2, 1))
+            similar = self._stretched(unknowns.reshape(count, 4, 3)[:, :3].transpose(0, 2, 1))
             missed = np.linalg.norm(self._design @ unknowns - self._positions, axis=1)
             forgiving = doubt * max(1.0, _LENIENT * (1 - 2 * number / _ROUNDS))
             trust = self._areas / (1 + (missed / forgiving) ** 2)
@@ -261,11 +266,25 @@ class _System:
         linear = blocks[:, :3].transpose(0, 2, 1) / self._size
         return linear, blocks[:, 3] - linear @ self._middle
 
-    def _similar(self, linear: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Find the similarities near linear parts (k, 3, 3), of a scale that is not unlike that of the body."""
-        rotations, scales = _similarities(linear)
+    def _stretched(self, linear: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Find rotations with a stretch along the bone and one across near linear parts (k, 3, 3).
+
+        A limb that is thicker need not be longer: a similarity would make it so, and its points would slide along it.
+        Neither stretch is much unlike that of the rest of the body.
+        """
+        rotations = nearest_rotations(linear)
+        strain = np.einsum("kji,kjl->kil", rotations, linear)
+        along = np.einsum("ki,kij,kj->k", self._axes, strain, self._axes)
+        across = (np.trace(strain, axis1=1, axis2=2) - along) / 2
+        along, across = self._usual(along, _COMMON_LENGTH), self._usual(across, _COMMON_WIDTH)
+        outer = self._axes[:, :, None] * self._axes[:, None, :]
+        stretch = across[:, None, None] * np.eye(3) + (along - across)[:, None, None] * outer
+        return rotations @ stretch
+
+    def _usual(self, scales: NDArray[np.float64], part: float) -> NDArray[np.float64]:
+        """Draw scales (k,) of bones to that of the body."""
         logarithms = np.log(np.maximum(scales, np.finfo(float).tiny))
         common = self._mass @ logarithms / self._mass.sum()
         most = np.log(_MOST_SCALE)
-        scales = np.exp(common + np.clip((1 - _COMMON_SCALE) * (logarithms - common), -most, most))
-        return scales[:, None, None] * rotations
+        usual: NDArray[np.float64] = np.exp(common + np.clip((1 - part) * (logarithms - common), -most, most))
+        return usual
