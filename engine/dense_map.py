@@ -12,7 +12,7 @@ from .closest_points import FoundPoints
 from .deformable import DeformableSurface
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps
 from .progress import Steps, within
-from .registration import CLOSE, FINE, SOFT, Registration, register_steps, restarted_steps, smooth_start
+from .registration import CLOSE, FINE, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
 from .steering import steered_hypotheses_steps
 from .surface import SurfacePoints
 from .ties import Ties
@@ -42,6 +42,7 @@ _SMOOTH = 40
 _DETAILED = 100
 """The same before it is registered again."""
 
+_STAGES = FINE, CLOSE, LAST
 _MISFIT_WEIGHT = 20.0
 """How much the mean squared distance that is left counts against the elastic energy."""
 
@@ -152,10 +153,10 @@ def registered_pair_steps(
         register_steps(source, target, best.registration.positions, (FINE,), ties=ties), 0.7, 0.76
     )
     matches = first.on_source, first.on_target
-    steps = restarted_steps(target, source, _functions(y, _DETAILED), matches, stages=(FINE, CLOSE), ties=ties_back)
+    steps = restarted_steps(target, source, _functions(y, _DETAILED), matches, stages=_STAGES, ties=ties_back)
     reverse = yield from within(steps, 0.76, 0.88)
     matches = reverse.on_source, reverse.on_target
-    steps = restarted_steps(source, target, _functions(x, _DETAILED), matches, stages=(FINE, CLOSE), ties=ties)
+    steps = restarted_steps(source, target, _functions(x, _DETAILED), matches, stages=_STAGES, ties=ties)
     final = yield from within(steps, 0.88, 1.0)
     margin = _margin(best, candidates, hypotheses)
     return RegisteredPair(x, y, source, target, final, reverse, tuple(candidates), margin, landmarks, mirrored)

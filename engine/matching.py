@@ -122,7 +122,7 @@ def match_steps(
     known = None if landmarks is None else locate_landmarks(x, y, landmarks, settings.points)
     if known is not None:
         x, y = x.starting_with(known.source.matched), y.starting_with(known.target.matched)
-    samples = max(settings.samples // 2 if settings.dense else settings.samples, 2 * settings.points)
+    samples = max(3 * settings.samples // 4 if settings.dense else settings.samples, 2 * settings.points)
     sparse_end = 0.5 if settings.dense else 1.0
     yield from within(x.sample_steps(samples), 0.06, 0.13 if settings.dense else 0.3)
     yield from within(y.sample_steps(samples), 0.13 if settings.dense else 0.3, 0.2 if settings.dense else 0.6)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CLOSE",
     "FINE",
+    "LAST",
     "POLISH",
     "SOFT",
     "Registration",
@@ -55,6 +56,9 @@ class Stage:
         What points are matched with in each round: "vertices", the most similar one; the triangles "around" it; or
         points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place.  At the
         end of the registration, the next better is used.
+    lead : float
+        By what part of its way each round goes on in the same direction.  Closest points hold the surface where it is,
+        so it would only creep to where it is less distorted.
     """
 
     weights: tuple[float, ...]
@@ -62,6 +66,7 @@ class Stage:
     curvature_length: float
     rotation_radius: float = 0.03
     matched: Literal["vertices", "around", "anywhere"] = "anywhere"
+    lead: float = 0.0
 
 
 SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2, matched="vertices")
@@ -70,8 +75,11 @@ SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2, matched
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
-CLOSE = Stage((640, 640, 1280, 1280), 0.05, 0.0)
-"""At last without the curvatures: features of unlike bodies are not alike to the last detail."""
+CLOSE = Stage((640, 640, 1280, 1280, 1280, 1280), 0.05, 0.0, matched="around", lead=1.0)
+"""Without the curvatures: features of unlike bodies are not alike to the last detail."""
+
+LAST = Stage((1280, 1280, 1280), 0.05, 0.0)
+"""At last to rest, from exact matches, which turn fewer triangles over."""
 
 POLISH = Stage((40, 40, 80, 80, 160, 160, 320, 320, 640, 640, 1280, 1280), 0.05, 0.0)
 """From a registration of coarser meshes."""
@@ -199,7 +207,7 @@ def register_steps(
     source: DeformableSurface,
     target: DeformableSurface,
     start: NDArray[np.float64],
-    stages: tuple[Stage, ...] = (SOFT, FINE, CLOSE),
+    stages: tuple[Stage, ...] = (SOFT, FINE, CLOSE, LAST),
     first: tuple[FoundPoints, FoundPoints] | None = None,
     *,
     ties: Ties | None = None,
@@ -249,7 +257,8 @@ def register_steps(
             search, normals = matcher.source_search(positions)
             if matches is None:
                 matches = matcher.matches(search)
-            positions = _solved(matcher, positions, normals, matches, weight=weight, ties=ties)
+            solved = _solved(matcher, positions, normals, matches, weight=weight, ties=ties)
+            positions = solved + stage.lead * (solved - positions)
             matches = None
             done += 1
             yield Progress(done / total, "Fitting the surfaces")

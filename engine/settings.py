@@ -144,7 +144,7 @@ class MatchSettings:
         16,
         4096,
         "How many samples of each surface describe it; the points are matched to the samples of the target. "
-        "With a dense map, which needs no more, half as many are taken; at least twice as many as points",
+        "With a dense map three quarters as many are taken, and at least twice as many as points",
     )
     hypotheses: int = _setting(
         6,

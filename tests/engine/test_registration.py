@@ -10,7 +10,7 @@ from engine import Progress, TriangleMesh, run
 from engine.deformable import DeformableSurface
 from engine.eigenpairs import eigenpairs_steps
 from engine.laplacian import laplace_beltrami
-from engine.registration import CLOSE, FINE, POLISH, SOFT, Stage, register_steps, smooth_start
+from engine.registration import CLOSE, FINE, LAST, POLISH, SOFT, Stage, register_steps, smooth_start
 from tests.shapes import creature, icosphere, permuted, rotation
 
 
@@ -130,7 +130,7 @@ def test_the_order_of_the_vertices_does_not_matter(bodies, registered, near_trut
 @pytest.mark.parametrize("matched", ["vertices", "around"])
 def test_cheap_matches_lead_to_nearly_the_same(bodies, registered, near_truth, functions, matched):
     source, target = bodies[:2]
-    stages = tuple(replace(stage, matched=matched) for stage in (SOFT, FINE, CLOSE))
+    stages = tuple(replace(stage, matched=matched) for stage in (SOFT, FINE, CLOSE, LAST))
     start = smooth_start(source, target, near_truth, functions)
     cheap = run(register_steps(source, target, start, stages))
     assert_valid(cheap.on_target, target)
@@ -138,6 +138,16 @@ def test_cheap_matches_lead_to_nearly_the_same(bodies, registered, near_truth, f
         at(cheap.on_target, target, target.vertices) - at(registered.on_target, target, target.vertices), axis=1
     )
     assert np.sqrt(source.mass @ moves**2) < 0.4 * source.mesh.edge_lengths.mean() / np.sqrt(source.mesh.area)
+
+
+def test_a_lead_goes_on_in_the_same_direction(bodies, near_truth, functions):
+    source, target = bodies[:2]
+    start = smooth_start(source, target, near_truth, functions)
+    plain, leading = (
+        run(register_steps(source, target, start, (Stage((20,), 0.1, 0.0, lead=lead),))).positions - start
+        for lead in (0.0, 0.8)
+    )
+    np.testing.assert_allclose(leading, 1.8 * plain, atol=1e-12)
 
 
 def test_given_matches_pull_first(bodies, registered, near_truth):
