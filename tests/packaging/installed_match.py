@@ -143,10 +143,54 @@ def run_match():
     }
 
 
+def group_values(creature, name):
+    """Return the weights of all vertices in a group."""
+    number = creature.vertex_groups[name].index
+    return np.array([sum(e.weight for e in vertex.groups if e.group == number) for vertex in creature.data.vertices])
+
+
+def run_retarget():
+    """Carry a rig, weights, a shape key and UVs from the standing demo cat to the walking one, and bend a leg."""
+    status = bpy.ops.hiermatch.retarget(source="Demo Cat Standing", target="Demo Cat Walking")
+    source, target = bpy.data.objects["Demo Cat Standing"], bpy.data.objects["Demo Cat Walking"]
+
+    def rest(cat):
+        flat = np.empty(3 * len(cat.data.vertices), dtype=np.float32)
+        cat.data.attributes["hm_rest"].data.foreach_get("vector", flat)
+        return flat.reshape(-1, 3)
+
+    def shown():
+        bpy.context.view_layer.update()
+        evaluated = target.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        places = coordinates(evaluated.to_mesh())
+        evaluated.to_mesh_clear()
+        return places
+
+    armature = next(modifier.object for modifier in target.modifiers if modifier.type == "ARMATURE")
+    bones = [bone.name for bone in armature.data.bones]
+    nearest = np.array([np.square(rest(source) - place).sum(axis=1).argmin() for place in rest(target)])
+    errors = sum(np.abs(group_values(target, name) - group_values(source, name)[nearest]) for name in bones)
+    before = shown()
+    bone = armature.pose.bones["upper_arm.L"]
+    bone.rotation_mode = "XYZ"
+    bone.rotation_euler = (-0.7, 0.0, 0.0)
+    moved = np.linalg.norm(shown() - before, axis=1) / np.linalg.norm(np.ptp(before, axis=0))
+    return {
+        "status": sorted(status),
+        "bones": len(bones),
+        "bound": float(np.abs(before - coordinates(target.data)).max() / np.ptp(before)),
+        "weight_error": float(errors.mean()),
+        "moved": [float(moved.max()), float(moved[group_values(target, "head") > 0.5].max())],
+        "keys": list(target.data.shape_keys.key_blocks.keys()),
+        "uvs": list(target.data.uv_layers.keys()),
+        "notes": bpy.context.scene.hiermatch_retarget.report.notes,
+    }
+
+
 def run_demo():
     """Add the demo pair and match it; what is written is looked at elsewhere."""
     before = set(bpy.data.objects)
-    status = [bpy.ops.hiermatch.add_demo_pair(source_vertices=2000, target_vertices=1000)]
+    status = [bpy.ops.hiermatch.add_demo_pair(source_vertices=2000, target_vertices=1000, rigged=True)]
     source, target = sorted(
         (added for added in set(bpy.data.objects) - before if added.type == "MESH"), key=lambda added: added.name
     )
@@ -166,6 +210,7 @@ def main(arguments):
             filepath=str(options.install), repo="user_default", enable_on_install=True, overwrite=True
         )
     report = run_match() | {"dense": run_reopened(options.report.with_suffix(".blend"))} | {"demo": run_demo()}
+    report["retarget"] = run_retarget()
     options.report.write_text(json.dumps(report, indent=1), encoding="utf-8")
 
 

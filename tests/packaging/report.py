@@ -24,6 +24,20 @@ WRITTEN = {
 SCRIPT = ROOT / "tests" / "packaging" / "installed_match.py"
 
 
+def assert_retargeted(report):
+    """Assert that the walking cat has what the standing one has, and that its leg moves without its head."""
+    assert report["status"] == ["FINISHED"]
+    assert report["bones"] == 27
+    assert report["bound"] < 1e-4
+    assert report["weight_error"] < 0.15
+    leg, head = report["moved"]
+    assert leg > 0.05
+    assert head < 0.01
+    assert report["keys"] == ["Basis", "Well Fed", "Big Nose"]
+    assert report["uvs"] == ["UVMap"]
+    assert report["notes"] == ""
+
+
 def assert_matched(path, scipy_below=None):
     """Assert that a match was written to both objects and its points are where they belong, and return the report.
 
@@ -52,6 +66,7 @@ def assert_matched(path, scipy_below=None):
     assert report["demo"]["status"] == [["FINISHED"]] * 3
     written, left = report["demo"]["groups"]
     assert written - left == 16
+    assert_retargeted(report["retarget"])
     # The add-on must not leak its packages to the top level, where Blender reports a policy violation.
     assert report["leaked_modules"] == []
     if scipy_below is not None:
