@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .landmarks import Landmarks
     from .mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
+    from .registration import Stage
 
 __all__ = ["DenseMatch", "dense_match_steps", "densify", "densify_steps"]
 
@@ -141,13 +142,15 @@ def _mirrors(x: Shape, y: Shape, start: LandmarkStart) -> bool:
     return SurfaceMap.from_points(y.mesh, SurfacePoints.at_vertices(y.mesh, images)).orientation(x.mesh, y.mesh) < 0
 
 
-def dense_match_steps(pair: RegisteredPair) -> Steps[DenseMatch]:
+def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH) -> Steps[DenseMatch]:
     """Carry a registration to every vertex of the meshes that the surfaces stand for.
 
     Parameters
     ----------
     pair : RegisteredPair
         The surfaces, one laid onto the other.
+    polish : Stage
+        How meshes that have a proxy are registered once more in full resolution.
 
     Returns
     -------
@@ -159,7 +162,8 @@ def dense_match_steps(pair: RegisteredPair) -> Steps[DenseMatch]:
     back = yield from within(_lifted_steps(y, x, pair.source, pair.reverse), 0.2, 0.4)
     main_x, main_y = x.cleaned.mesh, y.cleaned.mesh
     if max(main_x.vertex_count, main_y.vertex_count) <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
-        there, back = yield from within(_polished_steps(main_x, main_y, (there, back), pair.landmarks), 0.4, 0.8)
+        steps = _polished_steps(main_x, main_y, (there, back), pair.landmarks, polish)
+        there, back = yield from within(steps, 0.4, 0.8)
     if pair.landmarks is not None:
         here, partners = pair.landmarks.source.main, pair.landmarks.target.main
         there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
@@ -179,7 +183,11 @@ def dense_match_steps(pair: RegisteredPair) -> Steps[DenseMatch]:
 
 
 def _polished_steps(
-    main_x: TriangleMesh, main_y: TriangleMesh, maps: tuple[SurfacePoints, SurfacePoints], landmarks: Landmarks | None
+    main_x: TriangleMesh,
+    main_y: TriangleMesh,
+    maps: tuple[SurfacePoints, SurfacePoints],
+    landmarks: Landmarks | None,
+    polish: Stage,
 ) -> Steps[tuple[SurfacePoints, SurfacePoints]]:
     """Register once more in full resolution, where what is between the vertices of the proxies counts."""
     surfaces = [DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (main_x, main_y)]
@@ -191,7 +199,7 @@ def _polished_steps(
         if places is not None:
             at = SurfacePoints.at_vertices(source.mesh, places[here])
             ties = Ties.at(source.mesh, at, target.vertices[places[there]])
-        steps = register_steps(source, target, target.in_unit_size(maps[here].positions), (POLISH,), ties=ties)
+        steps = register_steps(source, target, target.in_unit_size(maps[here].positions), (polish,), ties=ties)
         fine = yield from within(steps, begin, begin + 0.4)
         lift = lift_steps(
             source.mesh,

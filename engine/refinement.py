@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A dense map made better around landmarks, without searching for it again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .deformable import DeformableSurface
+from .dense_map import EIGENPAIRS, RegisteredPair
+from .dense_match import dense_match_steps
+from .errors import MatchError
+from .landmarks import locate_landmarks
+from .progress import run, within
+from .reflection import reflected_mesh
+from .registration import CLOSE, FINE, Stage, register_steps, restarted_steps
+from .shape import Shape
+from .surface import SurfacePoints
+from .ties import Ties
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from .dense_match import DenseMatch
+    from .landmarks import LandmarkPlaces
+    from .mesh import TriangleMesh
+    from .progress import Steps
+    from .surface_map import SurfaceMap
+
+__all__ = ["point_distortions", "refine_map", "refine_map_steps"]
+
+_DETAILED = 100
+"""Eigenfunctions that a surface is placed by before it is registered."""
+
+_BRIEF = Stage((160, 640, 1280), 0.05, 0.0, matched="around")
+"""How dense meshes are registered in full resolution: from a map that is nearly right, a quarter of the rounds do."""
+
+_ANCHORS = 96
+"""Points at most that the distances to others are measured from."""
+
+
+def refine_map(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    source_to_target: SurfaceMap,
+    landmarks: ArrayLike,
+    excluded: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None] = (None, None),
+) -> DenseMatch:
+    """Make a dense map better around landmarks; see `refine_map_steps`."""
+    return run(refine_map_steps(source, target, source_to_target, landmarks, excluded))
+
+
+def refine_map_steps(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    source_to_target: SurfaceMap,
+    landmarks: ArrayLike,
+    excluded: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None] = (None, None),
+) -> Steps[DenseMatch]:
+    """Make a dense map better around landmarks, in steps.
+
+    The source is laid smoothly onto the target where the map takes it, and registered from there, held at the
+    landmarks; then the target onto the source.  So
+    the map stays what it is as a whole: one that takes a limb to another limb is to be matched again.  Nothing is
+    sampled, compared or proposed, which takes most of the time of a match.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    source_to_target : SurfaceMap
+        The map to begin with; also one that mirrors the surface stays one.
+    landmarks : (k, 2) array_like of int
+        Pairs of a vertex of the source and one of the target, one at least.
+    excluded : pair of (n,) array of bool, optional
+        Vertices of the source and of the target to leave out.
+
+    Returns
+    -------
+    DenseMatch
+        The maps, exact at the landmarks.
+
+    Raises
+    ------
+    MatchError
+        If there are no landmarks, or they cannot be used.
+    """
+    mirrored = source_to_target.orientation(source, target) < 0
+    x = yield from within(
+        Shape.steps(reflected_mesh(source) if mirrored else source, "source", excluded=excluded[0]), 0.0, 0.05
+    )
+    y = yield from within(Shape.steps(target, "target", excluded=excluded[1]), 0.05, 0.1)
+    known = locate_landmarks(x, y, landmarks, np.size(landmarks))
+    if known is None:
+        raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
+    yield from within(x.spectrum_steps(EIGENPAIRS), 0.1, 0.15)
+    yield from within(y.spectrum_steps(EIGENPAIRS), 0.15, 0.2)
+    moving, fixed = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
+    places = fixed.in_unit_size(source_to_target.positions[x.vertices])
+    functions = _functions(x)
+    # Without the noise of the map, which the surface would keep as folds.
+    start = functions @ (functions.T @ (moving.mass[:, None] * places))
+    ties = _ties(x, y, fixed, known.source, known.target)
+    there = yield from within(register_steps(moving, fixed, start, (FINE, CLOSE), ties=ties), 0.2, 0.5)
+    ties = _ties(y, x, moving, known.target, known.source)
+    matches = there.on_source, there.on_target
+    steps = restarted_steps(fixed, moving, _functions(y), matches, stages=(FINE, CLOSE), ties=ties)
+    back = yield from within(steps, 0.5, 0.75)
+    pair = RegisteredPair(x, y, moving, fixed, there, back, (), None, known, mirrored)
+    return (yield from within(dense_match_steps(pair, _BRIEF), 0.75, 1.0))
+
+
+def point_distortions(
+    source: TriangleMesh, target: TriangleMesh, source_vertices: ArrayLike, target_vertices: ArrayLike
+) -> NDArray[np.float64]:
+    """Measure how much the distances between corresponding vertices differ on two surfaces.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    source_vertices, target_vertices : (k,) array_like of int
+        Corresponding vertices of them.
+
+    Returns
+    -------
+    (k,) array of float
+        Root mean square, over the other vertices or a spread part of them, of the difference of the distances, each
+        in units of the square root of the area of its surface; zero for a vertex without a path to others.
+
+    Raises
+    ------
+    MatchError
+        If a vertex is not on the largest part of its mesh.
+    """
+    count = np.size(source_vertices)
+    anchors = np.unique(np.linspace(0, count - 1, min(count, _ANCHORS)).round().astype(np.int64))
+    rows = []
+    for mesh, vertices in ((source, source_vertices), (target, target_vertices)):
+        shape = Shape(mesh)
+        own = shape.surface.mesh_vertices(np.asarray(vertices, np.int64))
+        rows.append(shape.solver.distances(own[anchors])[:, own] / shape.scale)
+    squares = np.square(rows[0] - rows[1])  # (a, k)
+    others = np.maximum(len(anchors) - np.isin(np.arange(count), anchors), 1)
+    return np.sqrt(np.where(np.isfinite(squares), squares, 0.0).sum(axis=0) / others)
+
+
+def _functions(shape: Shape) -> NDArray[np.float64]:
+    """First eigenfunctions of a shape of unit area, (n, k)."""
+    functions: NDArray[np.float64] = shape.spectrum.functions[:, :_DETAILED] * np.sqrt(shape.laplace.area)
+    return functions
+
+
+def _ties(x: Shape, y: Shape, target: DeformableSurface, here: LandmarkPlaces, there: LandmarkPlaces) -> Ties:
+    """Tie the landmarks of one surface, wherever they are on it, to those of the other."""
+    points, vertices = x.surface.proxy.points, here.main
+    at = SurfacePoints.from_barycentric(x.mesh, points.triangles[vertices], points.barycentric[vertices])
+    return Ties.at(x.mesh, at, target.in_unit_size(y.surface.proxy.points.positions[there.main]))

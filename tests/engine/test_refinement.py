@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A dense map made better around landmarks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import MatchError, SurfaceMap, SurfacePoints, TriangleMesh
+from engine.refinement import point_distortions, refine_map
+from tests.shapes import creature, icosphere, posed
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """A creature in two poses: its vertices correspond."""
+    _, triangles, rest = creature(0.0, 9)
+    return TriangleMesh(posed(rest, 0.0), triangles), TriangleMesh(posed(rest, 0.6), triangles)
+
+
+def identity(mesh):
+    return SurfaceMap.identity(mesh)
+
+
+def slid(mesh, amount):
+    """Take each vertex to a place beside it, the same way all around."""
+    moved = mesh.vertices + amount * np.sqrt(mesh.area) * np.array([0.6, 0.8, 0.0])
+    nearest = np.square(mesh.vertices[:, None] - moved[None]).sum(axis=2).argmin(axis=0)
+    return SurfaceMap.from_points(mesh, SurfacePoints.at_vertices(mesh, nearest))
+
+
+def errors(found, mesh):
+    return np.linalg.norm(found.positions - mesh.vertices, axis=1) / np.sqrt(mesh.area)
+
+
+def spread(mesh, count):
+    chosen = [0]
+    for _ in range(count - 1):
+        away = np.linalg.norm(mesh.vertices[:, None] - mesh.vertices[chosen], axis=2).min(axis=1)
+        chosen.append(int(away.argmax()))
+    return np.array(chosen)
+
+
+@pytest.fixture(scope="module")
+def refined(pair):
+    places = spread(pair[0], 8)
+    return places, refine_map(*pair, slid(pair[1], 0.04), np.column_stack([places, places]))
+
+
+def test_landmarks_are_exact_both_ways(pair, refined):
+    places, dense = refined
+    assert dense.source_to_target.positions[places] == pytest.approx(pair[1].vertices[places])
+    assert dense.target_to_source.positions[places] == pytest.approx(pair[0].vertices[places])
+
+
+def test_a_map_that_is_off_comes_nearer_to_the_truth(pair, refined):
+    before, after = errors(slid(pair[1], 0.04), pair[1]), errors(refined[1].source_to_target, pair[1])
+    assert np.median(after) < 0.5 * np.median(before)
+    assert refined[1].quality.orientation > 0.95
+
+
+def test_a_good_map_stays_good(pair):
+    places = spread(pair[0], 3)
+    dense = refine_map(*pair, identity(pair[1]), np.column_stack([places, places]))
+    assert np.median(errors(dense.source_to_target, pair[1])) < 0.01
+    assert dense.quality.confidence > 0.8
+
+
+def test_a_mirrored_map_stays_one(pair):
+    source = pair[0]
+    mirror = TriangleMesh(source.vertices * [1, -1, 1], source.triangles[:, ::-1])
+    places = spread(source, 3)
+    dense = refine_map(source, mirror, identity(mirror), np.column_stack([places, places]))
+    assert dense.source_to_target.orientation(source, mirror) < -0.95
+    assert np.median(errors(dense.source_to_target, mirror)) < 0.01
+
+
+def test_no_landmarks(pair):
+    with pytest.raises(MatchError, match="no landmarks to refine"):
+        refine_map(*pair, identity(pair[1]), np.empty((0, 2), int))
+
+
+def test_landmarks_that_cannot_be(pair):
+    with pytest.raises(MatchError, match="no such vertex"):
+        refine_map(*pair, identity(pair[1]), [[0, 10**6]])
+
+
+class TestDistortions:
+    def test_none_for_a_scaled_copy(self):
+        ball = TriangleMesh(*icosphere(6))
+        vertices = np.arange(0, ball.vertex_count, 9)
+        large = TriangleMesh(64 * ball.vertices, ball.triangles)
+        assert point_distortions(ball, large, vertices, vertices) == pytest.approx(0, abs=1e-6)
+
+    def test_the_wrong_one_stands_out(self):
+        ball = TriangleMesh(*icosphere(6))
+        vertices = np.arange(0, ball.vertex_count, 9)
+        wrong = vertices.copy()
+        away = np.linalg.norm(ball.vertices - ball.vertices[wrong[5]], axis=1)
+        wrong[5] = int(away.argmax())
+        found = point_distortions(ball, ball, vertices, wrong)
+        assert found.argmax() == 5
+        assert found[5] > 2 * np.delete(found, 5).max()
+
+    def test_one_point(self):
+        ball = TriangleMesh(*icosphere(3))
+        assert point_distortions(ball, ball, [3], [4]).tolist() == [0.0]
