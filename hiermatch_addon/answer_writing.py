@@ -51,7 +51,8 @@ def contents_with_maps(
     other: StoredMaps | None,
 ) -> tuple[Content, Content]:
     """Prepare the chosen answer with its dense maps, and those of the other one."""
-    prepared = contents(restored(stored, meshes), prefix, stored.written, shown.between(*meshes))
+    maps, left_out = shown.between(*meshes), stored.left_out
+    prepared = contents(restored(stored, meshes), prefix, stored.written, maps, left_out=left_out)
     add_maps(prepared, prefix, shown, other)
     return prepared
 

@@ -12,6 +12,8 @@ from . import colors
 from .stretch import DOUBLED, vertex_stretch
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from .vertex_maps import MapPair
@@ -116,7 +118,14 @@ class Content:
         return next(iter(self.colors), None)
 
 
-def contents(result: Correspondence, prefix: str, kinds: Kinds, maps: MapPair | None = None) -> tuple[Content, Content]:
+def contents(
+    result: Correspondence,
+    prefix: str,
+    kinds: Kinds,
+    maps: MapPair | None = None,
+    *,
+    left_out: Collection[int] = (),
+) -> tuple[Content, Content]:
     """Prepare what a match writes on the source and on the target.
 
     Parameters
@@ -129,6 +138,8 @@ def contents(result: Correspondence, prefix: str, kinds: Kinds, maps: MapPair | 
         Which kinds to write; confidence only if there are maps.
     maps : MapPair, optional
         The dense maps of the match, if it has any.
+    left_out : collection of int
+        Numbers, from 0, of points that get no vertex groups.
 
     Returns
     -------
@@ -138,7 +149,7 @@ def contents(result: Correspondence, prefix: str, kinds: Kinds, maps: MapPair | 
     prepared = (Content(), Content())
     if kinds.vertex_groups:
         for content, points in zip(prepared, (result.source_points, result.target_points), strict=True):
-            content.groups.update(_groups(points, prefix))
+            content.groups.update(_groups(points, prefix, left_out))
     if maps is not None:
         _add_mapped(prepared, maps, prefix, kinds)
     elif result.source_distances is not None and result.target_distances is not None:
@@ -192,10 +203,14 @@ def _add_distortion(content: Content, prefix: str, values: NDArray[np.float64], 
     content.values[f"{prefix} Distortion Value"] = np.where(np.isnan(values), UNREACHED, values)
 
 
-def _groups(points: Points, prefix: str) -> dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]]:
+def _groups(
+    points: Points, prefix: str, left_out: Collection[int] = ()
+) -> dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]]:
     """Name a vertex group for each point: its corners with a positive barycentric coordinate, weighted by it."""
     groups = {}
     for number, (corners, weights) in enumerate(zip(points.corners, points.barycentric, strict=True), start=1):
+        if number - 1 in left_out:
+            continue
         positive = weights > 0
         groups[f"{prefix}.{number:03d}"] = (corners[positive], weights[positive])
     return groups

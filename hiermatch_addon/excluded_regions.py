@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 __all__ = ["excluded_vertices", "region_names"]
 
+_SHADING = "sharp_face"
+"""The attribute of Blender's own that is no region: which faces are shaded flat."""
+
 _HALF = 0.5
 """From which weight on a vertex belongs to a region."""
 
@@ -35,6 +38,7 @@ def region_names(obj: bpy.types.Object) -> list[str]:
         if attribute.data_type == "BOOLEAN"
         and attribute.domain in ("POINT", "FACE")
         and attribute.name not in ours
+        and attribute.name != _SHADING
         and not attribute.name.startswith(".")
     ]
     materials = [slot.material.name for slot in obj.material_slots if slot.material is not None]

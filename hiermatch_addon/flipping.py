@@ -129,7 +129,7 @@ def _with_distances(
         from_source = _drive(_distances_steps(source, answer.source_points), lambda done: progress(done / 2))
         from_target = _drive(_distances_steps(target, answer.target_points), lambda done: progress((1 + done) / 2))
         answer = replace(answer, source_distances=from_source, target_distances=from_target)
-    return stored, contents(answer, prefix, stored.written)
+    return stored, contents(answer, prefix, stored.written, left_out=stored.left_out)
 
 
 def _distances_steps(mesh: TriangleMesh, points: SurfacePoints) -> Steps[NDArray[np.float64]]:

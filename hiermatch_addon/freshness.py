@@ -14,7 +14,9 @@ from bpy.app.handlers import persistent
 
 from .access import summary_of
 from .halves import find_carriers
+from .landmark_layer import has_landmarks
 from .redraw import redraw_panels
+from .steering_lists import sync_lists
 from .writing import is_marked
 
 if TYPE_CHECKING:
@@ -31,7 +33,7 @@ _PLAYING_DELAY = 1.0
 
 
 def refresh(scene: bpy.types.Scene) -> None:
-    """Find out whether the match that a scene's panel shows is out of date."""
+    """Find out whether the match that a scene's panel shows is out of date, and what its lists are to show."""
     summary = summary_of(scene)
     stale = ""
     if summary.key:
@@ -41,6 +43,7 @@ def refresh(scene: bpy.types.Scene) -> None:
         summary.stale = stale
         # Blender draws again what an operator changed, but not what a timer did.
         redraw_panels(cast("bpy.types.WindowManager", bpy.context.window_manager))
+    sync_lists(scene)
 
 
 def _sides(summary: HIERMATCH_PG_summary) -> tuple[tuple[str, str], tuple[str, str]]:
@@ -85,9 +88,14 @@ def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Look soon if a mesh with a match was edited.  Posing, moving and selecting objects edits no mesh."""
     for update in depsgraph.updates:
         changed = update.id
-        if update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and is_marked(changed):
+        if update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed):
             _look_soon()
             return
+
+
+def _is_ours(mesh: bpy.types.Mesh) -> bool:
+    """Return whether a mesh carries a match or landmarks."""
+    return is_marked(mesh) or has_landmarks(mesh)
 
 
 @persistent  # type: ignore[untyped-decorator]

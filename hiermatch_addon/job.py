@@ -210,14 +210,13 @@ class MatchJob:
         """Match, and make the dense maps of the mirrored answer if that is to be written."""
         options, (source, target) = self._options, self._meshes
         both = options.use_mirrored and options.settings.dense
-        steering = {"landmarks": self._landmarks, "excluded": self._excluded}
-        steps = match_steps(source, target, options.settings, **steering)
+        steps = match_steps(source, target, options.settings, landmarks=self._landmarks, excluded=self._excluded)
         result = yield from within(steps, 0.0, 0.7 if both else 1.0)
         mirrored = result.mirrored
         if not both or mirrored is None:
             return _Found(result, None)
-        steps = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
-        return _Found(result, (yield from within(steps, 0.7, 1.0)))
+        dense = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
+        return _Found(result, (yield from within(dense, 0.7, 1.0)))
 
     @property
     def maps(self) -> StoredMaps | None:

@@ -49,8 +49,9 @@ class HIERMATCH_PT_match(bpy.types.Panel):
         _draw_setup(layout, state)
         layout.prop(state, "points")
         switches = layout.column()
-        for name in (*(name for name in APART if name != "points"), "use_modifiers"):
+        for name in (*(name for name in APART if name != "points"), "use_modifiers", "use_landmarks"):
             switches.prop(state, name)
+        _draw_regions(layout, state)
         _draw_output(layout, state)
         _draw_advanced(layout, state)
         _draw_run(layout, context, state)
@@ -85,6 +86,15 @@ def _draw_setup(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     name.ui_units_x = _NAME_WIDTH
     name.label(text="Setup")
     row.operator_menu_enum("hiermatch.use_setup", "setup", text=current_setup(state) or "Custom")
+
+
+def _draw_regions(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
+    """Draw what is left out."""
+    header, body = cast("Any", layout).panel("hiermatch_regions", default_closed=True)
+    header.label(text="Leave Out")
+    if body is not None:
+        body.prop(state, "exclude_source", text="Of Source")
+        body.prop(state, "exclude_target", text="Of Target")
 
 
 def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:

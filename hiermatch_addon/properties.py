@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
 from ..engine import MatchSettings
 from .excluded_regions import region_names
+from .steering_lists import sync_lists
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -66,6 +67,7 @@ _CHOICES = {
     for setting in fields(MatchSettings)
     if "choices" in setting.metadata
 }
+
 
 def _search_regions(role: str) -> Callable[[Any, bpy.types.Context, str], list[str]]:
     """Make what lists the regions of one of the two objects, as they are picked or named."""
@@ -201,6 +203,11 @@ def _is_mesh(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
     return obj.type == "MESH"
 
 
+def _on_pick(owner: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """List what the two meshes that are picked now have in common."""
+    sync_lists(cast("bpy.types.Scene", owner.id_data))
+
+
 class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
     """What the panel tells about the last match; it is there if `points` is not zero."""
 
@@ -257,12 +264,14 @@ class HIERMATCH_PG_scene(MatchOptions, bpy.types.PropertyGroup):
         description="Mesh whose points are matched; if empty, the active object",
         type=bpy.types.Object,
         poll=_is_mesh,
+        update=_on_pick,
     )
     target: _props.PointerProperty(
         name="Target",
         description="Mesh on which the corresponding points are sought; if empty, the other selected mesh",
         type=bpy.types.Object,
         poll=_is_mesh,
+        update=_on_pick,
     )
     summary: _props.PointerProperty(name="Summary", description="The last match", type=HIERMATCH_PG_summary)
 

@@ -7,14 +7,34 @@ from typing import Any, Final
 
 import bpy
 
+from .command_line import register_command, unregister_command
 from .freshness import start_watching, stop_watching
+from .operators.add_landmark import HIERMATCH_OT_add_landmark
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
+from .operators.edit_landmarks import (
+    HIERMATCH_OT_clear_landmarks,
+    HIERMATCH_OT_remove_landmark,
+    HIERMATCH_OT_select_landmark,
+    HIERMATCH_OT_switch_landmark,
+)
+from .operators.edit_pairs import (
+    HIERMATCH_OT_lock_pair,
+    HIERMATCH_OT_remove_pair,
+    HIERMATCH_OT_select_pair,
+)
+from .operators.export_match import HIERMATCH_OT_export_match
 from .operators.fit_rig import HIERMATCH_OT_fit_rig
 from .operators.flip import HIERMATCH_OT_flip
+from .operators.import_match import HIERMATCH_OT_import_match
+from .operators.landmark_files import HIERMATCH_OT_load_landmarks, HIERMATCH_OT_save_landmarks
 from .operators.match import HIERMATCH_OT_match
+from .operators.mirror_landmarks import HIERMATCH_OT_mirror_landmarks
+from .operators.pick_landmarks import HIERMATCH_OT_pick_landmarks
+from .operators.refine import HIERMATCH_OT_refine
 from .operators.retarget import HIERMATCH_OT_retarget
+from .operators.show import HIERMATCH_OT_show, HIERMATCH_OT_write_regions
 from .operators.swap import HIERMATCH_OT_swap
 from .operators.symmetrise import HIERMATCH_OT_symmetrise
 from .operators.transfer_attributes import HIERMATCH_OT_transfer_attributes
@@ -23,10 +43,19 @@ from .operators.transfer_uvs import HIERMATCH_OT_transfer_uvs
 from .operators.transfer_weights import HIERMATCH_OT_transfer_weights
 from .operators.use_setup import HIERMATCH_OT_use_setup
 from .operators.wrap import HIERMATCH_OT_wrap
+from .overlay import start_overlay, stop_overlay
 from .panels import HIERMATCH_PT_match
 from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 from .retarget_panels import HIERMATCH_PT_retarget, HIERMATCH_PT_symmetry
 from .retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
+from .steering_panels import (
+    HIERMATCH_PT_landmarks,
+    HIERMATCH_PT_overlay,
+    HIERMATCH_PT_pairs,
+    HIERMATCH_UL_landmarks,
+    HIERMATCH_UL_pairs,
+)
+from .steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
 
 __all__ = ["CLASSES", "register", "unregister"]
 
@@ -40,7 +69,27 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_flip,
     HIERMATCH_OT_swap,
     HIERMATCH_OT_clear,
+    HIERMATCH_OT_export_match,
+    HIERMATCH_OT_import_match,
     HIERMATCH_OT_add_demo_pair,
+    HIERMATCH_PG_landmark,
+    HIERMATCH_PG_pair,
+    HIERMATCH_PG_steering,
+    HIERMATCH_OT_add_landmark,
+    HIERMATCH_OT_pick_landmarks,
+    HIERMATCH_OT_remove_landmark,
+    HIERMATCH_OT_switch_landmark,
+    HIERMATCH_OT_select_landmark,
+    HIERMATCH_OT_clear_landmarks,
+    HIERMATCH_OT_mirror_landmarks,
+    HIERMATCH_OT_save_landmarks,
+    HIERMATCH_OT_load_landmarks,
+    HIERMATCH_OT_select_pair,
+    HIERMATCH_OT_lock_pair,
+    HIERMATCH_OT_remove_pair,
+    HIERMATCH_OT_refine,
+    HIERMATCH_OT_show,
+    HIERMATCH_OT_write_regions,
     HIERMATCH_PG_report,
     HIERMATCH_PG_retarget,
     HIERMATCH_OT_retarget,
@@ -51,7 +100,12 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_transfer_attributes,
     HIERMATCH_OT_wrap,
     HIERMATCH_OT_symmetrise,
+    HIERMATCH_UL_landmarks,
+    HIERMATCH_UL_pairs,
     HIERMATCH_PT_match,
+    HIERMATCH_PT_landmarks,
+    HIERMATCH_PT_pairs,
+    HIERMATCH_PT_overlay,
     HIERMATCH_PT_retarget,
     HIERMATCH_PT_symmetry,
 )
@@ -60,6 +114,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
 _ATTACHMENTS: Final[tuple[tuple[type[Any], str, type[Any]], ...]] = (
     (bpy.types.Scene, "hiermatch", HIERMATCH_PG_scene),
     (bpy.types.Scene, "hiermatch_retarget", HIERMATCH_PG_retarget),
+    (bpy.types.Scene, "hiermatch_steering", HIERMATCH_PG_steering),
     (bpy.types.WindowManager, "hiermatch", HIERMATCH_PG_progress),
 )
 """Each owner gets a property of that name and group."""
@@ -73,10 +128,14 @@ def register() -> None:
     for owner, name, group in _ATTACHMENTS:
         setattr(owner, name, properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group))
     start_watching()
+    register_command()
+    start_overlay()
 
 
 def unregister() -> None:
     """Undo `register`."""
+    stop_overlay()
+    unregister_command()
     stop_watching()
     for owner, name, _ in reversed(_ATTACHMENTS):
         delattr(owner, name)

@@ -229,6 +229,8 @@ class StoredMatch:
         What the user should know.
     swapped : bool
         Whether the user exchanged source and target since: what is called the source here is shown as the target.
+    left_out : tuple of int
+        Numbers, from 0, of the points that the user took away: they get no vertex groups.
     """
 
     names: tuple[str, str]
@@ -240,6 +242,7 @@ class StoredMatch:
     mirrored: bool
     notes: tuple[str, ...]
     swapped: bool = False
+    left_out: tuple[int, ...] = ()
 
     @property
     def answer(self) -> Answer:
@@ -280,6 +283,7 @@ class StoredMatch:
             "answers": {which: answer.to_plain() for which, answer in answers.items()},
             "written": dict(vars(self.written)),
             "notes": "\n".join(self.notes),
+            "left_out": " ".join(map(str, self.left_out)),  # Blender cannot keep an empty list of numbers
         }
         target = {
             "role": "target",
@@ -306,4 +310,5 @@ class StoredMatch:
             mirrored=source["mirrored"],
             notes=tuple(source["notes"].splitlines()),
             swapped=source.get("swapped", False),
+            left_out=tuple(int(number) for number in source.get("left_out", "").split()),
         )

@@ -31,9 +31,11 @@ __all__ = [
     "change_kept",
     "check_names",
     "clear",
+    "extend",
     "is_marked",
     "kept",
     "prefixes",
+    "take_away",
     "write",
 ]
 
@@ -92,6 +94,34 @@ def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str, *, show
         mesh_of(obj).update()
 
 
+def extend(obj: bpy.types.Object, content: Content, prefix: str) -> None:
+    """Write more beside what a match has written with a prefix, in place of what has the same names.
+
+    It is recorded with the rest and goes with it.  What is active stays so.
+    """
+    mesh, active = mesh_of(obj), _Active.of(obj)
+    kinds = _kinds(content)
+    _add(obj, content)
+    _remove(obj, kinds)
+    _take_names(obj, kinds)
+    records = _records(mesh)
+    records[prefix]["written"] |= kinds
+    _set_records(mesh, records)
+    active.restore(obj)
+    mesh.update()
+
+
+def take_away(obj: bpy.types.Object, names: Iterable[str], prefix: str) -> None:
+    """Remove some of what a match has written with a prefix."""
+    mesh, active = mesh_of(obj), _Active.of(obj)
+    records = _records(mesh)
+    written = records[prefix]["written"]
+    _remove(obj, {name: written.pop(name) for name in names if name in written})
+    _set_records(mesh, records)
+    active.restore(obj)
+    mesh.update()
+
+
 def is_marked(mesh: bpy.types.Mesh) -> bool:
     """Return whether something was written on a mesh."""
     properties: Any = mesh
@@ -128,7 +158,7 @@ def clear(obj: bpy.types.Object, prefix: str) -> bool:
     return True
 
 
-def change_kept(obj: bpy.types.Object, prefix: str, **changes: bool) -> None:
+def change_kept(obj: bpy.types.Object, prefix: str, **changes: bool | str) -> None:
     """Change some of what is kept on an object with what was written with a prefix."""
     properties: Any = mesh_of(obj)
     for name, value in changes.items():
@@ -161,9 +191,7 @@ def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Acti
         before = active.without(records[prefix])
         _remove(obj, records[prefix]["written"])
     written = _kinds(content)
-    for name, kind in written.items():
-        owner: Any = obj.vertex_groups if kind == _GROUP else mesh.attributes
-        owner[name + _TEMPORARY].name = name
+    _take_names(obj, written)
     if written:
         records[prefix] = {
             "written": written,
@@ -174,6 +202,13 @@ def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Acti
     else:
         records.pop(prefix, None)
     _set_records(mesh, records)
+
+
+def _take_names(obj: bpy.types.Object, kinds: dict[str, str]) -> None:
+    """Let everything that has a temporary name take its own."""
+    for name, kind in kinds.items():
+        owner: Any = obj.vertex_groups if kind == _GROUP else mesh_of(obj).attributes
+        owner[name + _TEMPORARY].name = name
 
 
 def _remove(obj: bpy.types.Object, kinds: dict[str, str]) -> None:

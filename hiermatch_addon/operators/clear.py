@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import bpy
 
@@ -12,6 +12,7 @@ from ...engine import HierMatchError
 from ..access import mesh_of, state_of, view_layer_of
 from ..pair import check_writable, named_object, selected_meshes
 from ..running import can_start
+from ..steering_lists import sync_lists
 from ..writing import clear, is_marked, kept, prefixes
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
         names = [obj.name for obj in objects]
         if (summary.prefix, summary.key) in cleared:
             state_of(context).property_unset("summary")
+        sync_lists(cast("bpy.types.Scene", context.scene))
         self.report({"INFO"}, f"Cleared {', '.join(names)}")
         return {"FINISHED"}
 

@@ -43,6 +43,7 @@ class HIERMATCH_OT_swap(bpy.types.Operator):
         """Exchange them, and with them what the panel calls source and target of a match that they carry."""
         state = state_of(context)
         state.source, state.target = state.target, state.source
+        state.exclude_source, state.exclude_target = state.exclude_target, state.exclude_source
         if state.source is not None and state.target is not None:
             for half, partner in find_common(state.source, state.target):
                 _set_swapped(state.summary, half, partner)

@@ -120,8 +120,8 @@ def without_mirrored(monkeypatch):
     """Let all matches have one answer only."""
     real = job.match_steps
 
-    def steps(*arguments):
-        return replace((yield from real(*arguments)), mirrored=None)
+    def steps(*arguments, **names):
+        return replace((yield from real(*arguments, **names)), mirrored=None)
 
     monkeypatch.setattr(job, "match_steps", steps)
 

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is known of the pairs of a batch: one report each, in one folder, that outlives every interruption."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..file_writing import write_whole
+from .reports import FORMAT, STATUSES, file_state
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from .manifest import Pair
+    from .workers import Ended
+
+__all__ = ["Ledger", "counts", "summary_rows"]
+
+_COLUMNS = (
+    "row",
+    "name",
+    "command",
+    "source",
+    "target",
+    "output",
+    "status",
+    "doubtful",
+    "seconds",
+    "confidence",
+    "distortion",
+    "sentence",
+    "error",
+    "report",
+)
+"""Of the summary."""
+
+
+class Ledger:
+    """The folder with the reports.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they are.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def report_path(self, pair: Pair) -> Path:
+        """Return where the report of a pair is."""
+        return self.folder / f"{pair.stem}.json"
+
+    def log_path(self, pair: Pair) -> Path:
+        """Return where all that is kept that Blender printed about a pair."""
+        return self.folder / f"{pair.stem}.log"
+
+    def report_of(self, pair: Pair) -> dict[str, Any] | None:
+        """Return the report of a pair; None if there is none, or the pair or its files are others since."""
+        try:
+            report = json.loads(self.report_path(pair).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        if not isinstance(report, dict) or report.get("format") != FORMAT or report.get("key") != pair.key:
+            return None
+        if report.get("status") not in STATUSES or report["status"] == "interrupted":
+            return None
+        inputs = report.get("inputs", [])
+        if [file_state(Path(one["path"])) for one in inputs] != inputs:
+            return None
+        written = report.get("written", []) if report["status"] == "done" else []
+        return report if all(Path(path).is_file() for path in written) else None
+
+    def fail(self, pair: Pair, inputs: list[dict[str, Any]], ended: Ended | None, error: str) -> None:
+        """Write the report that a child did not write itself."""
+        status = "failed" if ended is None else "timeout" if ended.timeout else "crashed"
+        report = {
+            "format": FORMAT,
+            "version": 1,
+            "command": pair.command,
+            "key": pair.key,
+            "status": status,
+            "exit_code": None if ended is None else ended.code,
+            "error": error,
+            "doubtful": False,
+            "seconds": 0.0 if ended is None else round(ended.seconds, 3),
+            "inputs": inputs,
+            "objects": {},
+            "match": None,
+            "carried": [],
+            "notes": [],
+            "written": [],
+        }
+        write_whole(self.report_path(pair), (json.dumps(report, indent=1, ensure_ascii=False) + "\n").encode())
+
+    def write_summary(self, rows: Sequence[dict[str, Any]], name: str) -> Path:
+        """Write a summary as CSV and as JSON, and return where the first is."""
+        text = io.StringIO()
+        table = csv.DictWriter(text, _COLUMNS, lineterminator="\n")
+        table.writeheader()
+        table.writerows({column: "" if row[column] is None else row[column] for column in _COLUMNS} for row in rows)
+        path = self.folder / f"{name}.csv"
+        write_whole(path, text.getvalue().encode())
+        plain = {"format": "hiermatch-summary", "version": 1, "counts": counts(rows), "pairs": list(rows)}
+        content = json.dumps(plain, indent=1, ensure_ascii=False) + "\n"
+        write_whole(path.with_suffix(".json"), content.encode())
+        return path
+
+
+def summary_rows(ledger: Ledger, pairs: Sequence[Pair]) -> list[dict[str, Any]]:
+    """Return a line for each pair; those without a report are "pending"."""
+    rows = []
+    for pair in pairs:
+        report = ledger.report_of(pair) or {}
+        match = report.get("match") or {}
+        quality = match.get("quality") or {}
+        rows.append(
+            {
+                "row": pair.number,
+                "name": pair.name,
+                "command": pair.command,
+                "source": pair.source,
+                "target": pair.target,
+                "output": "|".join(pair.outputs),
+                "status": report.get("status", "pending"),
+                "doubtful": report.get("doubtful", False),
+                "seconds": report.get("seconds"),
+                "confidence": quality.get("confidence"),
+                "distortion": match.get("distortion"),
+                "sentence": quality.get("sentence", ""),
+                "error": report.get("error", ""),
+                "report": str(ledger.report_path(pair)),
+            }
+        )
+    return rows
+
+
+def counts(rows: Sequence[dict[str, Any]]) -> dict[str, int]:
+    """Count the pairs by what became of them."""
+    found = dict.fromkeys(("done", "failed", "crashed", "timeout", "pending", "doubtful"), 0)
+    for row in rows:
+        found[row["status"]] += 1
+        found["doubtful"] += bool(row["doubtful"])
+    return found

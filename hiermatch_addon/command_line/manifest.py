@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The list of pairs of a batch, from a CSV or JSON file."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ObjectError
+from .exit_codes import UsageError
+from .options import option_names, to_arguments
+from .retarget import NOT_OF_THE_MATCH
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+__all__ = ["COMMANDS", "Pair", "read_manifest", "take_shard"]
+
+COMMANDS = {"match": ("match",), "retarget": ("retarget", "match")}
+"""For each subcommand that a batch can run, the operators whose options it takes; the first of a name counts."""
+
+_FIXED = ("name", "command", "source", "target", "output", "map")
+"""Columns that are no options."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A row of the manifest.
+
+    Attributes
+    ----------
+    number : int
+        Which row, from 1.
+    name : str
+        What the pair is called, in messages and in the name of its report.
+    command : str
+        The subcommand.
+    source, target : str
+        FILE or FILE:OBJECT, the file as an absolute path.
+    outputs : tuple of str
+        The files to write, absolute.
+    map : str
+        Where to write the correspondence, absolute; empty if nowhere.
+    options : tuple
+        Name and value of each option that is given, sorted.
+    """
+
+    number: int
+    name: str
+    command: str
+    source: str
+    target: str
+    outputs: tuple[str, ...]
+    map: str
+    options: tuple[tuple[str, str], ...]
+
+    @property
+    def key(self) -> str:
+        """A text that is the same as long as the same is to be done with the same files."""
+        plain = [self.command, self.source, self.target, self.outputs, self.map, self.options]
+        return hashlib.blake2b(json.dumps(plain).encode(), digest_size=16).hexdigest()
+
+    @property
+    def stem(self) -> str:
+        """What the files about the pair are called: after it, and so that no two are called alike."""
+        plain = json.dumps([self.command, self.source, self.target, self.outputs, self.map])
+        digest = hashlib.blake2b(plain.encode(), digest_size=4).hexdigest()
+        readable = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in self.name)
+        return f"{readable[:60]}-{digest}"
+
+    def arguments(self) -> list[str]:
+        """Return the subcommand with its arguments.
+
+        Raises
+        ------
+        UsageError
+            If an option is not one of the subcommand's, or its value cannot be one.
+        """
+        if self.command not in COMMANDS:
+            raise UsageError(f'command is "{self.command}", but must be one of {", ".join(COMMANDS)}')
+        if not (self.source and self.target):
+            raise UsageError("source or target is empty")
+        arguments = [self.command, self.source, self.target]
+        arguments += [f"--output={path}" for path in self.outputs]
+        arguments += [f"--map={self.map}"] if self.map else []
+        for name, value in self.options:
+            operator = _operator_of(self.command, name)
+            if operator is None:
+                raise UsageError(f"{name} is no option of {self.command}")
+            arguments += to_arguments(operator, name, value)
+        return arguments
+
+
+def read_manifest(path: Path, defaults: Mapping[str, str], command: str) -> list[Pair]:
+    """Read all pairs.
+
+    Parameters
+    ----------
+    path : Path
+        A .json file, or else a table with a line of names and commas, semicolons or tabs between the columns.
+    defaults : dict
+        Options of the pairs that do not say otherwise; those that a pair's subcommand does not have are left out.
+    command : str
+        The subcommand of the pairs that do not name one.
+
+    Raises
+    ------
+    ObjectError
+        If it cannot be read, has unknown columns, or two pairs write the same file.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+        rows, common = _json_rows(text) if path.suffix.lower() == ".json" else (_table_rows(text), {})
+    except OSError as error:
+        raise ObjectError(f'"{path}" cannot be read: {error.strerror or error}.') from error
+    except (ValueError, csv.Error) as error:
+        raise ObjectError(f'"{path}" is no manifest: {error}. See the manual page for its format.') from error
+    known = {*_FIXED, *(name for operators in COMMANDS.values() for one in operators for name in option_names(one))}
+    unknown = sorted({name for row in (*rows, common) for name in row} - known)
+    if unknown:
+        raise ObjectError(
+            f'"{path.name}" has columns that are no options: {", ".join(unknown)}. Rename or remove them.'
+        )
+    if not rows:
+        raise ObjectError(f'"{path.name}" lists no pairs.')
+    folder, defaults = path.absolute().parent, {**common, **defaults}
+    pairs = [_pair(number, row, defaults, command, folder) for number, row in enumerate(rows, start=1)]
+    _check_outputs(pairs)
+    return pairs
+
+
+def take_shard(pairs: Sequence[Pair], shard: tuple[int, int]) -> list[Pair]:
+    """Return every n-th pair, from the i-th on; all shards together are all pairs, each once."""
+    first, step = shard
+    return list(pairs[first - 1 :: step])
+
+
+def _table_rows(text: str) -> list[dict[str, str]]:
+    head = text.partition("\n")[0]
+    reader = csv.DictReader(io.StringIO(text), delimiter=max(",;\t", key=head.count), strict=True)
+    rows = []
+    for row in reader:
+        if None in row or None in row.values():
+            raise ValueError(f"line {reader.line_num} has another number of columns than the first one")
+        rows.append({name.strip().replace("-", "_"): value.strip() for name, value in row.items()})
+    for name in ("source", "target"):
+        if rows and name not in rows[0]:
+            raise ValueError(f'it has no column "{name}"')
+    return [row for row in rows if any(row.values())]
+
+
+def _json_rows(text: str) -> tuple[list[dict[str, str]], dict[str, str]]:
+    """Return the pairs, and the options of all of them."""
+    plain = json.loads(text)
+    pairs = plain.get("pairs") if isinstance(plain, dict) else plain
+    common = plain.get("options", {}) if isinstance(plain, dict) else {}
+    if not isinstance(pairs, list) or not all(isinstance(pair, dict) for pair in [*pairs, common]):
+        raise ValueError('it must be a list of objects, or an object with such a list called "pairs"')
+    rows = [
+        {name.replace("-", "_"): _text(value) for name, value in row.items() if value is not None}
+        for row in (*pairs, common)
+    ]
+    return rows[:-1], rows[-1]
+
+
+def _text(value: Any) -> str:  # noqa: ANN401 - whatever JSON holds
+    if isinstance(value, dict | list):
+        raise ValueError(f"{value} is neither a text nor a number")  # noqa: TRY004 - told like all that is wrong in a file
+    return str(value).strip()
+
+
+def _pair(number: int, row: Mapping[str, str], defaults: Mapping[str, str], command: str, folder: Path) -> Pair:
+    """Make a pair of a row, with the paths relative to a folder."""
+    command = row.get("command") or command
+    outputs = tuple(str(folder / part.strip()) for part in row.get("output", "").split("|") if part.strip())
+    options = {name: value for name, value in defaults.items() if _operator_of(command, name) is not None}
+    options |= {name: value for name, value in row.items() if name not in _FIXED and value}
+    source, target, written = (str(folder / row[name]) if row.get(name) else "" for name in ("source", "target", "map"))
+    named = outputs[0] if outputs else written
+    name = Path(named).stem if named else f"{Path(source).stem}-{Path(target).stem}"
+    return Pair(
+        number, row.get("name") or name, command, source, target, outputs, written, tuple(sorted(options.items()))
+    )
+
+
+def _operator_of(command: str, name: str) -> str | None:
+    """Return the operator that an option of a subcommand belongs to; None if it has no such option."""
+    for operator in COMMANDS.get(command, ()):
+        own = operator == command
+        if name in option_names(operator) and (own or name not in NOT_OF_THE_MATCH):
+            return operator
+    return None
+
+
+def _check_outputs(pairs: Sequence[Pair]) -> None:
+    """Make sure that no two pairs write the same, and that each has a report of its own."""
+    writers: dict[str, int] = {}
+    for pair in pairs:
+        for written in (*pair.outputs, *([pair.map] if pair.map else []), pair.stem):
+            if written in writers:
+                raise ObjectError(
+                    f"Rows {writers[written]} and {pair.number} of the manifest write the same, "
+                    f'"{written}". Give each pair an output of its own.'
+                )
+            writers[written] = pair.number

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The subcommand that matches two meshes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from .. import writing
+from ..access import state_of, view_layer_of
+from ..freshness import refresh
+from ..job import MatchJob, job_options
+from ..match_exchange import collect_match
+from ..match_file import save_match
+from ..summary import remember
+from .console import Console, drive
+from .exit_codes import EXIT_CODES, ExitCode
+from .meshes import load_meshes, mesh_argument
+from .options import add_options, chosen_options, given_options
+from .outputs import output_argument, save
+from .reports import Report, add_report_options, run_reported
+
+if TYPE_CHECKING:
+    import argparse
+
+__all__ = ["add_commands", "add_pair_arguments", "add_result_options", "load_pair", "save_results"]
+
+
+def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
+    """Add it."""
+    parser = commands.add_parser(
+        "match",
+        help="match two meshes",
+        description="Find corresponding points of two meshes, whatever their pose, and write them on both.",
+        usage="%(prog)s SOURCE TARGET [--output FILE] [--map FILE] [options]",
+        epilog=EXIT_CODES,
+    )
+    add_pair_arguments(parser)
+    add_result_options(parser)
+    add_report_options(parser)
+    add_options(parser, "match")
+    parser.set_defaults(run=_run)
+
+
+def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the two meshes."""
+    parser.add_argument("source", type=mesh_argument, metavar="SOURCE", help="FILE or FILE:OBJECT of the source.")
+    parser.add_argument("target", type=mesh_argument, metavar="TARGET", help="FILE or FILE:OBJECT of the target.")
+
+
+def add_result_options(parser: argparse.ArgumentParser, what: str = "the target") -> None:
+    """Add where results are written."""
+    group = parser.add_argument_group("what is written")
+    group.add_argument(
+        "--output",
+        type=output_argument,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help=f"Write the whole scene into a .blend, or {what} with its armature into an .obj, .ply, .stl, .fbx, .glb "
+        "or .gltf; may be given several times.",
+    )
+    group.add_argument(
+        "--map", type=Path, metavar="FILE", help="Write the correspondence into an .npz or .json as well."
+    )
+
+
+def load_pair(parsed: argparse.Namespace, report: Report) -> tuple[bpy.types.Object, bpy.types.Object]:
+    """Load source and target."""
+    (source, target), notes = load_meshes([parsed.source, parsed.target])
+    report.add_object("source", parsed.source, source)
+    report.add_object("target", parsed.target, target)
+    report.add_notes(notes)
+    return source, target
+
+
+def save_results(
+    parsed: argparse.Namespace,
+    report: Report,
+    pair: tuple[bpy.types.Object, bpy.types.Object],
+    prefix: str,
+    console: Console,
+    *,
+    clean: bool = False,
+) -> None:
+    """Write all files that are wanted of a pair that carries a match now, and describe the match.
+
+    A `clean` target carries what was transferred into files other than a .blend, but no colors, groups and attributes
+    of the match, which an engine or a renderer would take for its own.
+    """
+    match = collect_match(*pair, prefix)
+    report.add_match(match.stored)
+    if parsed.map is not None:
+        console.progress(1.0, f"Writing {parsed.map}")
+        save_match(match, parsed.map.absolute())
+        report.written.append(str(parsed.map.absolute()))
+    for path in sorted(parsed.output, key=lambda output: output.suffix.lower() != ".blend"):
+        console.progress(1.0, f"Writing {path}")
+        if clean and path.suffix.lower() != ".blend":
+            for written in writing.prefixes(pair[1]):
+                writing.clear(pair[1], written)
+        save(path, pair[1])
+        report.written.append(str(path.absolute()))
+
+
+def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
+    """Match and write."""
+
+    def work(report: Report) -> None:
+        options = chosen_options("match", given_options("match", parsed))
+        settings = job_options(options)
+        console.progress(0.0, "Reading files")
+        source, target = load_pair(parsed, report)
+        context = bpy.context
+        job = MatchJob(context, source, target, settings)
+        drive(job, context, console)
+        outcome = job.finish(view_layer_of(context))
+        names = (outcome.source, outcome.target)
+        remember(state_of(context).summary, outcome.stored, names, options.prefix, outcome.seconds)
+        refresh(cast("bpy.types.Scene", context.scene))
+        save_results(parsed, report, (source, target), options.prefix, console)
+
+    return run_reported(parsed, [parsed.source.path, parsed.target.path], console, work)

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Options of the command line made of Blender's own description of an operator, so that a new one appears by itself."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import bpy
+import numpy as np
+
+from .exit_codes import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Mapping
+
+__all__ = ["Parser", "add_options", "chosen_options", "given_options", "option_names", "to_arguments"]
+
+_OBJECTS = frozenset({"rna_type", "source", "target", "targets", "object"})
+"""Properties that name objects: on the command line they are arguments."""
+
+_YES, _NO = frozenset({"1", "true", "yes", "on"}), frozenset({"0", "false", "no", "off"})
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that raises errors instead of ending the process, and takes no shortened names."""
+
+    def __init__(self, **arguments: Any) -> None:  # noqa: ANN401 - whatever argparse takes
+        super().__init__(
+            **{"allow_abbrev": False, "formatter_class": argparse.RawDescriptionHelpFormatter, **arguments}
+        )
+
+    def error(self, message: str) -> NoReturn:
+        """Raise what is wrong."""
+        raise UsageError(message, f"{self.format_usage()}See {self.prog} --help")
+
+
+def option_names(operator: str) -> list[str]:
+    """Return the names of an operator's options, such as of "match"."""
+    return [described.identifier for described in _properties(operator)]
+
+
+def add_options(
+    parser: argparse.ArgumentParser, operator: str, *, without: Collection[str] = (), title: str = ""
+) -> None:
+    """Add an operator's options, under their own names, to a parser; those that are not given stay out of its result.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        The parser.
+    operator : str
+        The operator's name behind "hiermatch.".
+    without : collection of str
+        Names that are left out.
+    title : str
+        What the options are called in the help.
+    """
+    group = parser.add_argument_group(title or f"options of {operator}")
+    for described in _properties(operator):
+        if described.identifier not in without:
+            group.add_argument(_flag(described.identifier), **_declaration(described))
+
+
+def given_options(operator: str, parsed: argparse.Namespace) -> dict[str, Any]:
+    """Return those of an operator's options that were given."""
+    return {name: vars(parsed)[name] for name in option_names(operator) if name in vars(parsed)}
+
+
+def chosen_options(operator: str, given: Mapping[str, Any]) -> Any:  # noqa: ANN401 - stands for the operator
+    """Return an object with all options of an operator: those that are given, and its own defaults."""
+    defaults = {described.identifier: _default(described) for described in _properties(operator)}
+    return SimpleNamespace(**{**defaults, **given})
+
+
+def to_arguments(operator: str, name: str, value: object) -> list[str]:
+    """Write an option, as a table holds it, as arguments of the command line; none if the value is empty.
+
+    Raises
+    ------
+    UsageError
+        If it should be true or false, and is neither.
+    """
+    text = str(value).strip()
+    if not text:
+        return []
+    described = next(described for described in _properties(operator) if described.identifier == name)
+    if described.type != "BOOLEAN":
+        return [f"{_flag(name)}={text}"]
+    if text.lower() in _YES:
+        return [_flag(name)]
+    if text.lower() in _NO:
+        return [_flag(f"no_{name}")]
+    raise UsageError(f'{name} is "{text}", but must be true or false')
+
+
+def _properties(operator: str) -> list[Any]:
+    operators: Any = bpy.ops
+    described = getattr(operators.hiermatch, operator)
+    properties = described.get_rna_type().properties
+    return [one for one in properties if one.identifier not in _OBJECTS and one.type != "COLLECTION"]
+
+
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def _default(described: Any) -> Any:  # noqa: ANN401 - a property, and whatever its values are
+    return set(described.default_flag) if getattr(described, "is_enum_flag", False) else described.default
+
+
+def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
+    """Return what argparse is told of a property."""
+    about: dict[str, Any] = {"dest": described.identifier, "default": argparse.SUPPRESS}
+    text = f"{described.description}."
+    if described.type == "BOOLEAN":
+        about["action"] = argparse.BooleanOptionalAction
+        shown = "on" if described.default else "off"
+    elif described.type == "ENUM":
+        words = [item.identifier.lower() for item in described.enum_items]
+        about |= {"type": _word(described, words), "metavar": f"{{{','.join(words)}}}"}
+        shown = described.default.lower()
+    elif described.type == "STRING":
+        about |= {"type": _text(described.length_max), "metavar": "TEXT"}
+        shown = f'"{described.default}"' if described.default else ""
+    else:
+        about |= {"type": _number(described), "metavar": "N" if described.type == "INT" else "X"}
+        shown = f"{described.default:g}"
+    # argparse takes the sign for per cent as the beginning of a name.
+    about["help"] = (f"{text} (default: {shown})" if shown else text).replace("%", "%%")
+    return about
+
+
+def _word(described: Any, words: list[str]) -> Callable[[str], str | set[str]]:  # noqa: ANN401 - a property
+    def parse(text: str) -> str | set[str]:
+        chosen = [word.strip().lower() for word in text.split(",")] if described.is_enum_flag else [text.lower()]
+        if not set(chosen) <= set(words):
+            raise argparse.ArgumentTypeError(f'"{text}" is none of {", ".join(words)}')
+        identifiers = {item.identifier.lower(): item.identifier for item in described.enum_items}
+        found = [identifiers[word] for word in chosen]
+        return set(found) if described.is_enum_flag else found[0]
+
+    return parse
+
+
+def _text(longest: int) -> Callable[[str], str]:
+    def parse(text: str) -> str:
+        if longest and len(text.encode()) >= longest:
+            raise argparse.ArgumentTypeError(f'"{text}" is longer than {longest - 1} letters')
+        return text
+
+    return parse
+
+
+def _number(described: Any) -> Callable[[str], float]:  # noqa: ANN401 - a property
+    whole, least, most = described.type == "INT", described.hard_min, described.hard_max
+
+    def parse(text: str) -> float:
+        try:
+            # Blender's numbers are of single precision, on the command line as well as in its panels.
+            number = int(text) if whole else float(np.float32(float(text)))
+        except ValueError:
+            raise argparse.ArgumentTypeError(f'"{text}" is no {"whole " if whole else ""}number') from None
+        if not (math.isfinite(number) and least <= number <= most):
+            raise argparse.ArgumentTypeError(f"{text} is not between {least:g} and {most:g}")
+        return number
+
+    return parse

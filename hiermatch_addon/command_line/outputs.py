@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results into files, by the ending of their names."""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import bpy
+
+from ..access import view_layer_of
+from ..errors import ObjectError
+from ..file_writing import beside
+from .meshes import has_operator
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["output_argument", "save"]
+
+_EXPORTERS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
+    ".obj": ("wm.obj_export", {"export_selected_objects": True, "apply_modifiers": False, "path_mode": "ABSOLUTE"}),
+    ".ply": ("wm.ply_export", {"export_selected_objects": True, "apply_modifiers": False}),
+    ".stl": ("wm.stl_export", {"export_selected_objects": True, "apply_modifiers": False}),
+    ".fbx": ("export_scene.fbx", {"use_selection": True, "add_leaf_bones": False, "bake_anim": False}),
+    ".glb": ("export_scene.gltf", {"use_selection": True, "export_format": "GLB", "export_animations": False}),
+    ".gltf": (
+        "export_scene.gltf",
+        {"use_selection": True, "export_format": "GLTF_SEPARATE", "export_animations": False},
+    ),
+}
+"""For each kind of file the operator that writes it, and with which options: what is selected, as it is."""
+
+_KINDS = (".blend", *_EXPORTERS)
+
+
+def output_argument(text: str) -> Path:
+    """Read the name of a file to write.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If it is of no known kind.
+    """
+    path = Path(text)
+    if path.suffix.lower() not in _KINDS:
+        raise argparse.ArgumentTypeError(f'"{text}" does not end with {", ".join(_KINDS)}')
+    return path
+
+
+def save(path: Path, obj: bpy.types.Object) -> None:
+    """Write the whole scene into a .blend, or an object with its armatures into another kind of file.
+
+    Raises
+    ------
+    ObjectError
+        If that fails; a file that was there before is still there then.
+    """
+    path = path.absolute()
+    try:
+        if path.suffix.lower() == ".blend":
+            with beside(path) as temporary:
+                bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
+        else:
+            _select(obj)
+            _export(path)
+    except RuntimeError as error:
+        said = " ".join(str(error).split()).removeprefix("Error: ")
+        raise ObjectError(f'"{path}" cannot be written: {said}') from error
+
+
+def _select(obj: bpy.types.Object) -> None:
+    """Select an object and the armatures that move it, and nothing else."""
+    layer = view_layer_of(bpy.context)
+    movers = [obj.parent, *(getattr(modifier, "object", None) for modifier in obj.modifiers)]
+    wanted = [obj, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
+    for other in layer.objects:
+        other.select_set(other in wanted)
+    layer.objects.active = obj
+
+
+def _export(path: Path) -> None:
+    """Write what is selected into a folder beside the file, and move all that was written to its place."""
+    name, options = _EXPORTERS[path.suffix.lower()]
+    if not has_operator(name):
+        raise ObjectError(
+            f'This Blender cannot write "{path.name}". Enable the add-on that exports {path.suffix} files, or write '
+            "another kind."
+        )
+    group, _, operator = name.partition(".")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".hiermatch-") as folder:
+            getattr(getattr(bpy.ops, group), operator)(filepath=str(Path(folder, path.name)), **options)
+            written: Sequence[Path] = sorted(Path(folder).iterdir(), key=lambda one: one.name == path.name)
+            if path.name not in {one.name for one in written}:
+                raise ObjectError(f'"{path}" cannot be written: Blender\'s exporter wrote nothing.')
+            for one in written:  # the file itself last: when it is there, all is there
+                one.replace(path.parent / one.name)
+    except OSError as error:
+        raise ObjectError(f'"{path}" cannot be written: {error.strerror or error}. Choose another place.') from error

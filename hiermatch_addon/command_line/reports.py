@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What became of a command, as JSON for other programs; `docs/command-line.md` describes it."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ...engine import HierMatchError
+from ..access import mesh_of
+from ..file_writing import write_whole
+from .console import Console, interruptible
+from .exit_codes import ExitCode
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable, Sequence
+
+    from ..stored_match import StoredMatch
+    from ..transfer_job import Carried
+    from .meshes import MeshArgument
+
+__all__ = ["FORMAT", "STATUSES", "Report", "add_report_options", "file_state", "run_reported"]
+
+FORMAT = "hiermatch-report"
+"""What every report says it is."""
+
+_VERSION = 1
+
+STATUSES = ("done", "failed", "crashed", "timeout", "interrupted")
+"""What can become of a command; a crash and a timeout are told by the batch that started it."""
+
+_LEAST_CONFIDENCE = 0.5
+
+
+@dataclass
+class Report:
+    """What is known so far.
+
+    Attributes
+    ----------
+    command : str
+        Which one.
+    key : str
+        By what a batch recognises it; empty outside of one.
+    least_confidence : float
+        Below it a match is doubtful.
+    inputs : list of dict
+        Path, size and time of each file that is read, as it was before.
+    objects : dict
+        For each role, such as "source", what was loaded.
+    match : dict or None
+        What was found.
+    carried : list of dict
+        What was carried over.
+    notes : list of str
+        What should be known.
+    written : list of str
+        The files.
+    """
+
+    command: str
+    key: str = ""
+    least_confidence: float = _LEAST_CONFIDENCE
+    inputs: list[dict[str, Any]] = field(default_factory=list)
+    objects: dict[str, dict[str, Any]] = field(default_factory=dict)
+    match: dict[str, Any] | None = None
+    carried: list[dict[str, Any]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    written: list[str] = field(default_factory=list)
+    _begin: float = field(default_factory=time.perf_counter)
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether there is a match with dense maps that are not to be trusted."""
+        quality = (self.match or {}).get("quality")
+        return quality is not None and quality["confidence"] < self.least_confidence
+
+    def add_object(self, role: str, argument: MeshArgument, obj: bpy.types.Object) -> None:
+        """Say what was loaded."""
+        mesh = mesh_of(obj)
+        self.objects[role] = {
+            "file": str(argument.path),
+            "object": obj.name,
+            "vertices": len(mesh.vertices),
+            "faces": len(mesh.polygons),
+        }
+
+    def add_match(self, stored: StoredMatch) -> None:
+        """Say what was found."""
+        answer = stored.answer
+        self.match = {
+            "points": len(answer.point_distortion),
+            "distortion": answer.distortion,
+            "worst_distortion": float(answer.point_distortion.max()),
+            "orientation": answer.orientation,
+            "proven": answer.proven,
+            "gap": answer.gap,
+            "mirrored": stored.mirrored,
+            "has_mirrored": len(stored.answers) > 1,
+            "refined": answer.refined,
+            "quality": None if answer.quality is None else dict(vars(answer.quality)),
+        }
+        self.add_notes(stored.notes)
+
+    def add_carried(self, carried: Sequence[Carried]) -> None:
+        """Say what was carried over."""
+        for one in carried:
+            done = [part.done for part in one.reports if part.done]
+            self.carried.append({"target": one.target, "done": done})
+            for part in one.reports:
+                self.add_notes(part.notes)
+
+    def add_notes(self, notes: Sequence[str]) -> None:
+        """Add what should be known, once."""
+        self.notes += [note for note in notes if note not in self.notes]
+
+    def to_plain(self, code: ExitCode, error: str) -> dict[str, Any]:
+        """Return all of it, with how it ended."""
+        status = {ExitCode.FAILED: "failed", ExitCode.INTERRUPTED: "interrupted"}.get(code, "done")
+        return {
+            "format": FORMAT,
+            "version": _VERSION,
+            "command": self.command,
+            "key": self.key,
+            "status": status,
+            "exit_code": int(code),
+            "error": error,
+            "doubtful": self.doubtful,
+            "seconds": round(time.perf_counter() - self._begin, 3),
+            "inputs": self.inputs,
+            "objects": self.objects,
+            "match": self.match,
+            "carried": self.carried,
+            "notes": self.notes,
+            "written": self.written,
+            "blender": bpy.app.version_string,
+        }
+
+
+def add_report_options(parser: argparse.ArgumentParser) -> None:
+    """Add what all commands that do one thing have in common."""
+    group = parser.add_argument_group("what is told")
+    group.add_argument("--report", metavar="FILE.json", help='Write what became of it; "-" is the standard output.')
+    group.add_argument("--report-key", default="", metavar="TEXT", help="A text that the report repeats.")
+    group.add_argument(
+        "--strict", action="store_true", help="End with the exit code 3 if the match is doubtful; it is written anyway."
+    )
+    group.add_argument(
+        "--least-confidence",
+        type=float,
+        default=_LEAST_CONFIDENCE,
+        metavar="X",
+        help="Below it, 0 to 1, a dense match is called doubtful. (default: %(default)s)",
+    )
+    group.add_argument("--quiet", action="store_true", help="Tell no progress, only errors.")
+
+
+def file_state(path: Path) -> dict[str, Any]:
+    """Return by what a file is recognised as unchanged; size and time are None if there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return {"path": str(path), "size": None, "mtime_ns": None}
+    return {"path": str(path), "size": found.st_size, "mtime_ns": found.st_mtime_ns}
+
+
+def run_reported(
+    parsed: argparse.Namespace, inputs: Sequence[Path], console: Console, work: Callable[[Report], None]
+) -> ExitCode:
+    """Do the work of a command, and tell what became of it in every case.
+
+    Parameters
+    ----------
+    parsed : argparse.Namespace
+        The command's arguments.
+    inputs : sequence of Path
+        The files that are read.
+    console : Console
+        Where to write.
+    work : callable
+        Does it, and fills the report.
+    """
+    report = Report(parsed.command, parsed.report_key, parsed.least_confidence)
+    report.inputs = [file_state(path.absolute()) for path in dict.fromkeys(inputs)]
+    code, error = ExitCode.DONE, ""
+    try:
+        with interruptible() as interruption:
+            work(report)
+        if parsed.strict and report.doubtful:
+            code = ExitCode.DOUBTFUL
+    except (HierMatchError, KeyboardInterrupt) as failure:
+        code, error = ExitCode.FAILED, str(failure)
+        if isinstance(failure, KeyboardInterrupt) or interruption.happened:
+            code, error = ExitCode.INTERRUPTED, "Interrupted. What was not finished was not written."
+    except Exception as failure:
+        _write(parsed.report, report.to_plain(ExitCode.FAILED, f"Unexpected error: {failure!r}"), console)
+        raise
+    for note in report.notes:
+        console.say(note)
+    if error:
+        console.error(error)
+    else:
+        console.say(_told(report))
+    try:
+        _write(parsed.report, report.to_plain(code, error), console)
+    except HierMatchError as failure:
+        console.error(str(failure))
+        return ExitCode.FAILED
+    return code
+
+
+def _write(where: str | None, plain: dict[str, Any], console: Console) -> None:
+    """Write a report, if one is wanted."""
+    if where is None:
+        return
+    text = json.dumps(plain, indent=1, ensure_ascii=False) + "\n"
+    if where == "-":
+        console.result(text)
+    else:
+        write_whole(Path(where).absolute(), text.encode())
+
+
+def _told(report: Report) -> str:
+    """Return what became of it in a line for a person."""
+    parts = []
+    if report.match is not None:
+        if report.match["points"]:
+            parts.append(f"matched {report.match['points']} points")
+        if report.match["quality"] is not None:
+            parts.append(f"confidence {report.match['quality']['confidence']:.0%}")
+            parts.append(report.match["quality"]["sentence"].rstrip("."))
+    parts += [f"carried {', '.join(one['done']) or 'nothing'}" for one in report.carried]
+    parts += [f"wrote {path}" for path in report.written]
+    return f"Done: {'; '.join(parts)}." if parts else "Done."

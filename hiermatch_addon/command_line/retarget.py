@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The subcommand that carries what the source has to the target."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from ..access import state_of
+from ..freshness import refresh
+from ..job import job_options
+from ..retarget_options import chosen_transfers
+from ..retarget_properties import remember_transfer
+from ..summary import remember
+from ..transfer_job import TransferJob, TransferOptions
+from .console import drive
+from .exit_codes import EXIT_CODES
+from .match import add_pair_arguments, add_result_options, load_pair, save_results
+from .options import add_options, chosen_options, given_options
+from .reports import add_report_options, run_reported
+
+if TYPE_CHECKING:
+    import argparse
+
+    from .console import Console
+    from .exit_codes import ExitCode
+    from .reports import Report
+
+__all__ = ["NOT_OF_THE_MATCH", "add_commands"]
+
+NOT_OF_THE_MATCH = frozenset({"prefix", "dense", "use_modifiers"})
+"""Options of a match that retargeting decides itself, or has under the same name."""
+
+
+def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
+    """Add it."""
+    parser = commands.add_parser(
+        "retarget",
+        help="carry rig, weights, shape keys, UV maps and attributes from one mesh to another",
+        description="Match the source with the target if they carry no match yet, and carry over what the source has.",
+        usage="%(prog)s SOURCE TARGET --output FILE [--map FILE] [options]",
+        epilog=EXIT_CODES,
+    )
+    add_pair_arguments(parser)
+    add_result_options(parser)
+    add_report_options(parser)
+    add_options(parser, "retarget", title="what is carried over")
+    add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")
+    parser.set_defaults(run=_run)
+
+
+def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
+    """Retarget and write."""
+
+    def work(report: Report) -> None:
+        options = chosen_options("retarget", given_options("retarget", parsed))
+        of_match = {k: v for k, v in given_options("match", parsed).items() if k not in NOT_OF_THE_MATCH}
+        matching = chosen_options("match", of_match | ({"prefix": options.prefix} if options.prefix else {}))
+        settings = TransferOptions(job_options(matching), options.prefix, refine=options.refine, optional=True)
+        console.progress(0.0, "Reading files")
+        source, target = load_pair(parsed, report)
+        context = bpy.context
+        job = TransferJob(context, source, [target], lambda: chosen_transfers(options, options.prefix), settings)
+        drive(job, context, console)
+        carried = job.finish(context)
+        outcome = carried[0].outcome
+        if outcome is not None:
+            names = (outcome.source, outcome.target)
+            remember(state_of(context).summary, outcome.stored, names, matching.prefix, outcome.seconds)
+        refresh(cast("bpy.types.Scene", context.scene))
+        remember_transfer(context, carried)
+        report.add_carried(carried)
+        prefix = options.prefix if outcome is None else matching.prefix
+        save_results(parsed, report, (source, target), prefix, console, clean=True)
+
+    return run_reported(parsed, [parsed.source.path, parsed.target.path], console, work)

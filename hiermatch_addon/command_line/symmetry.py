@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The subcommand that matches a mesh with its own mirror image, and makes what it carries symmetric."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import numpy as np
+
+from ...engine import symmetry_map_steps
+from ..access import mesh_of, view_layer_of
+from ..match_file import MatchFile, save_match
+from ..mesh_io import position_digest, read_mesh, topology
+from ..pair import check_object
+from ..stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
+from ..transfers.symmetrise import SymmetriseJob
+from ..transfers.symmetrise_options import symmetrise_settings
+from ..vertex_maps import StoredMaps
+from .console import drive
+from .exit_codes import EXIT_CODES
+from .match import add_result_options
+from .meshes import load_meshes, mesh_argument
+from .options import add_options, chosen_options, given_options
+from .outputs import save
+from .reports import add_report_options, run_reported
+
+if TYPE_CHECKING:
+    import argparse
+
+    from ...engine import DenseMatch, TriangleMesh
+    from .console import Console
+    from .exit_codes import ExitCode
+    from .reports import Report
+
+__all__ = ["add_commands"]
+
+
+def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
+    """Add it."""
+    parser = commands.add_parser(
+        "symmetry",
+        help="find the left-right map of a mesh, and make what it carries symmetric",
+        description="Match a mesh with its own mirror image, in any pose.  With --output, what it carries is made "
+        "symmetric and written; with --map or without both, its left-right map is found and judged.",
+        usage="%(prog)s MESH [--output FILE] [--map FILE] [options]",
+        epilog=EXIT_CODES,
+    )
+    parser.add_argument("mesh", type=mesh_argument, metavar="MESH", help="FILE or FILE:OBJECT.")
+    add_result_options(parser, "the mesh")
+    add_report_options(parser)
+    add_options(parser, "symmetrise", title="what is made symmetric")
+    parser.set_defaults(run=_run)
+
+
+def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
+    """Find the map, or symmetrise, or both."""
+
+    def work(report: Report) -> None:
+        console.progress(0.0, "Reading files")
+        (obj,), notes = load_meshes([parsed.mesh])
+        report.add_object("mesh", parsed.mesh, obj)
+        report.add_notes(notes)
+        context = bpy.context
+        check_object(view_layer_of(context), obj)
+        job = None
+        if parsed.output:
+            settings = symmetrise_settings(chosen_options("symmetrise", given_options("symmetrise", parsed)))
+            job = SymmetriseJob(context, obj, settings)
+        if parsed.map is not None or job is None:
+            _find_map(parsed, report, obj, console)
+        if job is not None:
+            drive(job, context, console)
+            report.carried.append({"target": obj.name, "done": [job.finish(context).done]})
+        for path in parsed.output:
+            save(path, obj)
+            report.written.append(str(path.absolute()))
+
+    return run_reported(parsed, [parsed.mesh.path], console, work)
+
+
+def _find_map(parsed: argparse.Namespace, report: Report, obj: bpy.types.Object, console: Console) -> None:
+    """Find the left-right map, describe it, and write it if that is wanted."""
+    mesh = read_mesh(obj, bpy.context.evaluated_depsgraph_get(), use_modifiers=False)
+    found = _driven(mesh, console)
+    quality = Quality.of(found.quality)
+    report.match = {"points": 0, "orientation": quality.orientation, "quality": dict(vars(quality))}
+    if parsed.map is not None:
+        save_match(_as_file(obj, found, quality), parsed.map.absolute())
+        report.written.append(str(parsed.map.absolute()))
+
+
+def _driven(mesh: TriangleMesh, console: Console) -> DenseMatch:
+    steps = symmetry_map_steps(mesh)
+    while True:
+        try:
+            now = next(steps)
+        except StopIteration as stop:
+            found: DenseMatch = stop.value
+            return found
+        console.progress(now.fraction, now.label)
+
+
+def _as_file(obj: bpy.types.Object, found: DenseMatch, quality: Quality) -> MatchFile:
+    """Write a map of a mesh to itself as a match without points."""
+    mesh = mesh_of(obj)
+    none = CornerPoints(np.empty((0, 3), np.int64), np.empty((0, 3)))
+    written = Written(
+        use_modifiers=False, vertex_groups=False, match_colors=False, distortion=False, confidence=False, dense=True
+    )
+    stored = StoredMatch(
+        names=(obj.name, obj.name),
+        topologies=(topology(mesh), topology(mesh)),
+        positions=(position_digest(mesh), position_digest(mesh)),
+        written=written,
+        source_points=none,
+        answers=(
+            Answer(none, np.empty(0), quality.distortion, quality.orientation, proven=False, gap=1.0, quality=quality),
+        ),
+        mirrored=False,
+        notes=(),
+    )
+    count = len(mesh.vertices)
+    maps = StoredMaps.of(found.source_to_target, found.target_to_source)
+    return MatchFile(stored, (count, count), maps, kind="symmetry")

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that are written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from .errors import ObjectError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+__all__ = ["beside", "write_whole"]
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file, with its folders, such that nobody ever sees a part of it.
+
+    Raises
+    ------
+    ObjectError
+        If it cannot be written.
+    """
+    with beside(path) as temporary:
+        temporary.write_bytes(content)
+
+
+@contextmanager
+def beside(path: Path) -> Iterator[Path]:
+    """Lend a name beside a file, of the same suffix; what is written there takes the file's place at last.
+
+    Raises
+    ------
+    ObjectError
+        If it cannot be written.
+    """
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            yield temporary
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        raise ObjectError(f'"{path}" cannot be written: {error.strerror or error}. Choose another place.') from error

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Write the match that a file holds on two objects."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import bpy
+from bpy_extras.io_utils import ImportHelper
+
+from ...engine import HierMatchError
+from ..access import state_of
+from ..freshness import refresh
+from ..match_exchange import apply_match
+from ..match_file import load_match
+from ..pair import find_pair
+from ..running import can_start
+from ..summary import remember
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+__all__ = ["HIERMATCH_OT_import_match"]
+
+
+class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
+    """Write the match that a file holds on two objects."""
+
+    bl_idname = "hiermatch.import_match"
+    bl_label = "Import Match"
+    bl_description = (
+        "Write a match that was exported to a file on two meshes with the same vertices and faces, in whatever pose, "
+        "as if they had just been matched"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    if TYPE_CHECKING:
+        filepath: str
+
+    filename_ext = ".npz"
+
+    filter_glob: bpy.props.StringProperty(
+        name="Filter", description="Which files the browser lists", default="*.npz;*.json", options={"HIDDEN"}
+    )
+    source: bpy.props.StringProperty(
+        name="Source",
+        description="Name of the object to be the source; if empty, the one picked in the panel or else the active "
+        "object",
+    )
+    target: bpy.props.StringProperty(
+        name="Target",
+        description="Name of the object to be the target; if empty, the one picked in the panel or else the other "
+        "selected mesh",
+    )
+    prefix: bpy.props.StringProperty(
+        name="Prefix", description="What the names of everything that is written start with", default="HM", maxlen=32
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it in Object Mode, when nothing else is running."""
+        return can_start(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
+        """Read the file and write on both objects."""
+        state = state_of(context)
+        path = Path(bpy.path.abspath(self.filepath))
+        try:
+            source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
+            stored = apply_match(context, source, target, load_match(path), self.prefix)
+        except HierMatchError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        remember(state.summary, stored, stored.names, self.prefix, 0.0)
+        refresh(cast("bpy.types.Scene", context.scene))
+        self.report({"INFO"}, f'Imported the match of "{source.name}" and "{target.name}" from "{path.name}"')
+        return {"FINISHED"}

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Make a match better around landmarks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import bpy
+
+from ..access import state_of
+from ..errors import ObjectError
+from ..freshness import refresh
+from ..job_operator import JobOperator
+from ..refining import RefineJob
+from ..running import can_start
+from ..steering_lists import common_match
+from ..summary import remember
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+__all__ = ["HIERMATCH_OT_refine"]
+
+_FAR = 0.25
+"""A landmark that is so far, in sqrt(area), from where the map had taken it calls for another map."""
+
+
+class HIERMATCH_OT_refine(JobOperator, bpy.types.Operator):
+    """Make a match better around landmarks."""
+
+    bl_idname = "hiermatch.refine"
+    bl_label = "Refine"
+    bl_description = (
+        "Make the match better around landmarks and locked points, in a fraction of the time of a match. What is wrong "
+        "altogether, such as a leg on another leg, has to be matched again"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    doing = "Refining"
+    cancelled = "It was cancelled. The match is as it was"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it in Object Mode, when nothing else is running."""
+        return can_start(cls, context)
+
+    def _start(self, context: bpy.types.Context) -> RefineJob:
+        """Read both objects."""
+        state = state_of(context)
+        halves = common_match(cast("bpy.types.Scene", context.scene))
+        if halves is None:
+            raise ObjectError("There is no match to refine. Pick two meshes as Source and Target, and match them.")
+        return RefineJob(context, halves, (state.exclude_source, state.exclude_target))
+
+    def _finish(self, context: bpy.types.Context, job: RefineJob) -> set[OperatorReturnItems]:
+        """Write, remember and report."""
+        stored = job.finish(context)
+        remember(state_of(context).summary, stored, job.names, job.prefix, job.seconds)
+        refresh(cast("bpy.types.Scene", context.scene))
+        if job.moved > _FAR:
+            self.report(
+                {"WARNING"}, "A landmark is far from where the map had taken it. If the result is wrong, match again."
+            )
+        self.report({"INFO"}, f"Refined the match in {job.seconds:.1f} s. {state_of(context).summary.verdict}")
+        return {"FINISHED"}
