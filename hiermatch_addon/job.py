@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
+from ..engine import MatchSettings, SettingsError, densify_steps, match_steps
 from ..engine.progress import within
 from . import writing
 from .access import mesh_of, view_layer_of
@@ -20,6 +20,7 @@ from .landmarks import find_landmarks, landmark_array
 from .mesh_io import position_digest, read_mesh, topology
 from .pair import check_pair
 from .properties import match_settings
+from .stepped_job import SteppedJob
 from .stored_match import Answer, CornerPoints, StoredMatch, Written
 from .vertex_maps import StoredMaps, add_maps
 
@@ -135,7 +136,7 @@ class _Found:
         return StoredMaps.of(found.source_to_target, found.target_to_source)
 
 
-class MatchJob:
+class MatchJob(SteppedJob):
     """The match of two objects, from reading them to writing on them.
 
     Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
@@ -183,30 +184,13 @@ class MatchJob:
             excluded_vertices(source, options.exclude_source),
             excluded_vertices(target, options.exclude_target),
         )
-        self._steps = self._find_steps()
         self._found: _Found | None = None
-        self.progress = Progress(0.0, "Starting")
+        super().__init__()
 
-    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
-        """Work for about so long, but for one step at least; return whether the result is there.
-
-        Raises
-        ------
-        HierMatchError
-            If the engine or a change of the objects ends the match.
-        """
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
         self._objects(view_layer)
-        end = time.perf_counter() + seconds
-        while self._found is None:
-            try:
-                self.progress = next(self._steps)
-            except StopIteration as stop:
-                self._found = stop.value
-            if time.perf_counter() >= end:
-                break
-        return self._found is not None
 
-    def _find_steps(self) -> Steps[_Found]:
+    def _all_steps(self) -> Steps[None]:
         """Match, and make the dense maps of the mirrored answer if that is to be written."""
         options, (source, target) = self._options, self._meshes
         both = options.use_mirrored and options.settings.dense
@@ -214,9 +198,10 @@ class MatchJob:
         result = yield from within(steps, 0.0, 0.7 if both else 1.0)
         mirrored = result.mirrored
         if not both or mirrored is None:
-            return _Found(result, None)
+            self._found = _Found(result, None)
+            return
         dense = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
-        return _Found(result, (yield from within(dense, 0.7, 1.0)))
+        self._found = _Found(result, (yield from within(dense, 0.7, 1.0)))
 
     @property
     def maps(self) -> StoredMaps | None:
@@ -279,10 +264,6 @@ class MatchJob:
             mirrored=options.use_mirrored and result.mirrored is not None,
             notes=tuple(notes),
         )
-
-    def close(self) -> None:
-        """Drop the work; nothing has been written."""
-        self._steps.close()
 
     def _objects(self, view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
         """Look the objects up again and make sure that they are still what was read."""

@@ -3,19 +3,19 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
-from ..engine import Progress, symmetry_map_steps
+from ..engine import symmetry_map_steps
 from ..engine.progress import within
 from .access import mesh_of, view_layer_of
 from .errors import ObjectError
 from .landmarks import add_landmarks, find_landmarks, landmark_array
 from .mesh_io import position_digest, read_mesh, topology
 from .pair import check_pair
+from .stepped_job import SteppedJob
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,7 +30,7 @@ _MIDDLE = 0.02
 """A place that is not farther from its mirror image, in sqrt(area), is called the middle."""
 
 
-class MirrorJob:
+class MirrorJob(SteppedJob):
     """Finds the mirror images of the landmarks of two meshes.
 
     Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
@@ -66,25 +66,7 @@ class MirrorJob:
         self._objects = tuple((obj.session_uid, obj.name, _state(obj)) for obj in (source, target))
         self._meshes = tuple(read_mesh(obj, depsgraph, use_modifiers=False) for obj in (source, target))
         self._images: list[NDArray[np.int64]] = []
-        self._steps = self._all_steps()
-        self._done = False
-        self.progress = Progress(0.0, "Starting")
-
-    def advance(self, _view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
-        """Work for about so long, but for one step at least; return whether everything is computed."""
-        end = time.perf_counter() + seconds
-        while not self._done:
-            try:
-                self.progress = next(self._steps)
-            except StopIteration:
-                self._done = True
-            if time.perf_counter() >= end:
-                break
-        return self._done
-
-    def close(self) -> None:
-        """Drop the work; nothing has been written."""
-        self._steps.close()
+        super().__init__()
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> list[Landmark]:
         """Add the mirror images as landmarks, except for those of landmarks in the middle or that are there already.

@@ -21,6 +21,7 @@ from .halves import Half
 from .landmarks import find_landmarks, landmark_array
 from .mesh_io import read_mesh
 from .pair import check_pair
+from .stepped_job import SteppedJob
 from .stored_match import CornerPoints, Quality, StoredMatch
 from .vertex_maps import StoredMaps, map_name
 from .writing import kept
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["RefineJob"]
 
 
-class RefineJob:
+class RefineJob(SteppedJob):
     """Refines the match that two meshes carry around their landmarks.
 
     Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
@@ -103,27 +104,9 @@ class RefineJob:
         at, to = self._landmarks.T
         apart = np.linalg.norm(self._meshes[1].vertices[to] - self._map.positions[at], axis=1)
         self.moved = float(apart.max() / np.sqrt(self._meshes[1].area))
-        self._steps = self._all_steps()
-        self._done = False
         self._dense: DenseMatch | None = None
-        self.progress = Progress(0.0, "Starting")
         self.seconds = 0.0
-
-    def advance(self, _view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
-        """Work for about so long, but for one step at least; return whether everything is computed."""
-        end = time.perf_counter() + seconds
-        while not self._done:
-            try:
-                self.progress = next(self._steps)
-            except StopIteration:
-                self._done = True
-            if time.perf_counter() >= end:
-                break
-        return self._done
-
-    def close(self) -> None:
-        """Drop the work; nothing has been written."""
-        self._steps.close()
+        super().__init__()
 
     def finish(self, context: bpy.types.Context) -> StoredMatch:
         """Write the better match on both objects in place of the one before, and return what is kept of it.

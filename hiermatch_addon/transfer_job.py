@@ -18,6 +18,7 @@ from .halves import find_common
 from .job import MatchJob
 from .mesh_io import position_digest, read_mesh, topology
 from .pair import check_object, check_pair
+from .stepped_job import SteppedJob
 from .stored_map import find_maps, keep_refined
 from .transfer import Passage, TransferReport
 from .vertex_maps import MapPair, StoredMaps
@@ -144,7 +145,7 @@ def _state(obj: bpy.types.Object) -> tuple[str, str]:
     return topology(mesh_of(obj)), position_digest(mesh_of(obj))
 
 
-class TransferJob:
+class TransferJob(SteppedJob):
     """Carries things from one source to several targets.
 
     Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
@@ -199,33 +200,11 @@ class TransferJob:
         wanted = any(transfer.uses_rig for leg in self._legs for transfer in leg.transfers)
         self._rig: SourceRig | None = read_rig(source) if wanted else None
         self._view_layer = view_layer
-        self._steps = self._all_steps()
-        self._done = False
-        self.progress = Progress(0.0, "Starting")
-
-    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
-        """Work for about so long, but for one step at least; return whether everything is computed.
-
-        Raises
-        ------
-        HierMatchError
-            If the engine or a change of the objects ends the work.
-        """
-        self._objects(view_layer)
-        self._view_layer = view_layer
-        end = time.perf_counter() + seconds
-        while not self._done:
-            try:
-                self.progress = next(self._steps)
-            except StopIteration:
-                self._done = True
-            if time.perf_counter() >= end:
-                break
-        return self._done
+        super().__init__()
 
     def close(self) -> None:
-        """Drop the work."""
-        self._steps.close()
+        """Drop the work, and the matches that are being made."""
+        super().close()
         for leg in self._legs:
             if leg.match is not None:
                 leg.match.close()
@@ -267,6 +246,10 @@ class TransferJob:
         if leg.better is not None:
             keep_refined(context, source, target, leg.prefix, leg.better)
         return outcome
+
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+        self._objects(view_layer)
+        self._view_layer = view_layer
 
     def _all_steps(self) -> Steps[None]:
         """Go all ways, one after another."""

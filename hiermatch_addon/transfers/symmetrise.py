@@ -30,6 +30,7 @@ from ..shape_key_io import (
     shape_key_names,
 )
 from ..side_names import flipped_name, partners, side_of
+from ..stepped_job import SteppedJob
 from ..transfer import TransferReport
 from ..written_names import written_names
 from .wrap import wrap_key_name
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 __all__ = ["SymmetriseJob"]
 
 
-class SymmetriseJob:
+class SymmetriseJob(SteppedJob):
     """Makes one mesh symmetric; a `Job`.
 
     Parameters
@@ -87,27 +88,8 @@ class SymmetriseJob:
             )
         self._mesh = read_mesh(obj, context.evaluated_depsgraph_get(), use_modifiers=False)
         self._hints = _hints(obj) * (1.0 if settings.side == "LEFT" else -1.0)
-        self._steps = self._all_steps()
-        self._done = False
-        self.progress = Progress(0.0, "Starting")
         self.seconds = 0.0
-
-    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
-        """Work for about so long, but for one step at least; return whether everything is computed."""
-        self._object(view_layer)
-        end = time.perf_counter() + seconds
-        while not self._done:
-            try:
-                self.progress = next(self._steps)
-            except StopIteration:
-                self._done = True
-            if time.perf_counter() >= end:
-                break
-        return self._done
-
-    def close(self) -> None:
-        """Drop the work."""
-        self._steps.close()
+        super().__init__()
 
     def finish(self, context: bpy.types.Context) -> TransferReport:
         """Write everything.
@@ -123,6 +105,9 @@ class SymmetriseJob:
         done = [part.write(obj) for part in self._parts if part.names]
         self.seconds = time.perf_counter() - self._start
         return TransferReport(", ".join(done))
+
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+        self._object(view_layer)
 
     def _all_steps(self) -> Steps[None]:
         """Find the mirror images, and compute what is to be written."""
