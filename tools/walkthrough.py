@@ -14,7 +14,7 @@ an error.  Writes into FOLDER
     03-cancelled.png     after Esc: nothing was written
     04-matched.png       matched, after all
     05-flipped.png       the mirrored answer
-    06-landmark.png      the first answer again, with a landmark
+    06-landmark.png      the first answer again, with a landmark; the matched points are drawn
     07-refined.png       refined around it
     08-undone.png        undone, twice
     09-reopened.png      saved, and opened again
@@ -44,6 +44,9 @@ if TYPE_CHECKING:
 
 _PAUSE = 1.0
 """Seconds between two steps: enough for a window to be drawn, in software too."""
+
+_SOON = 0.02
+"""Seconds between two looks at something that is waited for."""
 
 _PATIENCE = 240.0
 """Seconds after which a step that still runs has failed."""
@@ -90,7 +93,7 @@ def until(condition: Callable[[], bool], what: str) -> Any:  # noqa: ANN401 - a 
     end = time.monotonic() + _PATIENCE
     while not condition():
         check(time.monotonic() < end, f"{what} takes too long")
-        yield
+        yield _SOON
     yield
 
 
@@ -147,8 +150,12 @@ def steer(look: Callable[[str], None]) -> Any:  # noqa: ANN401 - a generator of 
     tips = [min(obj.data.vertices, key=lambda v: v.co.y).index for obj in (state().source, state().target)]
     nose = nearest_on_target(tips[0])
     press(bpy.ops.hiermatch.add_landmark, source_vertex=tips[0], target_vertex=nose)
+    steering = bpy.context.scene.hiermatch_steering
+    check(len(steering.landmarks) == 1, "The landmark is not in the list")
+    steering.show_overlay = True
     yield
     look("06-landmark")
+    steering.show_overlay = False
     press(bpy.ops.hiermatch.refine)
     yield from until(lambda: not running(), "Refining")
     look("07-refined")
@@ -207,14 +214,14 @@ def main(arguments: list[str]) -> None:
 
     def advance() -> float | None:
         try:
-            next(steps)
+            pause = next(steps)
         except StopIteration:
             bpy.ops.wm.quit_blender()
             return None
         except Exception:  # noqa: BLE001 - whatever it is, nobody sits before this window
             traceback.print_exc()
             sys.exit(1)
-        return _PAUSE
+        return _PAUSE if pause is None else pause
 
     bpy.app.timers.register(advance, first_interval=_PAUSE, persistent=True)
 
