@@ -54,8 +54,8 @@ class Stage:
         Over what distance the rotations are averaged, in sqrt(area).
     matched : str
         What points are matched with in each round: "vertices", the most similar one; the triangles "around" it; or
-        points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place.  At the
-        end of the registration, the next better is used.
+        points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place, unless
+        it has few vertices: then "anywhere" is meant always.  At the end of the registration, the next better is used.
     lead : float
         By what part of its way each round goes on in the same direction.  Closest points hold the surface where it is,
         so it would only creep to where it is less distorted.
@@ -110,6 +110,13 @@ class Registration:
     misfit: float
 
 
+_MATCHED = ("vertices", "around", "anywhere")
+
+_COARSE = 2000
+"""Below so many vertices, those of a surface are too far apart for it to slide from one to the next; and any search is
+fast."""
+
+
 class _Matcher:
     """Finds for each point of one surface the point of the other that is most like it, and the other way round."""
 
@@ -131,7 +138,8 @@ class _Matcher:
     def matches(self, source: ClosestPoints, *, last: bool = False) -> tuple[FoundPoints, FoundPoints]:
         """Match every vertex of either surface, by the features of the deformed source."""
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
-        find = searches[min(("vertices", "around", "anywhere").index(self.stage.matched) + last, 2)]
+        coarse = min(len(self.source.vertices), len(self.target.vertices)) < _COARSE
+        find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
         return find(self.target_search, source.vertices), find(source, self.target_features)
 
 
