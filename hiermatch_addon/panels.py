@@ -9,7 +9,8 @@ import bpy
 
 from .access import layout_of, progress_of, state_of, window_manager_of
 from .pair import selected_meshes
-from .panel_text import draw_text
+from .panel_text import draw_text, translated
+from .preset_menu import HIERMATCH_PT_presets
 from .properties import copy_options
 from .running import is_running
 from .setting_groups import APART, shown_groups
@@ -22,6 +23,9 @@ __all__ = ["HIERMATCH_PT_match"]
 
 _NAME_WIDTH = 3.0
 """Width of the names at the top, narrower than a property split makes them: what they stand before is long."""
+
+_WIDE_LETTER = 0.8
+"""Width that such a name needs for each letter, if it is Japanese or Chinese."""
 
 _LABEL_SHARE = 0.4
 """Part of the width for the names in the summary, as in a property split."""
@@ -38,6 +42,10 @@ class HIERMATCH_PT_match(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "HierMatch"
+
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        """Draw the button of the presets."""
+        HIERMATCH_PT_presets.draw_panel_header(layout_of(self))
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the panel from top to bottom in the order of work."""
@@ -60,13 +68,16 @@ class HIERMATCH_PT_match(bpy.types.Panel):
         column = layout.column()
         column.operator("hiermatch.clear", icon="TRASH")
         column.operator("hiermatch.add_demo_pair", icon="ADD")
+        row = column.row(align=True)
+        row.operator("hiermatch.export_match", icon="EXPORT")
+        row.operator("hiermatch.import_match", icon="IMPORT")
 
 
 def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_scene) -> None:
     """Draw the pickers, and say what an empty one stands for."""
     row = layout.row(align=True)
     names, pickers, swap = row.column(), row.column(), row.column()
-    names.ui_units_x = _NAME_WIDTH
+    names.ui_units_x = _name_width()
     for name in ("source", "target"):
         names.label(text=name.title())
         pickers.prop(state, name, text="")
@@ -79,11 +90,17 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
             draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
 
 
+def _name_width() -> float:
+    """Return the width of the names at the top."""
+    name = translated("Target")
+    return _NAME_WIDTH if name.isascii() else max(_NAME_WIDTH, _WIDE_LETTER * len(name))
+
+
 def _draw_setup(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw the menu of setups, with the one that the settings make."""
     row = layout.row(align=True)
     name = row.column()
-    name.ui_units_x = _NAME_WIDTH
+    name.ui_units_x = _name_width()
     name.label(text="Setup")
     row.operator_menu_enum("hiermatch.use_setup", "setup", text=current_setup(state) or "Custom")
 
@@ -146,7 +163,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
     box = layout.box().column()
     if summary.stale:
         draw_text(box, context, summary.stale, "ERROR")
-    box.label(text=f"{summary.points} points matched", icon="CHECKMARK")
+    box.label(text=translated("{count} points matched").format(count=summary.points), icon="CHECKMARK")
     if summary.verdict:
         draw_text(box, context, summary.verdict, "INFO")
     rows = (
@@ -155,9 +172,9 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         ("Confidence", f"{summary.confidence:.0%}" if summary.verdict else ""),
         ("Distortion", f"{summary.distortion:.4g}"),
         ("Worst Point", f"{summary.worst_distortion:.3f}"),
-        ("Coarse Match", "optimum proven" if summary.proven else f"within {summary.gap:.0%} of the optimum"),
+        ("Coarse Match", _coarse_text(summary)),
         ("Left and Right", _orientation_text(summary)),
-        ("Mirrored Match", "" if summary.has_mirrored else "none"),
+        ("Mirrored Match", "" if summary.has_mirrored else translated("none")),
         ("Time", f"{summary.seconds:.1f} s" if summary.seconds else ""),
     )
     for name, text in rows:
@@ -175,10 +192,17 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         box.prop(shading, "color_type", text="Viewport Color")
 
 
+def _coarse_text(summary: HIERMATCH_PG_summary) -> str:
+    """Say how good the coarse match is."""
+    if summary.proven:
+        return translated("optimum proven")
+    return translated("within {gap} of the optimum").format(gap=f"{summary.gap:.0%}")
+
+
 def _orientation_text(summary: HIERMATCH_PG_summary) -> str:
     """Say whether the match keeps left and right."""
     if abs(summary.orientation) < _CLEAR_ORIENTATION:
-        verdict = "unclear"
+        verdict = translated("unclear")
     else:
-        verdict = "kept" if summary.orientation > 0 else "exchanged"
+        verdict = translated("kept") if summary.orientation > 0 else translated("exchanged")
     return f"{verdict} ({summary.orientation:+.2f})"

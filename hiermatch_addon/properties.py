@@ -12,6 +12,7 @@ import bpy
 from ..engine import MatchSettings
 from .excluded_regions import region_names
 from .steering_lists import sync_lists
+from .translations import CONTEXT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -48,6 +49,7 @@ def _setting_property(setting: Any) -> Any:  # noqa: ANN401 - a dataclass field 
             description=about["description"],
             default=to_identifier(setting.default),
             items=[(to_identifier(word), *described) for word, described in about["choices"].items()],
+            translation_context=CONTEXT,
         )
     if isinstance(setting.default, bool):
         return _props.BoolProperty(name=about["label"], description=about["description"], default=setting.default)

@@ -45,6 +45,7 @@ from .operators.use_setup import HIERMATCH_OT_use_setup
 from .operators.wrap import HIERMATCH_OT_wrap
 from .overlay import start_overlay, stop_overlay
 from .panels import HIERMATCH_PT_match
+from .preset_menu import HIERMATCH_OT_add_preset, HIERMATCH_PT_presets, register_presets, unregister_presets
 from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 from .retarget_panels import HIERMATCH_PT_retarget, HIERMATCH_PT_symmetry
 from .retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
@@ -56,6 +57,7 @@ from .steering_panels import (
     HIERMATCH_UL_pairs,
 )
 from .steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
+from .translations import register_translations, unregister_translations
 
 __all__ = ["CLASSES", "register", "unregister"]
 
@@ -102,6 +104,8 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_symmetrise,
     HIERMATCH_UL_landmarks,
     HIERMATCH_UL_pairs,
+    HIERMATCH_OT_add_preset,
+    HIERMATCH_PT_presets,
     HIERMATCH_PT_match,
     HIERMATCH_PT_landmarks,
     HIERMATCH_PT_pairs,
@@ -122,11 +126,13 @@ _ATTACHMENTS: Final[tuple[tuple[type[Any], str, type[Any]], ...]] = (
 
 def register() -> None:
     """Register all classes and attach the property groups to their owners."""
+    register_translations()
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties: Any = bpy.props
     for owner, name, group in _ATTACHMENTS:
         setattr(owner, name, properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group))
+    register_presets()
     start_watching()
     register_command()
     start_overlay()
@@ -137,7 +143,9 @@ def unregister() -> None:
     stop_overlay()
     unregister_command()
     stop_watching()
+    unregister_presets()
     for owner, name, _ in reversed(_ATTACHMENTS):
         delattr(owner, name)
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+    unregister_translations()

@@ -140,7 +140,14 @@ def test_the_setup_is_named(context):
 
 def test_all_buttons_are_there(context):
     operators = [entry[1] for entry in draw(context) if entry[0] == "operator"]
-    assert operators == ["hiermatch.swap", "hiermatch.match", "hiermatch.clear", "hiermatch.add_demo_pair"]
+    assert operators == [
+        "hiermatch.swap",
+        "hiermatch.match",
+        "hiermatch.clear",
+        "hiermatch.add_demo_pair",
+        "hiermatch.export_match",
+        "hiermatch.import_match",
+    ]
 
 
 def test_the_button_carries_the_options_of_the_scene(context, monkeypatch):

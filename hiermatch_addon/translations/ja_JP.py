@@ -1,0 +1,1125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# ruff: noqa: N999 - this is how Blender calls the language
+"""What the interface says, in Japanese: the English as it stands in the code, and its translation."""
+
+from __future__ import annotations
+
+from typing import Final
+
+__all__ = ["MESSAGES"]
+
+MESSAGES: Final[dict[str, str]] = {
+    "Points": "ポイント",
+    "How many points were matched": "マッチングしたポイントの数",
+    "Source": "ソース",
+    "Name of the source object": "ソースオブジェクトの名前",
+    "Target": "ターゲット",
+    "Name of the target object": "ターゲットオブジェクトの名前",
+    "Distortion": "歪み",
+    "Distortion of the whole match": "マッチング全体の歪み",
+    "Worst Point": "最悪のポイント",
+    "Largest distortion of a matched point, in units of the square root of the surface area": (
+        "対応点の最大の歪み。表面積の平方根を単位とします"
+    ),
+    "Optimum Proven": "最適性の証明",
+    "Whether no coarse match has less distortion": "これより歪みの小さい粗いマッチングが存在しないかどうか",
+    "Gap": "ギャップ",
+    "By how much, at most, the coarse match can be worse than the best one": (
+        "粗いマッチングが最良のものより最大でどれだけ劣りうるか"
+    ),
+    "Orientation": "向き",
+    "From 1, left stays left, to -1, the match mirrors the shape": (
+        "1では左が左のまま、-1ではマッチングが形状を左右反転します"
+    ),
+    "Has Mirrored": "ミラー解あり",
+    "Whether there is a second answer with left and right exchanged": "左右を入れ替えた第二の解があるかどうか",
+    "Mirrored": "ミラー済み",
+    "Whether the second answer is the one that is written on the meshes": (
+        "メッシュに書き込まれているのが第二の解かどうか"
+    ),
+    "Verdict": "判定",
+    "How far the dense map can be trusted, in a sentence; empty if there is none": (
+        "密なマップをどこまで信頼できるかを一文で示します。マップがなければ空です"
+    ),
+    "Confidence": "信頼度",
+    "How far the dense map can be trusted as a whole": "密なマップ全体をどこまで信頼できるか",
+    "Out of Date": "期限切れ",
+    "Why the match is out of date; empty as long as it is not known to be": (
+        "マッチングが古くなった理由。古いと判明していない間は空です"
+    ),
+    "Swapped": "入れ替え済み",
+    "Whether source and target were exchanged since they were matched": (
+        "マッチング後にソースとターゲットが入れ替えられたかどうか"
+    ),
+    "Seconds": "秒",
+    "How long the match took; zero if that is not known": "マッチングにかかった時間。不明な場合は0です",
+    "Notes": "注記",
+    "What should be known about the match, one sentence per line": (
+        "マッチングについて知っておくべきこと。一行に一文です"
+    ),
+    "Prefix": "接頭辞",
+    "What the names of everything that was written start with": "書き込まれたすべてのものの名前の先頭に付く文字列",
+    "Key": "キー",
+    "By what the two meshes are recognised as the pair of this match": (
+        "二つのメッシュがこのマッチングのペアだと識別するためのもの"
+    ),
+    "Mesh whose points are matched; if empty, the active object": (
+        "ポイントをマッチングするメッシュ。空ならアクティブオブジェクト"
+    ),
+    "Mesh on which the corresponding points are sought; if empty, the other selected mesh": (
+        "対応するポイントを探すメッシュ。空なら選択中のもう一つのメッシュ"
+    ),
+    "Summary": "概要",
+    "The last match": "最後のマッチング",
+    "How many points of the source are matched at the finest level": (
+        "最も細かいレベルでマッチングするソースのポイントの数"
+    ),
+    "Coarse Points": "粗いポイント",
+    "How many points are matched exactly, by branch and bound, before all others": (
+        "ほかのすべてより先に、分枝限定法で厳密にマッチングするポイントの数"
+    ),
+    "Coarse Candidates": "粗い候補",
+    "How many points of the target the coarse points may be matched to": (
+        "粗いポイントの相手になりうるターゲットのポイントの数"
+    ),
+    "Solver": "ソルバー",
+    "How the points are matched": "ポイントをマッチングする方法",
+    "Hierarchical": "階層的",
+    "Some points exactly, then more and more, level by level": (
+        "まず一部のポイントを厳密に、それからレベルごとに数を増やします"
+    ),
+    "Flat": "フラット",
+    "All points at once, exactly: for comparison, and for some 30 points at most": (
+        "すべてのポイントを一度に厳密にマッチングします。比較用で、ポイントは30程度までです"
+    ),
+    "Generalized Multidimensional Scaling": "一般化多次元尺度構成法",
+    "From the exact coarse match, points move over the target by their distances alone: for comparison": (
+        "厳密な粗いマッチングから始め、距離だけに従ってポイントをターゲット上で動かします。比較用です"
+    ),
+    "Dense Map": "密なマップ",
+    (
+        "Find the corresponding point for every vertex of both meshes. The matched points then lie where this map "
+        "takes them"
+    ): "両方のメッシュのすべての頂点について対応点を求めます。対応点はこのマップが示す位置に置かれます",
+    "Settle": "落ち着かせる",
+    (
+        "At last let the points leave the samples of the target and come to rest between its vertices "
+        "(hierarchical solver without a dense map)"
+    ): "最後にポイントをターゲットのサンプルから離し、頂点の間に落ち着かせます(階層的ソルバーで密なマップがない場合)",
+    "Metric": "距離",
+    "What distances between points of a surface are kept": "表面上のポイント間のどの距離を保つか",
+    "Geodesic": "ジオデシック",
+    "Length of the shortest path on the surface, by fast marching": "高速マーチング法による、表面上の最短経路の長さ",
+    "Diffusion": "拡散",
+    "How differently heat spreads from two points: less affected by holes and touching parts": (
+        "二点からの熱の広がり方の違い。穴や接触した部分の影響を受けにくくなります"
+    ),
+    "Diffusion Time": "拡散時間",
+    "How long heat spreads for diffusion distances, in units of the surface area; 0 chooses by the shape": (
+        "拡散距離のために熱を広げる時間。表面積を単位とし、0では形状に応じて選びます"
+    ),
+    "Descriptor": "記述子",
+    "By what a point is recognised, beside its distances to the other points": (
+        "ほかのポイントとの距離のほかに、何によってポイントを見分けるか"
+    ),
+    "Distance Histograms": "距離ヒストグラム",
+    "How many places lie how far away, in the chosen metric": "選んだ距離で、どれだけの場所がどれだけ離れているか",
+    "Heat Kernel Signatures": "熱核シグネチャ",
+    "How much heat stays at the point, over time": "時間とともにそのポイントに残る熱の量",
+    "Wave Kernel Signatures": "波動核シグネチャ",
+    "How strongly the point vibrates, over frequency": "周波数ごとにそのポイントがどれだけ強く振動するか",
+    "Laplace-Beltrami Eigenfunctions": "ラプラス・ベルトラミ固有関数",
+    "Values of the lowest vibrations of the surface, with every consistent choice of their signs": (
+        "表面の最も低い振動の値。矛盾のない符号の選び方をすべて考慮します"
+    ),
+    "Comparison": "比較",
+    "How histograms are compared": "ヒストグラムの比較方法",
+    "Earth Mover's Distance": "アースムーバー距離",
+    "How far the mass of one has to be moved to make the other": "一方の質量をどれだけ動かせばもう一方になるか",
+    "Bin to Bin": "ビンごと",
+    "The difference in each bin by itself": "各ビンそれぞれの差",
+    "Constraint": "コンストレイント",
+    "How points and candidates of the coarse step are to correspond": "粗い段階のポイントと候補の対応のさせ方",
+    "Injective": "単射",
+    "Each point gets a candidate of its own; candidates may stay unused": (
+        "各ポイントがそれぞれ別の候補を持ちます。使われない候補があってもかまいません"
+    ),
+    "Bijective": "全単射",
+    "As many candidates as points, and each is used": "候補の数はポイントと同じで、すべて使われます",
+    "Descriptor Weight": "記述子のウェイト",
+    "How much the differences of descriptors count": "記述子の差をどれだけ重視するか",
+    "Distance Weight": "距離のウェイト",
+    "How much the differences of distances between points count": "ポイント間の距離の差をどれだけ重視するか",
+    "Neighbourhood": "近傍",
+    "Among how many of the target samples around its present match each point looks for a better one": (
+        "各ポイントがよりよい相手を探す、現在の相手の周りにあるターゲットのサンプルの数"
+    ),
+    "Samples": "サンプル数",
+    (
+        "How many samples of each surface describe it; the points are matched to the samples of the target. With a "
+        "dense map three quarters as many are taken, and at least twice as many as points"
+    ): (
+        "各表面を表すサンプルの数。ポイントはターゲットのサンプルにマッチングされます。密なマップがあると、その"
+        "四分の三、ただし少なくともポイントの二倍を取ります"
+    ),
+    "Hypotheses": "仮説",
+    (
+        "How many distinct coarse matchings are followed up before the best is chosen. Nearly symmetric shapes "
+        "have several that are almost equally good"
+    ): (
+        "最良のものを選ぶまでに追跡する、異なる粗いマッチングの数。ほぼ対称な形状には、ほとんど同じくらいよいも"
+        "のが複数あります"
+    ),
+    "Histogram Bins": "ヒストグラムのビン",
+    "Number of bins of the distance histograms that describe a point": "ポイントを記述する距離ヒストグラムのビンの数",
+    "Eigenfunctions": "固有関数",
+    "How many of the lowest eigenfunctions describe a point": "ポイントの記述に使う最も低い固有関数の数",
+    "Eigenpairs": "固有対",
+    "How many eigenpairs of the Laplace-Beltrami operator make up diffusion distances and kernel signatures": (
+        "拡散距離と核シグネチャを構成する、ラプラス・ベルトラミ作用素の固有対の数"
+    ),
+    "Search Limit": "探索の上限",
+    "After how many nodes the exact search stops with the best matching so far and a bound on the optimum": (
+        "厳密な探索がこの数のノードの後に停止し、それまでの最良のマッチングと最適値の限界を返します"
+    ),
+    "Use Modifiers": "モディファイアー",
+    (
+        "Match the meshes as their shape keys and modifiers show them. Possible unless a modifier adds or removes "
+        "vertices"
+    ): (
+        "シェイプキーとモディファイアーが示す形でメッシュをマッチングします。頂点を増減するモディファイアーがな"
+        "ければ可能です"
+    ),
+    "Mirrored Match": "ミラーマッチング",
+    "For a symmetric shape, let the match write the second answer, in which left and right are exchanged": (
+        "対称な形状について、左右を入れ替えた第二の解を書き込みます"
+    ),
+    "Use Landmarks": "ランドマークを使用",
+    "Keep to the landmarks that the two meshes have in common and that are switched on": (
+        "二つのメッシュに共通し、オンになっているランドマークを守ります"
+    ),
+    "Leave Out of Source": "ソースから除外",
+    (
+        "Vertex group, boolean attribute or material of the source whose vertices are not matched. In the dense "
+        "map they follow what is around them"
+    ): "頂点をマッチングしない、ソースの頂点グループ、ブール属性、またはマテリアル。密なマップでは周囲に従います",
+    "Leave Out of Target": "ターゲットから除外",
+    (
+        "Vertex group, boolean attribute or material of the target whose vertices are not matched. In the dense "
+        "map they follow what is around them"
+    ): "頂点をマッチングしない、ターゲットの頂点グループ、ブール属性、またはマテリアル。密なマップでは周囲に従います",
+    "What the names of everything that is written start with. Another prefix keeps the results of other matches": (
+        "書き込むすべてのものの名前の先頭に付く文字列。接頭辞を変えると、ほかのマッチングの結果が残ります"
+    ),
+    "Vertex Groups": "頂点グループ",
+    "Write a vertex group for each matched point; groups of the same name are the same point": (
+        "対応点ごとに頂点グループを書き込みます。同じ名前のグループが同じポイントです"
+    ),
+    "Match Colors": "マッチングカラー",
+    "Write a color attribute that gives corresponding places of both meshes the same color": (
+        "両方のメッシュの対応する場所に同じ色を与えるカラー属性を書き込みます"
+    ),
+    (
+        "Write how much lengths differ around each place, as a color attribute from dark blue (none) to yellow "
+        "(twice or half as long), and as an attribute of numbers. Without a dense map: how much the distances to "
+        "the matched points differ, yellow being the most"
+    ): (
+        "各場所の周りで長さがどれだけ異なるかを、暗い青(差なし)から黄(二倍または半分)までのカラー属性と数値の属"
+        "性として書き込みます。密なマップがなければ、対応点までの距離の差を示し、黄が最大です"
+    ),
+    (
+        "Write how far the dense map can be trusted at each place, as a color attribute from dark red (not at all) "
+        "to white (fully)"
+    ): "各場所で密なマップをどこまで信頼できるかを、暗い赤(まったく)から白(完全に)までのカラー属性として書き込みます",
+    "Fraction": "割合",
+    "Part of the match that is done": "マッチングの完了した割合",
+    "Label": "ラベル",
+    "What is being done": "実行中の作業",
+    "Cancel": "キャンセル",
+    "Whether the running match is to end": "実行中のマッチングを終了するかどうか",
+    "Match": "マッチング",
+    (
+        "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
+        "colors"
+    ): "ポーズを問わず二つのメッシュの対応点を求め、両方に頂点グループと色として書き込みます",
+    "Name of the object whose points are matched; if empty, the one picked in the panel or else the active object": (
+        "ポイントをマッチングするオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
+    ),
+    (
+        "Name of the object on which the corresponding points are sought; if empty, the one picked in the panel or "
+        "else the other selected mesh"
+    ): "対応点を探すオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ",
+    "End the running match or transfer without writing anything": (
+        "何も書き込まずに、実行中のマッチングや転送を終了します"
+    ),
+    "Use Setup": "設定例を使用",
+    "Set metric and descriptor as in one of the setups that the paper compares": (
+        "論文が比較する設定例の一つと同じ距離と記述子を設定します"
+    ),
+    "Setup": "設定例",
+    "Which of the paper's setups to use": "論文のどの設定例を使うか",
+    "Geodesic Histograms": "ジオデシックヒストグラム",
+    "Set Metric to Geodesic, Descriptor to Distance Histograms, as in figure 2 (a) of the paper": (
+        "論文の図2(a)のように、「距離」を「ジオデシック」、「記述子」を「距離ヒストグラム」にします"
+    ),
+    "Diffusion Histograms": "拡散ヒストグラム",
+    "Set Metric to Diffusion, Descriptor to Distance Histograms, as in figure 2 (b) of the paper": (
+        "論文の図2(b)のように、「距離」を「拡散」、「記述子」を「距離ヒストグラム」にします"
+    ),
+    "Set Metric to Diffusion, Descriptor to Heat Kernel Signatures, as in figure 2 (c) of the paper": (
+        "論文の図2(c)のように、「距離」を「拡散」、「記述子」を「熱核シグネチャ」にします"
+    ),
+    "Set Metric to Geodesic, Descriptor to Laplace-Beltrami Eigenfunctions, as in figure 2 (d) of the paper": (
+        "論文の図2(d)のように、「距離」を「ジオデシック」、「記述子」を「ラプラス・ベルトラミ固有関数」にします"
+    ),
+    "Use Mirrored Match": "ミラーマッチングを使用",
+    (
+        "Write the other of the two answers of the match, in which left and right are exchanged, without matching "
+        "again. Once more brings the first answer back"
+    ): (
+        "マッチングの二つの解のうち、左右を入れ替えたもう一方を、再マッチングせずに書き込みます。もう一度実行す"
+        "ると最初の解に戻ります"
+    ),
+    "Object": "オブジェクト",
+    (
+        "Name of one of the two matched objects; if empty, the match that the panel shows is meant, or else that "
+        "of the active object"
+    ): (
+        "マッチングした二つのオブジェクトの一方の名前。空ならパネルに表示中のマッチング、なければアクティブオブ"
+        "ジェクトのもの"
+    ),
+    (
+        "What the names that the match wrote start with; needed only for a named or active object that carries "
+        "several matches"
+    ): (
+        "マッチングが書き込んだ名前の先頭。名前で指定した、またはアクティブなオブジェクトが複数のマッチングを持"
+        "つ場合にだけ必要です"
+    ),
+    "Swap Source and Target": "ソースとターゲットを入れ替え",
+    "Exchange Source and Target; the match that the two carry, with its dense map, then serves the other way round": (
+        "ソースとターゲットを入れ替えます。両者が持つマッチングは、密なマップも含めて逆向きに使われます"
+    ),
+    "Clear": "クリア",
+    "Remove what HierMatch has written on Source, Target and the selected meshes, and nothing else": (
+        "HierMatchがソース、ターゲット、選択中のメッシュに書き込んだものだけを削除します"
+    ),
+    "Name of the object to clear; if empty, the picked Source and Target and all selected meshes": (
+        "クリアするオブジェクトの名前。空なら選んだソースとターゲット、および選択中のすべてのメッシュ"
+    ),
+    "Remove only what was written with this prefix; if empty, everything": (
+        "この接頭辞で書き込まれたものだけを削除します。空ならすべて"
+    ),
+    "Export Match": "対応を書き出し",
+    (
+        "Write the match that two meshes carry into a file, with its dense maps, for other programs or to import "
+        "it again"
+    ): (
+        "二つのメッシュが持つマッチングを密なマップとともにファイルに書き出し、ほかのプログラムや再インポートで"
+        "使えるようにします"
+    ),
+    "Filter": "フィルター",
+    "Which files the browser lists": "ファイルブラウザーに表示するファイル",
+    "Name of one of the two objects; if empty, the one picked in the panel or else the active object": (
+        "二つのオブジェクトの一方の名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
+    ),
+    "Name of the other object; if empty, the one picked in the panel or else the other selected mesh": (
+        "もう一方のオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ"
+    ),
+    "What the names start with that the match wrote; if empty, the one match that the objects carry": (
+        "マッチングが書き込んだ名前の先頭。空なら両オブジェクトが持つ唯一のマッチング"
+    ),
+    "Import Match": "対応を読み込み",
+    (
+        "Write a match that was exported to a file on two meshes with the same vertices and faces, in whatever "
+        "pose, as if they had just been matched"
+    ): (
+        "ファイルにエクスポートしたマッチングを、ポーズを問わず、頂点と面が同じ二つのメッシュに、マッチング直後"
+        "のように書き込みます"
+    ),
+    "Name of the object to be the source; if empty, the one picked in the panel or else the active object": (
+        "ソースにするオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
+    ),
+    "Name of the object to be the target; if empty, the one picked in the panel or else the other selected mesh": (
+        "ターゲットにするオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ"
+    ),
+    "What the names of everything that is written start with": "書き込むすべてのものの名前の先頭に付く文字列",
+    "Add Demo Pair": "デモ用ペアを追加",
+    "Add the same cat twice, in two poses and with two different meshes, to try the matching on": (
+        "マッチングを試すために、同じ猫を二つのポーズ、二つの異なるメッシュで追加します"
+    ),
+    "Source Vertices": "ソースの頂点数",
+    "About how many vertices the standing cat gets; its faces are mostly quads": (
+        "立っている猫のおおよその頂点数。面はほとんどが四角形です"
+    ),
+    "Target Vertices": "ターゲットの頂点数",
+    "About how many vertices the walking cat gets; its faces are triangles": (
+        "歩いている猫のおおよその頂点数。面は三角形です"
+    ),
+    "Rigged": "リグ付き",
+    "Give the standing cat an armature, weights, shape keys and a UV map, to try Retarget on": (
+        "リターゲットを試すために、立っている猫にアーマチュア、ウェイト、シェイプキー、UVマップを付けます"
+    ),
+    "Number": "番号",
+    "By which the landmark is known on both meshes": "両方のメッシュでランドマークを識別する番号",
+    "Source Vertex": "ソースの頂点",
+    "Vertex of the source": "ソースの頂点",
+    "Target Vertex": "ターゲットの頂点",
+    "Vertex of the target that corresponds to it": "それに対応するターゲットの頂点",
+    "Use": "使用",
+    "Whether a match keeps to the landmark": "マッチングがこのランドマークを守るかどうか",
+    "Which of the matched points it is, from 1": "何番目の対応点か。1から数えます",
+    "Vertex of the source that is nearest to the point": "ポイントに最も近いソースの頂点",
+    "Vertex of the target that is nearest to the point": "ポイントに最も近いターゲットの頂点",
+    "Source Corners": "ソースの角",
+    "Vertices around the point": "ポイントの周りの頂点",
+    "Source Weights": "ソースのウェイト",
+    "Where it is between them": "それらの間での位置",
+    "Target Corners": "ターゲットの角",
+    "Vertices around the corresponding point": "対応するポイントの周りの頂点",
+    "Target Weights": "ターゲットのウェイト",
+    (
+        "How much the distances from this point to the others differ between the two meshes, in units of the "
+        "square root of the surface area"
+    ): "このポイントからほかのポイントまでの距離が二つのメッシュの間でどれだけ異なるか。表面積の平方根を単位とします",
+    "Locked": "ロック",
+    "Whether the point is a landmark, too": "このポイントがランドマークでもあるかどうか",
+    "Landmarks": "ランドマーク",
+    "Landmarks that source and target have in common": "ソースとターゲットに共通するランドマーク",
+    "Landmark": "ランドマーク",
+    "The row of the list of landmarks that is active": "ランドマークのリストでアクティブな行",
+    "Matched Points": "対応点",
+    "The matched points, the worst first": "対応点。悪いものから順に並びます",
+    "Matched Point": "対応点",
+    "The row of the list of matched points that is active": "対応点のリストでアクティブな行",
+    "Before": "以前",
+    "What was shown before, as a JSON text; empty if nothing": (
+        "以前に表示されていたもの。JSONテキストで、なければ空です"
+    ),
+    "Revision": "リビジョン",
+    "Grows with each change of a list": "リストが変わるたびに増えます",
+    "Show in Viewport": "ビューポートに表示",
+    "Draw matched points and landmarks on both meshes in the 3D viewports": (
+        "3Dビューポートで両方のメッシュに対応点とランドマークを描画します"
+    ),
+    "Draw the matched points, from blue to yellow by distortion": "対応点を歪みに応じて青から黄の色で描画します",
+    "Lines": "ライン",
+    "Draw a line between the two places of each point": "各ポイントの二つの位置の間に線を描画します",
+    "Numbers": "番号",
+    "Write the numbers of landmarks and of the worst points beside them": (
+        "ランドマークと最も悪いポイントのそばに番号を表示します"
+    ),
+    "Add Landmark": "ランドマークを追加",
+    (
+        "Name two corresponding places, to which matches will keep: in Edit Mode the vertices selected on the two "
+        "meshes, one on each; in Object Mode the vertices nearest to two selected empties, or those that you click "
+        "on"
+    ): (
+        "マッチングが守る二つの対応する場所を指定します。編集モードでは二つのメッシュで一つずつ選択した頂点、オ"
+        "ブジェクトモードでは選択した二つのエンプティに最も近い頂点、またはクリックした頂点です"
+    ),
+    "Vertex of the source; if negative, the selected one": "ソースの頂点。負なら選択中の頂点",
+    "Vertex of the target; if negative, the selected one": "ターゲットの頂点。負なら選択中の頂点",
+    "Name of the object that is the source; if empty, the one picked in the panel or else the active object": (
+        "ソースであるオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
+    ),
+    "Name of the object that is the target; if empty, the one picked in the panel or else the other selected mesh": (
+        "ターゲットであるオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ"
+    ),
+    "Pick Landmarks": "ランドマークを指定",
+    (
+        "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
+        "ends it"
+    ): (
+        "一方のメッシュの場所をクリックし、次にもう一方の対応する場所をクリックして、ペアごとに指定します。Ente"
+        "rまたはEscで終了します"
+    ),
+    "Remove Landmark": "ランドマークを削除",
+    "Remove a landmark from both meshes": "両方のメッシュからランドマークを削除します",
+    "Which landmark; if zero, the one that is active in the list": (
+        "どのランドマークか。0ならリストでアクティブなもの"
+    ),
+    "Switch Landmark": "ランドマークを切り替え",
+    "Switch a landmark on or off; matches keep to those that are on": (
+        "ランドマークをオンまたはオフにします。マッチングはオンのものを守ります"
+    ),
+    "Whether matches are to keep to it": "マッチングがこれを守るかどうか",
+    "Select Landmark": "ランドマークを選択",
+    "Select the two vertices of a landmark, and nothing else of the two meshes": (
+        "二つのメッシュで、ランドマークの二つの頂点だけを選択します"
+    ),
+    "Clear Landmarks": "ランドマークをクリア",
+    "Remove all landmarks that source and target have in common": (
+        "ソースとターゲットに共通するすべてのランドマークを削除します"
+    ),
+    "Mirror Landmarks": "ランドマークをミラー",
+    (
+        "Add a landmark on the other side for each that is on one side, by the symmetry of each mesh; the meshes "
+        "may be in any pose"
+    ): (
+        "片側にある各ランドマークについて、各メッシュの対称性に従って反対側にも追加します。メッシュのポーズは問いません"
+    ),
+    "Save Landmarks": "ランドマークを保存",
+    "Save the landmarks that source and target have in common to a file": (
+        "ソースとターゲットに共通するランドマークをファイルに保存します"
+    ),
+    "Warn before a file is overwritten": "ファイルを上書きする前に警告します",
+    "File": "ファイル",
+    "Path of the file of landmarks, a JSON text": "ランドマークのファイルのパス。JSONテキストです",
+    "Which files are listed": "表示するファイル",
+    "Load Landmarks": "ランドマークを読み込み",
+    "Load landmarks of source and target from a file": "ソースとターゲットのランドマークをファイルから読み込みます",
+    "Replace": "置き換え",
+    "Remove the landmarks that the two meshes have in common before those of the file are added": (
+        "ファイルのランドマークを追加する前に、二つのメッシュに共通するランドマークを削除します"
+    ),
+    "Select Matched Point": "対応点を選択",
+    "Select the vertices nearest to a matched point, and nothing else of the two meshes": (
+        "二つのメッシュで、対応点に最も近い頂点だけを選択します"
+    ),
+    "Which matched point; if zero, the one that is active in the list": "どの対応点か。0ならリストでアクティブなもの",
+    "Lock Matched Point": "対応点をロック",
+    (
+        "Make a landmark of a matched point that is right, so that it stays where it is when the match is refined "
+        "or made anew; once more lets it go"
+    ): "正しい対応点をランドマークにして、改良や再マッチングでも動かないようにします。もう一度実行すると解除します",
+    "Remove Matched Point": "対応点を削除",
+    "Remove the vertex groups of a matched point from both meshes; the dense map stays as it is": (
+        "両方のメッシュから対応点の頂点グループを削除します。密なマップはそのままです"
+    ),
+    "Refine": "改良",
+    (
+        "Make the match better around landmarks and locked points, in a fraction of the time of a match. What is "
+        "wrong altogether, such as a leg on another leg, has to be matched again"
+    ): (
+        "ランドマークとロックしたポイントの周りのマッチングを、マッチングのごく一部の時間で改良します。脚が別の"
+        "脚に対応しているなど、全体として誤ったものは再マッチングが必要です"
+    ),
+    "Show": "表示",
+    "Show the match in colors in this viewport, or show the meshes as before": (
+        "このビューポートでマッチングを色で表示するか、メッシュを元の表示に戻します"
+    ),
+    "What to show": "表示するもの",
+    "Nothing": "なし",
+    "Show the meshes as before": "メッシュを元のように表示します",
+    "Show corresponding places in the same color": "対応する場所を同じ色で表示します",
+    "Show how much lengths differ, from dark blue (none) to yellow": (
+        "長さがどれだけ異なるかを、暗い青(差なし)から黄で表示します"
+    ),
+    "Show how far the dense map can be trusted, from dark red to white (fully)": (
+        "密なマップをどこまで信頼できるかを、暗い赤から白(完全に)で表示します"
+    ),
+    "Regions": "領域",
+    "Show each vertex in the color of the nearest matched point": "各頂点を最も近い対応点の色で表示します",
+    "Checker": "チェッカー",
+    "Show checks on the source, and where the dense map takes them on the target": (
+        "ソースに市松模様を表示し、密なマップがそれをターゲットのどこに移すかを表示します"
+    ),
+    "Write Regions": "領域を書き込み",
+    (
+        "Write a vertex group for each matched point with all vertices that are nearer to it than to any other; "
+        "groups of the same name are the same region"
+    ): (
+        "対応点ごとに、ほかのどれよりもそれに近いすべての頂点を含む頂点グループを書き込みます。同じ名前のグルー"
+        "プが同じ領域です"
+    ),
+    "Done": "完了",
+    "What was carried over to which object, one per line": "どのオブジェクトに何を転送したか。一行に一つです",
+    "What was left out, or should be known, and why: one sentence per line": (
+        "何が省かれたか、または知っておくべきことと、その理由。一行に一文です"
+    ),
+    "How long it took": "かかった時間",
+    "Refine with Rig": "リグで改良",
+    (
+        "If the source has a rig, fit it into the target and make the map of the match better with it, once for "
+        "each match. It takes some seconds, and weights, joints and shape keys gain much"
+    ): (
+        "ソースにリグがあれば、それをターゲットに合わせ、マッチングのマップをそれによって改良します。マッチング"
+        "ごとに一度だけです。数秒かかりますが、ウェイト、関節、シェイプキーが大きく向上します"
+    ),
+    "Report": "レポート",
+    "What became of the last transfer": "最後の転送の結果",
+    "Rig": "リグ",
+    (
+        "Give the target a copy of the source's armature, fitted into its body, and bind it. Left out if the "
+        "source has none"
+    ): "ソースのアーマチュアのコピーをターゲットの体に合わせて与え、バインドします。ソースになければ省かれます",
+    "Weights": "ウェイト",
+    "Carry the source's vertex groups. Left out if it has none": (
+        "ソースの頂点グループを転送します。なければ省かれます"
+    ),
+    "Shape Keys": "シェイプキー",
+    "Carry the source's shape keys. Left out if it has none": "ソースのシェイプキーを転送します。なければ省かれます",
+    "UV Maps": "UVマップ",
+    "Carry the source's UV maps. Left out if it has none": "ソースのUVマップを転送します。なければ省かれます",
+    "Attributes": "属性",
+    "Carry color attributes, custom attributes, materials and marked edges": (
+        "カラー属性、カスタム属性、マテリアル、マークした辺を転送します"
+    ),
+    "Existing Rig": "既存のリグ",
+    "What becomes of an armature that was made for the target before": (
+        "以前ターゲットのために作ったアーマチュアの扱い"
+    ),
+    "Update": "更新",
+    "Move its joints; all else that was changed on it since stays": (
+        "関節を動かします。それ以降に変更したほかのものはそのままです"
+    ),
+    "Keep": "維持",
+    "Leave it as it is, and make another one": "そのままにして、別のものを作ります",
+    "Bind": "バインド",
+    (
+        "Give the target an Armature modifier, set as the source's, and the armature as its parent if the source "
+        "has its own as parent"
+    ): (
+        "ソースと同じ設定のアーマチュアモディファイアーをターゲットに付け、ソースが自分のアーマチュアを親にして"
+        "いれば、ターゲットもアーマチュアを親にします"
+    ),
+    "Also Rest Pose": "レストポーズも",
+    "If the target is in another pose than the source, make an action that takes it to a rest pose like the source's": (
+        "ターゲットがソースと違うポーズなら、ソースと同様のレストポーズに戻すアクションを作ります"
+    ),
+    "Show Rest Pose": "レストポーズを表示",
+    "Let the new armature take that rest pose at once": "新しいアーマチュアをすぐにそのレストポーズにします",
+    "Pose": "ポーズ",
+    "Whether the target is in another pose than the source, for the rest pose": (
+        "レストポーズのために、ターゲットがソースと違うポーズかどうか"
+    ),
+    "Automatic": "自動",
+    "It is, if a large limb is bent much against the source": (
+        "大きな手足がソースに対して大きく曲がっていれば、違うとみなします"
+    ),
+    "Posed": "ポーズあり",
+    "It is: undo all rotations of its bones": "違うポーズです。すべてのボーンの回転を取り消します",
+    "At Rest": "レスト状態",
+    "It is in its rest pose already, and only its build is different": "すでにレストポーズで、体格だけが異なります",
+    "Which vertex groups of the source are carried over. Those that a match wrote never are": (
+        "ソースのどの頂点グループを転送するか。マッチングが書き込んだものは転送しません"
+    ),
+    "All": "すべて",
+    "All vertex groups": "すべての頂点グループ",
+    "Deforming Bones": "変形ボーン",
+    "The vertex groups of bones that deform": "変形するボーンの頂点グループ",
+    "Selected Bones": "選択したボーン",
+    "The vertex groups of the bones that are selected in the source's rig": (
+        "ソースのリグで選択しているボーンの頂点グループ"
+    ),
+    "Active": "アクティブ",
+    "The active vertex group": "アクティブな頂点グループ",
+    "Mode": "モード",
+    "What becomes of the weights that the target has in these groups": (
+        "これらのグループでターゲットが持つウェイトの扱い"
+    ),
+    "The carried weights take their place": "転送したウェイトで置き換えます",
+    "Add": "加算",
+    "The carried weights are added to them": "転送したウェイトを加えます",
+    "Mix Factor": "ミックス係数",
+    "How much the carried weights count against those that are there": (
+        "既存のウェイトに対して転送したウェイトをどれだけ重視するか"
+    ),
+    "Normalize": "正規化",
+    (
+        "Let the weights of all bones sum to one at each vertex. Locked groups keep theirs. If only some groups "
+        "are carried, the others of the target give way to them"
+    ): (
+        "各頂点ですべてのボーンのウェイトの合計を1にします。ロックしたグループは変わりません。一部のグループだ"
+        "けを転送する場合は、ターゲットのほかのグループが譲ります"
+    ),
+    "Limit": "制限",
+    "How many bones may move a vertex: the smallest weights go, and fade before they do. 0 for any number": (
+        "一つの頂点を動かせるボーンの数。最小のウェイトから、しだいに弱めて除かれます。0で無制限"
+    ),
+    "Clean": "クリーン",
+    "Weights below this are dropped, but for the largest of each vertex": (
+        "これより小さいウェイトは、各頂点の最大のものを除いて削除されます"
+    ),
+    "Fill": "フィル",
+    (
+        "Where the map tears vertices away from their neighbors, take the weights from around them along the "
+        "surface; and let small loose parts move as one, such as eyes, if they do on the source"
+    ): (
+        "マップが頂点を隣から引き離した場所では、表面に沿って周囲のウェイトを使います。また、目のような小さな独"
+        "立部分は、ソースでそうなら一体として動くようにします"
+    ),
+    "Mark Rejected": "除外をマーク",
+    (
+        "Write a color attribute that shows in red which vertices were torn away from their neighbors, so that "
+        "their own weights were rejected"
+    ): "隣から引き離され、自身のウェイトが使われなかった頂点を赤で示すカラー属性を書き込みます",
+    "Which shape keys of the source are carried over": "ソースのどのシェイプキーを転送するか",
+    "All shape keys": "すべてのシェイプキー",
+    "The active shape key": "アクティブなシェイプキー",
+    "By Name": "名前",
+    "The shape keys that are named": "名前を指定したシェイプキー",
+    "Names": "名前",
+    "Names of the shape keys to carry over, separated by commas": "転送するシェイプキーの名前。コンマで区切ります",
+    "Existing Keys": "既存のキー",
+    "What becomes of shape keys of the same name that the target has already": (
+        "ターゲットがすでに持つ同名のシェイプキーの扱い"
+    ),
+    "Give them the new shape and settings": "新しい形状と設定を与えます",
+    "Skip": "スキップ",
+    "Leave them as they are": "そのまま残します",
+    "Scale": "スケール",
+    "What becomes of the size of the movements": "動きの大きさの扱い",
+    "With Size if the target is clearly larger or smaller than the source, else None": (
+        "ターゲットがソースより明らかに大きいか小さければ「サイズに合わせる」、そうでなければ「なし」"
+    ),
+    "None": "なし",
+    "As long as on the source": "ソースと同じ長さ",
+    "With Size": "サイズに合わせる",
+    "Longer or shorter as the whole target is larger or smaller": (
+        "ターゲット全体の大きさに応じて長くまたは短くします"
+    ),
+    "Locally": "局所的",
+    "Longer or shorter as the target is larger or smaller around each place": (
+        "各場所の周りのターゲットの大きさに応じて長くまたは短くします"
+    ),
+    "Threshold": "しきい値",
+    (
+        "Movements shorter than this part of the longest of a shape key are dropped, so that vertices far from "
+        "what it moves stay exactly in place"
+    ): (
+        "シェイプキーの最長の動きに対してこの割合より短い動きは捨てられ、動く場所から遠い頂点は正確にその場に留まります"
+    ),
+    "Drivers": "ドライバー",
+    (
+        "Copy the drivers of the shape keys. Where they point to the source or its armature, the copies point to "
+        "the target and its armature"
+    ): (
+        "シェイプキーのドライバーをコピーします。ソースまたはそのアーマチュアを参照している箇所は、ターゲットと"
+        "そのアーマチュアを参照します"
+    ),
+    "Which UV maps of the source are carried over. Those of the same name are replaced": (
+        "ソースのどのUVマップを転送するか。同名のものは置き換えられます"
+    ),
+    "All UV maps": "すべてのUVマップ",
+    "The active UV map": "アクティブなUVマップ",
+    "The UV maps that are named": "名前を指定したUVマップ",
+    "Names of the UV maps to carry over, separated by commas": "転送するUVマップの名前。コンマで区切ります",
+    "Mark Seams": "シームをマーク",
+    (
+        "Mark the edges between the islands of the active UV map as seams on the target, instead of the seams that "
+        "it has"
+    ): "ターゲットの既存のシームの代わりに、アクティブなUVマップのアイランドの境界の辺をシームとしてマークします",
+    "Color Attributes": "カラー属性",
+    "Carry color attributes over; those of the same name are replaced": (
+        "カラー属性を転送します。同名のものは置き換えられます"
+    ),
+    "Other Attributes": "その他の属性",
+    "Carry over attributes of numbers, vectors and truth values that were added to the source": (
+        "ソースに追加された数値、ベクトル、ブール値の属性を転送します"
+    ),
+    "Names of the attributes to carry over, separated by commas; if empty, all": (
+        "転送する属性の名前。コンマで区切ります。空ならすべて"
+    ),
+    "Materials": "マテリアル",
+    (
+        "Give each face the material of the source there; materials are added to the slots of the target unless "
+        "they are there already"
+    ): "各面にソースのその場所のマテリアルを与えます。まだなければターゲットのスロットに追加されます",
+    "Sharp Edges": "シャープな辺",
+    (
+        "Mark the edges as sharp that follow sharp edges of the source, and shade faces flat where the source is, "
+        "instead of what is marked on the target"
+    ): (
+        "ターゲットの既存のマークの代わりに、ソースのシャープ辺に沿う辺をシャープにし、ソースがフラットな場所の"
+        "面をフラットにします"
+    ),
+    "Seams": "シーム",
+    (
+        "Mark the edges as seams that follow seams of the source, instead of those of the target. UV maps that are "
+        "carried over bring their own"
+    ): (
+        "ターゲットのシームの代わりに、ソースのシームに沿う辺をシームとしてマークします。転送されるUVマップは独"
+        "自のシームを伴います"
+    ),
+    "Creases and Bevel Weights": "クリースとベベル",
+    "Carry creases and bevel weights over to the edges and vertices that follow those of the source": (
+        "クリースとベベルウェイトを、ソースのものに沿う辺と頂点に転送します"
+    ),
+    "Custom Normals": "カスタム法線",
+    "Carry over how the custom normals of the source deviate from its surface, if it has any": (
+        "ソースにカスタム法線があれば、その表面からのずれを転送します"
+    ),
+    "Wrap": "ラップ",
+    "Whose surface is laid onto the other": "どちらの表面をもう一方に重ねるか",
+    "Source to Target": "ソースをターゲットへ",
+    "Lay the source onto the target": "ソースをターゲットに重ねます",
+    "Target to Source": "ターゲットをソースへ",
+    "Lay the target onto the source": "ターゲットをソースに重ねます",
+    "Result": "結果",
+    "What is made": "作成するもの",
+    "Shape Key": "シェイプキー",
+    "Add a shape key to the mesh: its slider leads from one shape to the other": (
+        "メッシュにシェイプキーを追加します。スライダーで一方の形からもう一方へ変化します"
+    ),
+    "New Object": "新規オブジェクト",
+    "Make a new object that has both shapes, and leave the mesh as it is": (
+        "両方の形を持つ新しいオブジェクトを作り、メッシュはそのままにします"
+    ),
+    "Place": "位置",
+    "Where the wrapped shape stands": "ラップした形状を置く場所",
+    "At the Other": "相手の位置",
+    "Where the mesh stands that it is laid onto": "重ねる相手のメッシュの場所",
+    "Own Place": "自身の位置",
+    "Where the mesh stood, turned and moved back as one": (
+        "メッシュがあった場所。全体を一つとして回転、移動して戻します"
+    ),
+    "In-Betweens": "中間形状",
+    (
+        "How many shape keys are added that keep limbs from shrinking on the way. They follow the slider of the "
+        "first by drivers"
+    ): "途中で手足が縮まないように追加するシェイプキーの数。ドライバーによって最初のキーのスライダーに従います",
+    "Direction": "方向",
+    (
+        "Which side is taken to the other. The sides are told apart by vertex groups with names such as Arm.L and "
+        "Arm.R, or else by the object's X axis, which points to the left"
+    ): (
+        "どちらの側を反対側に写すか。左右はArm.LとArm.Rのような名前の頂点グループ、なければ左を指すオブジェクト"
+        "のX軸で区別します"
+    ),
+    "Left to Right": "左から右",
+    "The left side is good": "左側が正しい",
+    "Right to Left": "右から左",
+    "The right side is good": "右側が正しい",
+    "Make the weights of vertex groups symmetric; locked groups are left alone": (
+        "頂点グループのウェイトを対称にします。ロックしたグループはそのままです"
+    ),
+    "Make shape keys symmetric": "シェイプキーを対称にします",
+    "Colors": "色",
+    "Make color attributes symmetric": "カラー属性を対称にします",
+    "Create Missing Sides": "欠けた側を作成",
+    "Add vertex groups and shape keys of the other side where only one side is there": (
+        "片側しかない場合に、反対側の頂点グループとシェイプキーを追加します"
+    ),
+    "Retarget": "リターゲット",
+    (
+        "Match the source with the target if that has not been done, and carry its rig, weights, shape keys and UV "
+        "maps over, whatever the pose, build and topology of the target"
+    ): (
+        "まだならソースとターゲットをマッチングし、ターゲットのポーズ、体格、トポロジーを問わず、リグ、ウェイト"
+        "、シェイプキー、UVマップを転送します"
+    ),
+    "Name of the object to carry from; if empty, the one picked in the panel or else the active object": (
+        "転送元のオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
+    ),
+    "Name of the object to carry to; if empty, the one picked in the panel or else all other selected meshes": (
+        "転送先のオブジェクトの名前。空ならパネルで選んだもの、なければほかの選択中のすべてのメッシュ"
+    ),
+    "Targets": "ターゲット",
+    "Names of several objects to carry to": "複数の転送先のオブジェクトの名前",
+    "What the names start with that the match to use wrote; if empty, the one match that the objects carry": (
+        "使用するマッチングが書き込んだ名前の先頭。空ならオブジェクトが持つ唯一のマッチング"
+    ),
+    "Fit Rig": "リグをフィット",
+    (
+        "Give the matched meshes a copy of the source's armature each, with its joints where they belong in their "
+        "pose and build, and bind them to it"
+    ): (
+        "マッチングしたメッシュそれぞれにソースのアーマチュアのコピーを与え、そのポーズと体格に合った位置に関節"
+        "を置き、バインドします"
+    ),
+    "Transfer Weights": "ウェイトを転送",
+    "Carry the source's vertex groups to the matched meshes, whatever their pose and topology": (
+        "ポーズやトポロジーを問わず、ソースの頂点グループをマッチングしたメッシュに転送します"
+    ),
+    "Transfer Shape Keys": "シェイプキーを転送",
+    (
+        "Carry the source's shape keys to the matched meshes, whatever their pose and topology, with their values, "
+        "ranges and drivers"
+    ): (
+        "ポーズやトポロジーを問わず、ソースのシェイプキーを値、範囲、ドライバーとともにマッチングしたメッシュに"
+        "転送します"
+    ),
+    "Transfer UVs": "UVを転送",
+    (
+        "Carry the source's UV maps to the matched meshes, whatever their pose and topology, so that its textures "
+        "fit them. Islands stay islands: no face is smeared across a seam"
+    ): (
+        "ポーズやトポロジーを問わず、ソースのUVマップをマッチングしたメッシュに転送し、テクスチャが合うようにし"
+        "ます。アイランドは保たれ、シームをまたいで引き伸ばされる面はありません"
+    ),
+    "Transfer Attributes": "属性を転送",
+    (
+        "Carry color and other attributes, materials, sharp edges, creases and custom normals of the source to the "
+        "matched meshes, whatever their pose and topology"
+    ): (
+        "ポーズやトポロジーを問わず、ソースのカラー属性などの属性、マテリアル、シャープ辺、クリース、カスタム法"
+        "線をマッチングしたメッシュに転送します"
+    ),
+    (
+        "Lay the source onto the matched mesh, as a shape key whose slider morphs one into the other. Parts that "
+        "the other mesh lacks follow their surroundings"
+    ): (
+        "マッチングしたメッシュにソースを重ね、スライダーで一方からもう一方へモーフするシェイプキーにします。相"
+        "手にない部分は周囲に従います"
+    ),
+    "Symmetrise": "対称化",
+    (
+        "Take weights, shape keys and colors of one side of a mesh to its other side, also if its pose or its "
+        "topology is not symmetric"
+    ): "ポーズやトポロジーが対称でなくても、メッシュの片側のウェイト、シェイプキー、色を反対側に写します",
+    "Name of the object to make symmetric; if empty, the active object": (
+        "対称にするオブジェクトの名前。空ならアクティブオブジェクト"
+    ),
+    "Symmetry": "対称",
+    "Starting": "開始しています",
+    "The Prefix is empty. Enter what the names of the vertex groups shall start with.": (
+        "接頭辞が空です。頂点グループの名前の先頭に付ける文字列を入力してください。"
+    ),
+    "This file of landmarks is of a newer version of HierMatch. Update the extension.": (
+        "このランドマークのファイルは新しいバージョンのHierMatchのものです。エクステンションを更新してください。"
+    ),
+    "This is no file of landmarks, or it is damaged. Choose one that Save Landmarks has written.": (
+        "これはランドマークのファイルではないか、破損しています。「ランドマークを保存」で書き出したファイルを選"
+        "んでください。"
+    ),
+    "HierMatch is at work. Wait for it, or cancel it": "HierMatchが作業中です。待つか、キャンセルしてください",
+    "Switch to Object Mode or to Edit Mode first": "先にオブジェクトモードまたは編集モードに切り替えてください",
+    (
+        "It is open which vertices correspond. Select one vertex on each mesh in Edit Mode, or two empties near "
+        "the surfaces in Object Mode, or click on them with Pick Landmarks."
+    ): (
+        "どの頂点が対応するのかが決まりません。編集モードで各メッシュの頂点を一つずつ選択するか、オブジェクトモ"
+        "ードで表面の近くの二つのエンプティを選択するか、「ランドマークを指定」でクリックしてください。"
+    ),
+    "The file holds the symmetry of one mesh, not the match of two. Choose another file.": (
+        "このファイルには二つのメッシュのマッチングではなく、一つのメッシュの対称性が入っています。別のファイル"
+        "を選んでください。"
+    ),
+    "Nothing is running": "実行中のものはありません",
+    "There is nothing here that HierMatch has written": "HierMatchが書き込んだものはここにはありません",
+    "None of these objects carries anything that HierMatch has written.": (
+        "これらのオブジェクトはどれもHierMatchが書き込んだものを持っていません。"
+    ),
+    "No landmark is chosen. Choose one in the list, or add one.": (
+        "ランドマークが選ばれていません。リストから選ぶか、追加してください。"
+    ),
+    "There is no such matched point. Match Source and Target first, or choose a point in the list.": (
+        "その対応点はありません。先にソースとターゲットをマッチングするか、リストからポイントを選んでください。"
+    ),
+    "There is no match to flip. Match two meshes first, or name one that carries a match.": (
+        "切り替えるマッチングがありません。先に二つのメッシュをマッチングするか、マッチングを持つメッシュを指定"
+        "してください。"
+    ),
+    "No file is named. Choose where the landmarks are kept.": (
+        "ファイルが指定されていません。ランドマークの保存場所を選んでください。"
+    ),
+    "Two mesh objects are needed": "二つのメッシュオブジェクトが必要です",
+    "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
+        "クリックできるものがありません。二つの頂点を指定してhiermatch.add_landmarkを使ってください。"
+    ),
+    "One of the two meshes was deleted or renamed. Press Esc and start again.": (
+        "二つのメッシュの一方が削除されたか、名前が変わりました。Escを押してやり直してください。"
+    ),
+    "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
+        "改良するマッチングがありません。二つのメッシュをソースとターゲットに選び、マッチングしてください。"
+    ),
+    "A landmark is far from where the map had taken it. If the result is wrong, match again.": (
+        "あるランドマークが、マップが示していた場所から遠く離れています。結果が誤っていたら、再マッチングしてください。"
+    ),
+    "There is no match to show. Pick two meshes as Source and Target, and match them.": (
+        "表示するマッチングがありません。二つのメッシュをソースとターゲットに選び、マッチングしてください。"
+    ),
+    "Pick a Source or a Target first": "先にソースまたはターゲットを選んでください",
+    "It is open which mesh is to be made symmetric. Make it the active object.": (
+        "どのメッシュを対称にするのかが決まりません。アクティブオブジェクトにしてください。"
+    ),
+    "Leave Out": "除外",
+    "Output": "出力",
+    "Advanced": "詳細設定",
+    "Of Source": "ソースから",
+    "Of Target": "ターゲットから",
+    "Write": "書込",
+    "Viewport Color": "表示の色",
+    "Pick two meshes, or select them: the active one is the source": (
+        "二つのメッシュを指定するか、選択してください。アクティブな方がソースです"
+    ),
+    "Measuring the matched points": "対応点を計測しています",
+    "Wrap and Morph": "ラップとモーフ",
+    "Switch to Object Mode first": "先にオブジェクトモードに切り替えてください",
+    "Mirror": "ミラー",
+    "Pick Source and Target first": "先にソースとターゲットを選んでください",
+    "There is no match yet": "マッチングはまだありません",
+    "Which mesh is the Source is open: pick it in the panel, or make it the active object.": (
+        "どのメッシュがソースなのかが決まりません。パネルで選ぶか、アクティブオブジェクトにしてください。"
+    ),
+    "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source.": (
+        "どのメッシュがターゲットなのかが決まりません。パネルで選ぶか、ソースのほかに一つ以上選択してください。"
+    ),
+    "Finding faces": "面を探しています",
+    "Carrying materials and normals": "マテリアルと法線を転送しています",
+    "The rig of the source was changed meanwhile. Nothing was written.": (
+        "その間にソースのリグが変更されました。何も書き込まれていません。"
+    ),
+    "Placing the joints": "関節を配置しています",
+    "Finding the rest pose": "レストポーズを求めています",
+    "No shape key is named. Enter the Names of some, separated by commas.": (
+        "シェイプキーの名前がありません。「名前」にコンマで区切って入力してください。"
+    ),
+    "Telling the sides apart": "左右を区別しています",
+    "Mirroring": "ミラーしています",
+    "No UV map is named. Enter the Names of some, separated by commas.": (
+        "UVマップの名前がありません。「名前」にコンマで区切って入力してください。"
+    ),
+    "Finding shapes in between": "中間の形状を求めています",
+    "The attributes of the stored map hold numbers that no match has written. Match again.": (
+        "保存されたマップの属性に、マッチングが書き込んだものではない数値があります。再マッチングしてください。"
+    ),
+    "The stored map is one of meshes with other vertices. Match again.": (
+        "保存されたマップは頂点の異なるメッシュのものです。再マッチングしてください。"
+    ),
+    "Some distances are not finite: all points must lie on one connected part of the surface.": (
+        "一部の距離が有限ではありません。すべてのポイントは、つながった一つの表面上になければなりません。"
+    ),
+    "No matching is possible: too many pairs of a point and a candidate are forbidden.": (
+        "マッチングできません。ポイントと候補の組が多く禁止されすぎています。"
+    ),
+    "No triangle of the mesh has three different corners. Check its scale and its vertices.": (
+        "三つの角がすべて異なる三角形がメッシュにありません。スケールと頂点を確認してください。"
+    ),
+    "Nothing of the mesh has an area once repeated and degenerate faces are left out.": (
+        "重複した面や縮退した面を除くと、メッシュに面積がなくなります。"
+    ),
+    "A search along the surface starts at a vertex without a triangle. Delete loose vertices.": (
+        "表面に沿った探索が、三角形のない頂点から始まっています。孤立した頂点を削除してください。"
+    ),
+    "Some values at the corners of faces are not finite numbers. Repair them, or leave them out.": (
+        "面コーナーの一部の値が有限の数ではありません。修復するか、除外してください。"
+    ),
+    "Measuring distances": "距離を計測しています",
+    "Judging the map": "マップを評価しています",
+    "Mapping every vertex": "すべての頂点をマップしています",
+    "Bounding the best matching": "最良のマッチングの限界を求めています",
+    "Tracing edges": "辺をたどっています",
+    "Computing eigenfunctions": "固有関数を計算しています",
+    "The faces use vertices that the map does not know. Match again.": (
+        "マップにない頂点を面が使っています。再マッチングしてください。"
+    ),
+    "Refining maps": "マップを改良しています",
+    "Comparing maps": "マップを比較しています",
+    "Placing the first points": "最初のポイントを配置しています",
+    "Comparing matchings": "マッチングを比較しています",
+    "No bone of the rig moves a vertex.": "リグのどのボーンも頂点を動かしません。",
+    "The mesh has no vertices.": "メッシュに頂点がありません。",
+    "The mesh has no faces. A surface is needed, not only vertices or edges.": (
+        "メッシュに面がありません。頂点や辺だけでなく、表面が必要です。"
+    ),
+    (
+        "Every triangle of the mesh has zero area: the mesh has no surface. Check its scale and whether its "
+        "vertices all lie on one line or in one point."
+    ): (
+        "メッシュのすべての三角形の面積が0で、表面がありません。スケールと、頂点がすべて一直線上または一点にな"
+        "いかを確認してください。"
+    ),
+    "The faces of the mesh are not those that the map was made for. Match again.": (
+        "メッシュの面が、マップを作ったときの面と異なります。再マッチングしてください。"
+    ),
+    "A face has fewer than three corners. Repair the mesh.": (
+        "角が三つ未満の面があります。メッシュを修復してください。"
+    ),
+    "Cleaning": "クリーンアップしています",
+    (
+        "Some points do not lie on the largest part of the mesh, which is the one that is matched. Choose points "
+        "on that part."
+    ): (
+        "一部のポイントが、マッチングの対象であるメッシュの最大の部分にありません。その部分のポイントを選んでください。"
+    ),
+    "Simplifying the mesh": "メッシュを単純化しています",
+    "There are no landmarks to refine the map around. Name at least one pair of vertices.": (
+        "マップを改良するためのランドマークがありません。少なくとも一組の頂点を指定してください。"
+    ),
+    "Fitting the surfaces": "表面を合わせています",
+    "No bone moves the largest part of the source. Give it weights, or choose another source.": (
+        "ソースの最大の部分を動かすボーンがありません。ウェイトを与えるか、別のソースを選んでください。"
+    ),
+    "Fitting the bones": "ボーンを合わせています",
+    "The weights of the bones should be finite numbers that are not negative.": (
+        "ボーンのウェイトは、負でない有限の数でなければなりません。"
+    ),
+    "Posing hands": "手のポーズを合わせています",
+    "Sliding": "滑らせています",
+    "Moving points over the surface": "ポイントを表面上で動かしています",
+    "Finding regions without confidence": "信頼度のない領域を探しています",
+    "A shape key of the source moves a vertex by what is not a finite number. Repair that key.": (
+        "ソースのシェイプキーの一つが、有限の数でない量だけ頂点を動かしています。そのキーを修復してください。"
+    ),
+    "Carrying offsets": "オフセットを転送しています",
+    "The skeleton has a joint whose position is not a finite number.": "骨格に、位置が有限の数でない関節があります。",
+    "Some bones of the skeleton are their own ancestors.": "骨格の一部のボーンが自分自身の祖先になっています。",
+    (
+        "Nothing tells the two sides apart. Give the vertex groups names that end in .L and .R, or move the "
+        "object's origin so that its X axis points to the left side."
+    ): (
+        "左右を区別する手がかりがありません。頂点グループに.Lと.Rで終わる名前を付けるか、X軸が左側を指すように"
+        "オブジェクトの原点を動かしてください。"
+    ),
+    "The mesh is too coarse to be matched to anything but itself: use more Coarse Candidates or subdivide it.": (
+        "メッシュが粗すぎて、自分自身以外にマッチングできません。「粗い候補」を増やすか、細分化してください。"
+    ),
+    "Placing the points": "ポイントを配置しています",
+    "Cutting islands": "アイランドを切り出しています",
+    "Laying faces onto islands": "面をアイランドに配置しています",
+    "Carrying weights": "ウェイトを転送しています",
+    "Looking for torn vertices": "引き離された頂点を探しています",
+    "Filling in weights": "ウェイトを補充しています",
+    "The maps belong to other meshes than those to be wrapped. Match them again.": (
+        "マップはラップするメッシュとは別のメッシュのものです。再マッチングしてください。"
+    ),
+    "The map does not hold the source anywhere on the target: the two are too different. Match them again.": (
+        "マップはターゲットのどこにもソースを留められません。両者が違いすぎます。再マッチングしてください。"
+    ),
+    "Placing parts that the target lacks": "ターゲットにない部分を配置しています",
+    "Laying the surface onto the other": "表面をもう一方に重ねています",
+    "Coarse Match": "粗いマッチング",
+    "Left and Right": "左右",
+    "Time": "時間",
+    "none": "なし",
+    "unclear": "不明",
+    "kept": "保持",
+    "exchanged": "入れ替わり",
+    "optimum proven": "最適と証明済み",
+    "within {gap} of the optimum": "最適値との差は{gap}以内",
+    "{count} points matched": "{count}個のポイントをマッチングしました",
+    "Custom": "カスタム",
+    "Metric and Descriptor": "距離と記述子",
+    "Refinement": "改良",
+    "The match was cancelled. Nothing was written": "マッチングはキャンセルされました。何も書き込まれていません",
+    "It was cancelled. Nothing was written": "キャンセルされました。何も書き込まれていません",
+    "It was cancelled. The match is as it was": "キャンセルされました。マッチングは元のままです",
+    "It was cancelled. No landmark was added": "キャンセルされました。ランドマークは追加されていません",
+    "There is no mirrored match, so the only one was written.": (
+        "ミラーマッチングがないため、唯一のマッチングを書き込みました。"
+    ),
+    "The map turns large parts of the surface over: do not trust it; try landmarks.": (
+        "マップが表面の大きな部分を裏返しています。信頼せず、ランドマークを試してください。"
+    ),
+    "Another map was almost as likely, such as one that swaps left and right: check the sides.": (
+        "左右が入れ替わったものなど、別のマップもほぼ同じくらい有力でした。左右を確認してください。"
+    ),
+    "The shapes differ much: the map is a good guess that keeps left and right, but details may slide.": (
+        "形状が大きく異なります。マップは左右を保ったよい推測ですが、細部はずれているかもしれません。"
+    ),
+    "The shapes correspond, with some stretching where they differ.": (
+        "形状は対応しています。異なる部分では多少の伸縮があります。"
+    ),
+    "The shapes correspond closely.": "形状はよく対応しています。",
+    "HierMatch Presets": "HierMatchプリセット",
+    "Add HierMatch Preset": "HierMatchプリセットを追加",
+    "Save the options of Match and Retarget as a preset, or remove one that was saved": (
+        "「マッチング」と「リターゲット」のオプションをプリセットとして保存するか、保存したものを削除します"
+    ),
+    "Name": "名前",
+    "Name of the preset, of which its file is named": "プリセットの名前。ファイル名にもなります",
+    "Remove by Name": "名前で削除",
+    "Remove the preset of that name instead of saving one": "保存する代わりに、その名前のプリセットを削除します",
+    "Remove Active": "アクティブを削除",
+    "Remove the preset that was chosen last instead of saving one": (
+        "保存する代わりに、最後に選んだプリセットを削除します"
+    ),
+    "Check Existing": "上書きチェック",
+    "Fast Preview": "高速プレビュー",
+    "Two-Legged Characters": "二足キャラクター",
+    "Creatures": "クリーチャー",
+    "Scans": "スキャン",
+}
+"""The translation of each English text."""

@@ -1,0 +1,942 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# ruff: noqa: N999 - this is how Blender calls the language
+"""What the interface says, in Simplified Chinese: the English as it stands in the code, and its translation."""
+
+from __future__ import annotations
+
+from typing import Final
+
+__all__ = ["MESSAGES"]
+
+MESSAGES: Final[dict[str, str]] = {
+    "Points": "点",
+    "How many points were matched": "匹配了多少个点",
+    "Source": "源",
+    "Name of the source object": "源物体的名称",
+    "Target": "目标",
+    "Name of the target object": "目标物体的名称",
+    "Distortion": "畸变",
+    "Distortion of the whole match": "整个匹配的畸变",
+    "Worst Point": "最差的点",
+    "Largest distortion of a matched point, in units of the square root of the surface area": (
+        "匹配点的最大畸变，以表面积的平方根为单位"
+    ),
+    "Optimum Proven": "已证明最优",
+    "Whether no coarse match has less distortion": "是否不存在畸变更小的粗匹配",
+    "Gap": "差距",
+    "By how much, at most, the coarse match can be worse than the best one": "粗匹配最多可能比最佳匹配差多少",
+    "Orientation": "朝向",
+    "From 1, left stays left, to -1, the match mirrors the shape": "1 表示左侧仍为左侧，-1 表示匹配使形状左右镜像",
+    "Has Mirrored": "有镜像解",
+    "Whether there is a second answer with left and right exchanged": "是否存在左右互换的第二个解",
+    "Mirrored": "已镜像",
+    "Whether the second answer is the one that is written on the meshes": "写入网格的是否为第二个解",
+    "Verdict": "判定",
+    "How far the dense map can be trusted, in a sentence; empty if there is none": (
+        "用一句话说明稠密映射的可信程度；没有映射时为空"
+    ),
+    "Confidence": "置信度",
+    "How far the dense map can be trusted as a whole": "稠密映射整体的可信程度",
+    "Out of Date": "已过期",
+    "Why the match is out of date; empty as long as it is not known to be": "匹配过期的原因；未发现过期时为空",
+    "Swapped": "已互换",
+    "Whether source and target were exchanged since they were matched": "匹配之后源与目标是否被互换",
+    "Seconds": "秒",
+    "How long the match took; zero if that is not known": "匹配所用的时间；未知时为零",
+    "Notes": "备注",
+    "What should be known about the match, one sentence per line": "关于此匹配应了解的事项，每行一句",
+    "Prefix": "前缀",
+    "What the names of everything that was written start with": "所有写入内容的名称开头",
+    "Key": "键",
+    "By what the two meshes are recognised as the pair of this match": "用来识别这两个网格属于此匹配的标识",
+    "Mesh whose points are matched; if empty, the active object": "要匹配其上各点的网格；为空时使用活动物体",
+    "Mesh on which the corresponding points are sought; if empty, the other selected mesh": (
+        "在其上寻找对应点的网格；为空时使用另一个选中的网格"
+    ),
+    "Summary": "摘要",
+    "The last match": "上一次匹配",
+    "How many points of the source are matched at the finest level": "在最精细的层级上匹配源的多少个点",
+    "Coarse Points": "粗匹配点",
+    "How many points are matched exactly, by branch and bound, before all others": (
+        "先于其他所有点，用分支定界法精确匹配多少个点"
+    ),
+    "Coarse Candidates": "粗匹配候选",
+    "How many points of the target the coarse points may be matched to": "粗匹配点可以对应到目标上的多少个点",
+    "Solver": "解算器",
+    "How the points are matched": "匹配各点的方法",
+    "Hierarchical": "分层",
+    "Some points exactly, then more and more, level by level": "先精确匹配一些点，再逐级匹配越来越多的点",
+    "Flat": "平面",
+    "All points at once, exactly: for comparison, and for some 30 points at most": (
+        "一次性精确匹配所有点：用于比较，最多约 30 个点"
+    ),
+    "Generalized Multidimensional Scaling": "广义多维尺度分析",
+    "From the exact coarse match, points move over the target by their distances alone: for comparison": (
+        "从精确的粗匹配出发，各点仅依据距离在目标上移动：用于比较"
+    ),
+    "Dense Map": "稠密映射",
+    (
+        "Find the corresponding point for every vertex of both meshes. The matched points then lie where this map "
+        "takes them"
+    ): "为两个网格的每个顶点寻找对应点。匹配点随之位于该映射所指的位置",
+    "Settle": "安定",
+    (
+        "At last let the points leave the samples of the target and come to rest between its vertices "
+        "(hierarchical solver without a dense map)"
+    ): "最后让各点离开目标的采样点，停留在顶点之间（分层解算器且无稠密映射时）",
+    "Metric": "度量",
+    "What distances between points of a surface are kept": "保持表面上点与点之间的何种距离",
+    "Geodesic": "测地线",
+    "Length of the shortest path on the surface, by fast marching": "用快速行进法求得的表面最短路径长度",
+    "Diffusion": "扩散",
+    "How differently heat spreads from two points: less affected by holes and touching parts": (
+        "热量从两点扩散方式的差异：较少受孔洞和相互接触部位的影响"
+    ),
+    "Diffusion Time": "扩散时间",
+    "How long heat spreads for diffusion distances, in units of the surface area; 0 chooses by the shape": (
+        "计算扩散距离时热量扩散的时长，以表面积为单位；0 表示按形状选择"
+    ),
+    "Descriptor": "描述符",
+    "By what a point is recognised, beside its distances to the other points": (
+        "除了到其他点的距离之外，依据什么来识别一个点"
+    ),
+    "Distance Histograms": "距离直方图",
+    "How many places lie how far away, in the chosen metric": "按所选度量，多少位置位于多远处",
+    "Heat Kernel Signatures": "热核签名",
+    "How much heat stays at the point, over time": "随时间推移有多少热量留在该点",
+    "Wave Kernel Signatures": "波核签名",
+    "How strongly the point vibrates, over frequency": "该点在各频率上的振动强度",
+    "Laplace-Beltrami Eigenfunctions": "拉普拉斯-贝尔特拉米特征函数",
+    "Values of the lowest vibrations of the surface, with every consistent choice of their signs": (
+        "表面最低频振动的取值，并考虑所有一致的符号选择"
+    ),
+    "Comparison": "比较",
+    "How histograms are compared": "比较直方图的方法",
+    "Earth Mover's Distance": "推土机距离",
+    "How far the mass of one has to be moved to make the other": "一方的质量需移动多远才能变成另一方",
+    "Bin to Bin": "逐柱比较",
+    "The difference in each bin by itself": "每一柱各自的差异",
+    "Constraint": "约束",
+    "How points and candidates of the coarse step are to correspond": "粗匹配步骤中点与候选如何对应",
+    "Injective": "单射",
+    "Each point gets a candidate of its own; candidates may stay unused": "每个点有各自的候选；候选可以不被使用",
+    "Bijective": "双射",
+    "As many candidates as points, and each is used": "候选与点一样多，且每个都被使用",
+    "Descriptor Weight": "描述符权重",
+    "How much the differences of descriptors count": "描述符的差异占多大比重",
+    "Distance Weight": "距离权重",
+    "How much the differences of distances between points count": "点间距离的差异占多大比重",
+    "Neighbourhood": "邻域",
+    "Among how many of the target samples around its present match each point looks for a better one": (
+        "每个点在当前匹配周围的多少个目标采样中寻找更好的匹配"
+    ),
+    "Samples": "采样",
+    (
+        "How many samples of each surface describe it; the points are matched to the samples of the target. With a "
+        "dense map three quarters as many are taken, and at least twice as many as points"
+    ): "用多少个采样描述每个表面；各点匹配到目标的采样上。使用稠密映射时取其四分之三，且至少为点数的两倍",
+    "Hypotheses": "假设",
+    (
+        "How many distinct coarse matchings are followed up before the best is chosen. Nearly symmetric shapes "
+        "have several that are almost equally good"
+    ): "在选出最佳结果之前，继续求解多少个不同的粗匹配。近似对称的形状有若干几乎同样好的结果",
+    "Histogram Bins": "直方图柱数",
+    "Number of bins of the distance histograms that describe a point": "描述一个点的距离直方图的柱数",
+    "Eigenfunctions": "特征函数",
+    "How many of the lowest eigenfunctions describe a point": "用多少个最低阶特征函数描述一个点",
+    "Eigenpairs": "特征对",
+    "How many eigenpairs of the Laplace-Beltrami operator make up diffusion distances and kernel signatures": (
+        "用多少个拉普拉斯-贝尔特拉米算子的特征对构成扩散距离和核签名"
+    ),
+    "Search Limit": "搜索上限",
+    "After how many nodes the exact search stops with the best matching so far and a bound on the optimum": (
+        "精确搜索在多少个节点之后停止，给出目前最佳的匹配和最优值的界限"
+    ),
+    "Use Modifiers": "使用修改器",
+    (
+        "Match the meshes as their shape keys and modifiers show them. Possible unless a modifier adds or removes "
+        "vertices"
+    ): "按形态键和修改器所显示的样子匹配网格。只要没有修改器增减顶点即可",
+    "Mirrored Match": "镜像匹配",
+    "For a symmetric shape, let the match write the second answer, in which left and right are exchanged": (
+        "对于对称的形状，写入左右互换的第二个解"
+    ),
+    "Use Landmarks": "使用地标",
+    "Keep to the landmarks that the two meshes have in common and that are switched on": (
+        "遵循两个网格共有且已启用的地标"
+    ),
+    "Leave Out of Source": "从源中排除",
+    (
+        "Vertex group, boolean attribute or material of the source whose vertices are not matched. In the dense "
+        "map they follow what is around them"
+    ): "源的顶点组、布尔属性或材质，其顶点不参与匹配。在稠密映射中它们跟随周围的顶点",
+    "Leave Out of Target": "从目标中排除",
+    (
+        "Vertex group, boolean attribute or material of the target whose vertices are not matched. In the dense "
+        "map they follow what is around them"
+    ): "目标的顶点组、布尔属性或材质，其顶点不参与匹配。在稠密映射中它们跟随周围的顶点",
+    "What the names of everything that is written start with. Another prefix keeps the results of other matches": (
+        "所有写入内容的名称开头。换用另一个前缀可保留其他匹配的结果"
+    ),
+    "Vertex Groups": "顶点组",
+    "Write a vertex group for each matched point; groups of the same name are the same point": (
+        "为每个匹配点写入一个顶点组；同名的组就是同一个点"
+    ),
+    "Match Colors": "匹配颜色",
+    "Write a color attribute that gives corresponding places of both meshes the same color": (
+        "写入一个颜色属性，使两个网格的对应位置颜色相同"
+    ),
+    (
+        "Write how much lengths differ around each place, as a color attribute from dark blue (none) to yellow "
+        "(twice or half as long), and as an attribute of numbers. Without a dense map: how much the distances to "
+        "the matched points differ, yellow being the most"
+    ): (
+        "写入各处周围长度的差异，既作为从深蓝（无差异）到黄色（两倍或一半）的颜色属性，也作为数值属性。没有稠密"
+        "映射时：写入到各匹配点距离的差异，黄色为最大"
+    ),
+    (
+        "Write how far the dense map can be trusted at each place, as a color attribute from dark red (not at all) "
+        "to white (fully)"
+    ): "写入稠密映射在各处的可信程度，作为从深红（完全不可信）到白色（完全可信）的颜色属性",
+    "Fraction": "比例",
+    "Part of the match that is done": "匹配已完成的部分",
+    "Label": "标签",
+    "What is being done": "正在进行的工作",
+    "Cancel": "取消",
+    "Whether the running match is to end": "是否要结束正在运行的匹配",
+    "Match": "匹配",
+    (
+        "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
+        "colors"
+    ): "寻找两个网格的对应点，无论姿态如何，并以顶点组和颜色写入两者",
+    "Name of the object whose points are matched; if empty, the one picked in the panel or else the active object": (
+        "要匹配其上各点的物体名称；为空时使用面板中选取的物体，否则使用活动物体"
+    ),
+    (
+        "Name of the object on which the corresponding points are sought; if empty, the one picked in the panel or "
+        "else the other selected mesh"
+    ): "在其上寻找对应点的物体名称；为空时使用面板中选取的物体，否则使用另一个选中的网格",
+    "End the running match or transfer without writing anything": "结束正在运行的匹配或传递，不写入任何内容",
+    "Use Setup": "使用配置",
+    "Set metric and descriptor as in one of the setups that the paper compares": (
+        "将度量和描述符设为论文所比较的某一配置"
+    ),
+    "Setup": "配置",
+    "Which of the paper's setups to use": "使用论文中的哪个配置",
+    "Geodesic Histograms": "测地线直方图",
+    "Set Metric to Geodesic, Descriptor to Distance Histograms, as in figure 2 (a) of the paper": (
+        "按论文图 2 (a)，将度量设为测地线，描述符设为距离直方图"
+    ),
+    "Diffusion Histograms": "扩散直方图",
+    "Set Metric to Diffusion, Descriptor to Distance Histograms, as in figure 2 (b) of the paper": (
+        "按论文图 2 (b)，将度量设为扩散，描述符设为距离直方图"
+    ),
+    "Set Metric to Diffusion, Descriptor to Heat Kernel Signatures, as in figure 2 (c) of the paper": (
+        "按论文图 2 (c)，将度量设为扩散，描述符设为热核签名"
+    ),
+    "Set Metric to Geodesic, Descriptor to Laplace-Beltrami Eigenfunctions, as in figure 2 (d) of the paper": (
+        "按论文图 2 (d)，将度量设为测地线，描述符设为拉普拉斯-贝尔特拉米特征函数"
+    ),
+    "Use Mirrored Match": "使用镜像匹配",
+    (
+        "Write the other of the two answers of the match, in which left and right are exchanged, without matching "
+        "again. Once more brings the first answer back"
+    ): "写入匹配的两个解中左右互换的另一个，无需重新匹配。再执行一次则恢复第一个解",
+    "Object": "物体",
+    (
+        "Name of one of the two matched objects; if empty, the match that the panel shows is meant, or else that "
+        "of the active object"
+    ): "两个已匹配物体之一的名称；为空时指面板所示的匹配，否则指活动物体的匹配",
+    (
+        "What the names that the match wrote start with; needed only for a named or active object that carries "
+        "several matches"
+    ): "匹配所写名称的开头；仅当指定的或活动的物体带有多个匹配时才需要",
+    "Swap Source and Target": "互换源与目标",
+    "Exchange Source and Target; the match that the two carry, with its dense map, then serves the other way round": (
+        "互换源与目标；两者所带的匹配及其稠密映射随之反向使用"
+    ),
+    "Clear": "清空",
+    "Remove what HierMatch has written on Source, Target and the selected meshes, and nothing else": (
+        "移除 HierMatch 在源、目标和选中网格上写入的内容，不影响其他内容"
+    ),
+    "Name of the object to clear; if empty, the picked Source and Target and all selected meshes": (
+        "要清空的物体名称；为空时为选取的源和目标以及所有选中的网格"
+    ),
+    "Remove only what was written with this prefix; if empty, everything": "仅移除用此前缀写入的内容；为空时移除全部",
+    "Export Match": "导出匹配",
+    (
+        "Write the match that two meshes carry into a file, with its dense maps, for other programs or to import "
+        "it again"
+    ): "将两个网格所带的匹配连同稠密映射写入文件，供其他程序使用或再次导入",
+    "Filter": "过滤器",
+    "Which files the browser lists": "文件浏览器列出哪些文件",
+    "Name of one of the two objects; if empty, the one picked in the panel or else the active object": (
+        "两个物体之一的名称；为空时使用面板中选取的物体，否则使用活动物体"
+    ),
+    "Name of the other object; if empty, the one picked in the panel or else the other selected mesh": (
+        "另一个物体的名称；为空时使用面板中选取的物体，否则使用另一个选中的网格"
+    ),
+    "What the names start with that the match wrote; if empty, the one match that the objects carry": (
+        "匹配所写名称的开头；为空时使用两个物体所带的唯一匹配"
+    ),
+    "Import Match": "导入匹配",
+    (
+        "Write a match that was exported to a file on two meshes with the same vertices and faces, in whatever "
+        "pose, as if they had just been matched"
+    ): "将导出到文件的匹配写入两个顶点和面相同的网格，无论姿态如何，如同刚刚匹配过一样",
+    "Name of the object to be the source; if empty, the one picked in the panel or else the active object": (
+        "作为源的物体名称；为空时使用面板中选取的物体，否则使用活动物体"
+    ),
+    "Name of the object to be the target; if empty, the one picked in the panel or else the other selected mesh": (
+        "作为目标的物体名称；为空时使用面板中选取的物体，否则使用另一个选中的网格"
+    ),
+    "What the names of everything that is written start with": "所有写入内容的名称开头",
+    "Add Demo Pair": "添加演示对",
+    "Add the same cat twice, in two poses and with two different meshes, to try the matching on": (
+        "添加同一只猫的两个姿态、两个不同网格，用于试用匹配"
+    ),
+    "Source Vertices": "源顶点数",
+    "About how many vertices the standing cat gets; its faces are mostly quads": (
+        "站立的猫大约有多少个顶点；其面大多为四边形"
+    ),
+    "Target Vertices": "目标顶点数",
+    "About how many vertices the walking cat gets; its faces are triangles": "行走的猫大约有多少个顶点；其面为三角形",
+    "Rigged": "带绑定",
+    "Give the standing cat an armature, weights, shape keys and a UV map, to try Retarget on": (
+        "为站立的猫添加骨架、权重、形态键和 UV 贴图，用于试用重定向"
+    ),
+    "Number": "编号",
+    "By which the landmark is known on both meshes": "在两个网格上识别该地标的编号",
+    "Source Vertex": "源顶点",
+    "Vertex of the source": "源的顶点",
+    "Target Vertex": "目标顶点",
+    "Vertex of the target that corresponds to it": "与之对应的目标顶点",
+    "Use": "使用",
+    "Whether a match keeps to the landmark": "匹配是否遵循此地标",
+    "Which of the matched points it is, from 1": "是第几个匹配点，从 1 开始",
+    "Vertex of the source that is nearest to the point": "源上离该点最近的顶点",
+    "Vertex of the target that is nearest to the point": "目标上离该点最近的顶点",
+    "Source Corners": "源角点",
+    "Vertices around the point": "该点周围的顶点",
+    "Source Weights": "源权重",
+    "Where it is between them": "它在这些顶点之间的位置",
+    "Target Corners": "目标角点",
+    "Vertices around the corresponding point": "对应点周围的顶点",
+    "Target Weights": "目标权重",
+    (
+        "How much the distances from this point to the others differ between the two meshes, in units of the "
+        "square root of the surface area"
+    ): "此点到其他各点的距离在两个网格之间相差多少，以表面积的平方根为单位",
+    "Locked": "已锁定",
+    "Whether the point is a landmark, too": "该点是否也是地标",
+    "Landmarks": "地标",
+    "Landmarks that source and target have in common": "源与目标共有的地标",
+    "Landmark": "地标",
+    "The row of the list of landmarks that is active": "地标列表中的活动行",
+    "Matched Points": "匹配点",
+    "The matched points, the worst first": "匹配点，最差的排在最前",
+    "Matched Point": "匹配点",
+    "The row of the list of matched points that is active": "匹配点列表中的活动行",
+    "Before": "之前",
+    "What was shown before, as a JSON text; empty if nothing": "之前显示的内容，为 JSON 文本；没有则为空",
+    "Revision": "修订",
+    "Grows with each change of a list": "列表每次更改时递增",
+    "Show in Viewport": "在视图中显示",
+    "Draw matched points and landmarks on both meshes in the 3D viewports": (
+        "在 3D 视图中于两个网格上绘制匹配点和地标"
+    ),
+    "Draw the matched points, from blue to yellow by distortion": "绘制匹配点，按畸变由蓝到黄着色",
+    "Lines": "线",
+    "Draw a line between the two places of each point": "在每个点的两个位置之间画线",
+    "Numbers": "编号",
+    "Write the numbers of landmarks and of the worst points beside them": "在地标和最差的点旁边写上编号",
+    "Add Landmark": "添加地标",
+    (
+        "Name two corresponding places, to which matches will keep: in Edit Mode the vertices selected on the two "
+        "meshes, one on each; in Object Mode the vertices nearest to two selected empties, or those that you click "
+        "on"
+    ): (
+        "指定两个对应位置，供匹配遵循：编辑模式下为两个网格上各选中的一个顶点；物体模式下为离两个选中空物体最近"
+        "的顶点，或所点击的顶点"
+    ),
+    "Vertex of the source; if negative, the selected one": "源的顶点；为负时使用选中的顶点",
+    "Vertex of the target; if negative, the selected one": "目标的顶点；为负时使用选中的顶点",
+    "Name of the object that is the source; if empty, the one picked in the panel or else the active object": (
+        "作为源的物体的名称；为空时使用面板中选取的物体，否则使用活动物体"
+    ),
+    "Name of the object that is the target; if empty, the one picked in the panel or else the other selected mesh": (
+        "作为目标的物体的名称；为空时使用面板中选取的物体，否则使用另一个选中的网格"
+    ),
+    "Pick Landmarks": "拾取地标",
+    (
+        "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
+        "ends it"
+    ): "先点击一个网格上的位置，再点击另一个网格上的对应位置，逐对进行；按 Enter 或 Esc 结束",
+    "Remove Landmark": "移除地标",
+    "Remove a landmark from both meshes": "从两个网格中移除一个地标",
+    "Which landmark; if zero, the one that is active in the list": "哪个地标；为零时使用列表中的活动项",
+    "Switch Landmark": "切换地标",
+    "Switch a landmark on or off; matches keep to those that are on": "启用或停用地标；匹配遵循已启用的地标",
+    "Whether matches are to keep to it": "匹配是否要遵循它",
+    "Select Landmark": "选择地标",
+    "Select the two vertices of a landmark, and nothing else of the two meshes": (
+        "选择地标的两个顶点，两个网格上的其他内容均不选"
+    ),
+    "Clear Landmarks": "清空地标",
+    "Remove all landmarks that source and target have in common": "移除源与目标共有的所有地标",
+    "Mirror Landmarks": "镜像地标",
+    (
+        "Add a landmark on the other side for each that is on one side, by the symmetry of each mesh; the meshes "
+        "may be in any pose"
+    ): "依据各网格的对称性，为一侧的每个地标在另一侧添加一个；网格可以处于任意姿态",
+    "Save Landmarks": "保存地标",
+    "Save the landmarks that source and target have in common to a file": "将源与目标共有的地标保存到文件",
+    "Warn before a file is overwritten": "覆盖文件之前发出警告",
+    "File": "文件",
+    "Path of the file of landmarks, a JSON text": "地标文件的路径，为 JSON 文本",
+    "Which files are listed": "列出哪些文件",
+    "Load Landmarks": "加载地标",
+    "Load landmarks of source and target from a file": "从文件加载源与目标的地标",
+    "Replace": "替换",
+    "Remove the landmarks that the two meshes have in common before those of the file are added": (
+        "在添加文件中的地标之前，先移除两个网格共有的地标"
+    ),
+    "Select Matched Point": "选择匹配点",
+    "Select the vertices nearest to a matched point, and nothing else of the two meshes": (
+        "选择离匹配点最近的顶点，两个网格上的其他内容均不选"
+    ),
+    "Which matched point; if zero, the one that is active in the list": "哪个匹配点；为零时使用列表中的活动项",
+    "Lock Matched Point": "锁定匹配点",
+    (
+        "Make a landmark of a matched point that is right, so that it stays where it is when the match is refined "
+        "or made anew; once more lets it go"
+    ): "将正确的匹配点设为地标，使其在改善或重新匹配时保持不动；再执行一次则解除",
+    "Remove Matched Point": "移除匹配点",
+    "Remove the vertex groups of a matched point from both meshes; the dense map stays as it is": (
+        "从两个网格中移除匹配点的顶点组；稠密映射保持不变"
+    ),
+    "Refine": "改善",
+    (
+        "Make the match better around landmarks and locked points, in a fraction of the time of a match. What is "
+        "wrong altogether, such as a leg on another leg, has to be matched again"
+    ): "在地标和锁定点周围改善匹配，用时远少于一次匹配。整体错误的部分，例如腿匹配到另一条腿，需要重新匹配",
+    "Show": "显示",
+    "Show the match in colors in this viewport, or show the meshes as before": (
+        "在此视图中用颜色显示匹配，或恢复网格原来的显示"
+    ),
+    "What to show": "显示什么",
+    "Nothing": "无",
+    "Show the meshes as before": "按原来的样子显示网格",
+    "Show corresponding places in the same color": "用相同颜色显示对应位置",
+    "Show how much lengths differ, from dark blue (none) to yellow": "显示长度的差异，从深蓝（无差异）到黄色",
+    "Show how far the dense map can be trusted, from dark red to white (fully)": (
+        "显示稠密映射的可信程度，从深红到白色（完全可信）"
+    ),
+    "Regions": "区域",
+    "Show each vertex in the color of the nearest matched point": "用最近匹配点的颜色显示每个顶点",
+    "Checker": "棋盘格",
+    "Show checks on the source, and where the dense map takes them on the target": (
+        "在源上显示棋盘格，并显示稠密映射将其带到目标的何处"
+    ),
+    "Write Regions": "写入区域",
+    (
+        "Write a vertex group for each matched point with all vertices that are nearer to it than to any other; "
+        "groups of the same name are the same region"
+    ): "为每个匹配点写入一个顶点组，包含离它比离其他点更近的所有顶点；同名的组就是同一区域",
+    "Done": "完成",
+    "What was carried over to which object, one per line": "向哪个物体传递了什么，每行一项",
+    "What was left out, or should be known, and why: one sentence per line": (
+        "省略了什么或应了解什么，以及原因：每行一句"
+    ),
+    "How long it took": "所用时间",
+    "Refine with Rig": "用绑定改善",
+    (
+        "If the source has a rig, fit it into the target and make the map of the match better with it, once for "
+        "each match. It takes some seconds, and weights, joints and shape keys gain much"
+    ): (
+        "如果源有绑定，将其适配到目标中，并借此改善匹配的映射，每个匹配只做一次。需要几秒钟，权重、关节和形态键"
+        "会显著改善"
+    ),
+    "Report": "报告",
+    "What became of the last transfer": "上一次传递的结果",
+    "Rig": "绑定",
+    (
+        "Give the target a copy of the source's armature, fitted into its body, and bind it. Left out if the "
+        "source has none"
+    ): "为目标添加适配其身体的源骨架副本并绑定。如果源没有骨架则省略",
+    "Weights": "权重",
+    "Carry the source's vertex groups. Left out if it has none": "传递源的顶点组。如果没有则省略",
+    "Shape Keys": "形态键",
+    "Carry the source's shape keys. Left out if it has none": "传递源的形态键。如果没有则省略",
+    "UV Maps": "UV 贴图",
+    "Carry the source's UV maps. Left out if it has none": "传递源的 UV 贴图。如果没有则省略",
+    "Attributes": "属性",
+    "Carry color attributes, custom attributes, materials and marked edges": (
+        "传递颜色属性、自定义属性、材质和标记的边"
+    ),
+    "Existing Rig": "已有绑定",
+    "What becomes of an armature that was made for the target before": "以前为目标制作的骨架如何处理",
+    "Update": "更新",
+    "Move its joints; all else that was changed on it since stays": "移动其关节；此后所做的其他更改保留",
+    "Keep": "维持",
+    "Leave it as it is, and make another one": "保持原样，另做一个",
+    "Bind": "绑定",
+    (
+        "Give the target an Armature modifier, set as the source's, and the armature as its parent if the source "
+        "has its own as parent"
+    ): "为目标添加与源设置相同的骨架修改器；如果源以自己的骨架为父级，则目标也以骨架为父级",
+    "Also Rest Pose": "同时制作静置姿态",
+    "If the target is in another pose than the source, make an action that takes it to a rest pose like the source's": (
+        "如果目标与源姿态不同，制作一个动作，使其回到与源相同的静置姿态"
+    ),
+    "Show Rest Pose": "显示静置姿态",
+    "Let the new armature take that rest pose at once": "让新骨架立即处于该静置姿态",
+    "Pose": "姿态",
+    "Whether the target is in another pose than the source, for the rest pose": (
+        "为确定静置姿态，目标是否与源处于不同姿态"
+    ),
+    "Automatic": "自动",
+    "It is, if a large limb is bent much against the source": "如果某个大的肢体相对源明显弯曲，则视为不同",
+    "Posed": "已摆姿态",
+    "It is: undo all rotations of its bones": "是：撤销其骨骼的所有旋转",
+    "At Rest": "处于静置",
+    "It is in its rest pose already, and only its build is different": "它已处于静置姿态，只是体型不同",
+    "Which vertex groups of the source are carried over. Those that a match wrote never are": (
+        "传递源的哪些顶点组。匹配写入的顶点组从不传递"
+    ),
+    "All": "全部",
+    "All vertex groups": "所有顶点组",
+    "Deforming Bones": "形变骨骼",
+    "The vertex groups of bones that deform": "参与形变的骨骼的顶点组",
+    "Selected Bones": "选中的骨骼",
+    "The vertex groups of the bones that are selected in the source's rig": "源绑定中选中骨骼的顶点组",
+    "Active": "活动项",
+    "The active vertex group": "活动顶点组",
+    "Mode": "模式",
+    "What becomes of the weights that the target has in these groups": "目标在这些组中已有的权重如何处理",
+    "The carried weights take their place": "由传递来的权重取代",
+    "Add": "相加",
+    "The carried weights are added to them": "将传递来的权重与之相加",
+    "Mix Factor": "混合系数",
+    "How much the carried weights count against those that are there": "传递来的权重相对已有权重占多大比重",
+    "Normalize": "规格化",
+    (
+        "Let the weights of all bones sum to one at each vertex. Locked groups keep theirs. If only some groups "
+        "are carried, the others of the target give way to them"
+    ): "使每个顶点处所有骨骼的权重之和为一。锁定的组保持不变。如果只传递部分组，目标的其他组会让出权重",
+    "Limit": "限制",
+    "How many bones may move a vertex: the smallest weights go, and fade before they do. 0 for any number": (
+        "最多多少个骨骼可以带动一个顶点：最小的权重会逐渐减弱后去除。0 表示不限"
+    ),
+    "Clean": "清理",
+    "Weights below this are dropped, but for the largest of each vertex": (
+        "低于此值的权重会被丢弃，但每个顶点最大的权重除外"
+    ),
+    "Fill": "填充",
+    (
+        "Where the map tears vertices away from their neighbors, take the weights from around them along the "
+        "surface; and let small loose parts move as one, such as eyes, if they do on the source"
+    ): "在映射将顶点与相邻顶点撕开之处，沿表面取用周围的权重；眼睛之类的松散小部件若在源上整体移动，则保持整体移动",
+    "Mark Rejected": "标记被弃用处",
+    (
+        "Write a color attribute that shows in red which vertices were torn away from their neighbors, so that "
+        "their own weights were rejected"
+    ): "写入一个颜色属性，用红色显示哪些顶点与相邻顶点撕开，因而其自身权重被弃用",
+    "Which shape keys of the source are carried over": "传递源的哪些形态键",
+    "All shape keys": "所有形态键",
+    "The active shape key": "活动形态键",
+    "By Name": "按名称",
+    "The shape keys that are named": "指定名称的形态键",
+    "Names": "名称",
+    "Names of the shape keys to carry over, separated by commas": "要传递的形态键名称，用逗号分隔",
+    "Existing Keys": "已有的键",
+    "What becomes of shape keys of the same name that the target has already": "目标已有的同名形态键如何处理",
+    "Give them the new shape and settings": "赋予它们新的形状和设置",
+    "Skip": "跳过",
+    "Leave them as they are": "保持原样",
+    "Scale": "缩放",
+    "What becomes of the size of the movements": "移动幅度如何处理",
+    "With Size if the target is clearly larger or smaller than the source, else None": (
+        "如果目标明显大于或小于源，则为“随大小”，否则为“无”"
+    ),
+    "None": "无",
+    "As long as on the source": "与源上一样长",
+    "With Size": "随大小",
+    "Longer or shorter as the whole target is larger or smaller": "随整个目标的大小变长或变短",
+    "Locally": "局部",
+    "Longer or shorter as the target is larger or smaller around each place": "随目标在各处周围的大小变长或变短",
+    "Threshold": "阈值",
+    (
+        "Movements shorter than this part of the longest of a shape key are dropped, so that vertices far from "
+        "what it moves stay exactly in place"
+    ): "短于形态键最长移动此比例的移动会被丢弃，使远离移动部位的顶点精确保持原位",
+    "Drivers": "驱动器",
+    (
+        "Copy the drivers of the shape keys. Where they point to the source or its armature, the copies point to "
+        "the target and its armature"
+    ): "复制形态键的驱动器。其中指向源或其骨架之处，在副本中指向目标及其骨架",
+    "Which UV maps of the source are carried over. Those of the same name are replaced": (
+        "传递源的哪些 UV 贴图。同名的会被替换"
+    ),
+    "All UV maps": "所有 UV 贴图",
+    "The active UV map": "活动 UV 贴图",
+    "The UV maps that are named": "指定名称的 UV 贴图",
+    "Names of the UV maps to carry over, separated by commas": "要传递的 UV 贴图名称，用逗号分隔",
+    "Mark Seams": "标记为缝合边",
+    (
+        "Mark the edges between the islands of the active UV map as seams on the target, instead of the seams that "
+        "it has"
+    ): "将活动 UV 贴图各孤岛之间的边标记为目标的缝合边，取代其原有的缝合边",
+    "Color Attributes": "颜色属性",
+    "Carry color attributes over; those of the same name are replaced": "传递颜色属性；同名的会被替换",
+    "Other Attributes": "其他属性",
+    "Carry over attributes of numbers, vectors and truth values that were added to the source": (
+        "传递添加到源上的数值、矢量和布尔值属性"
+    ),
+    "Names of the attributes to carry over, separated by commas; if empty, all": (
+        "要传递的属性名称，用逗号分隔；为空时传递全部"
+    ),
+    "Materials": "材质",
+    (
+        "Give each face the material of the source there; materials are added to the slots of the target unless "
+        "they are there already"
+    ): "赋予每个面源在该处的材质；材质会添加到目标的材质槽，除非已存在",
+    "Sharp Edges": "锐边",
+    (
+        "Mark the edges as sharp that follow sharp edges of the source, and shade faces flat where the source is, "
+        "instead of what is marked on the target"
+    ): "将沿着源锐边的边标记为锐边，并在源为平直着色之处将面设为平直着色，取代目标原有的标记",
+    "Seams": "缝合边",
+    (
+        "Mark the edges as seams that follow seams of the source, instead of those of the target. UV maps that are "
+        "carried over bring their own"
+    ): "将沿着源缝合边的边标记为缝合边，取代目标的缝合边。传递的 UV 贴图自带其缝合边",
+    "Creases and Bevel Weights": "折痕与倒角权重",
+    "Carry creases and bevel weights over to the edges and vertices that follow those of the source": (
+        "将折痕和倒角权重传递到沿着源的边和顶点上"
+    ),
+    "Custom Normals": "自定义法向",
+    "Carry over how the custom normals of the source deviate from its surface, if it has any": (
+        "如果源有自定义法向，传递其相对表面的偏离"
+    ),
+    "Wrap": "包裹",
+    "Whose surface is laid onto the other": "将哪一方的表面贴到另一方",
+    "Source to Target": "源到目标",
+    "Lay the source onto the target": "将源贴到目标上",
+    "Target to Source": "目标到源",
+    "Lay the target onto the source": "将目标贴到源上",
+    "Result": "结果",
+    "What is made": "生成什么",
+    "Shape Key": "形态键",
+    "Add a shape key to the mesh: its slider leads from one shape to the other": (
+        "为网格添加一个形态键：其滑块从一个形状过渡到另一个"
+    ),
+    "New Object": "新建物体",
+    "Make a new object that has both shapes, and leave the mesh as it is": "新建一个具有两种形状的物体，网格保持不变",
+    "Place": "位置",
+    "Where the wrapped shape stands": "包裹后的形状所处的位置",
+    "At the Other": "另一方处",
+    "Where the mesh stands that it is laid onto": "所贴合的网格所在之处",
+    "Own Place": "自身位置",
+    "Where the mesh stood, turned and moved back as one": "网格原来所在之处，整体旋转并移回",
+    "In-Betweens": "中间形态",
+    (
+        "How many shape keys are added that keep limbs from shrinking on the way. They follow the slider of the "
+        "first by drivers"
+    ): "添加多少个形态键以防肢体在过渡中收缩。它们通过驱动器跟随第一个键的滑块",
+    "Direction": "方向",
+    (
+        "Which side is taken to the other. The sides are told apart by vertex groups with names such as Arm.L and "
+        "Arm.R, or else by the object's X axis, which points to the left"
+    ): "将哪一侧复制到另一侧。两侧依据 Arm.L 和 Arm.R 之类名称的顶点组区分，否则依据指向左侧的物体 X 轴区分",
+    "Left to Right": "从左到右",
+    "The left side is good": "左侧是正确的",
+    "Right to Left": "从右到左",
+    "The right side is good": "右侧是正确的",
+    "Make the weights of vertex groups symmetric; locked groups are left alone": (
+        "使顶点组的权重对称；锁定的组保持不变"
+    ),
+    "Make shape keys symmetric": "使形态键对称",
+    "Colors": "颜色",
+    "Make color attributes symmetric": "使颜色属性对称",
+    "Create Missing Sides": "创建缺失的一侧",
+    "Add vertex groups and shape keys of the other side where only one side is there": (
+        "在只有一侧之处，添加另一侧的顶点组和形态键"
+    ),
+    "Retarget": "重定向",
+    (
+        "Match the source with the target if that has not been done, and carry its rig, weights, shape keys and UV "
+        "maps over, whatever the pose, build and topology of the target"
+    ): "必要时先匹配源与目标，再传递其绑定、权重、形态键和 UV 贴图，无论目标的姿态、体型和拓扑如何",
+    "Name of the object to carry from; if empty, the one picked in the panel or else the active object": (
+        "传递来源的物体名称；为空时使用面板中选取的物体，否则使用活动物体"
+    ),
+    "Name of the object to carry to; if empty, the one picked in the panel or else all other selected meshes": (
+        "传递去向的物体名称；为空时使用面板中选取的物体，否则使用所有其他选中的网格"
+    ),
+    "Targets": "目标",
+    "Names of several objects to carry to": "传递去向的多个物体的名称",
+    "What the names start with that the match to use wrote; if empty, the one match that the objects carry": (
+        "所用匹配写入的名称的开头；为空时使用物体所带的唯一匹配"
+    ),
+    "Fit Rig": "适配绑定",
+    (
+        "Give the matched meshes a copy of the source's armature each, with its joints where they belong in their "
+        "pose and build, and bind them to it"
+    ): "为每个已匹配的网格添加源骨架的副本，使关节位于其姿态和体型应有的位置，并绑定",
+    "Transfer Weights": "传递权重",
+    "Carry the source's vertex groups to the matched meshes, whatever their pose and topology": (
+        "将源的顶点组传递到已匹配的网格，无论其姿态和拓扑如何"
+    ),
+    "Transfer Shape Keys": "传递形态键",
+    (
+        "Carry the source's shape keys to the matched meshes, whatever their pose and topology, with their values, "
+        "ranges and drivers"
+    ): "将源的形态键连同其值、范围和驱动器传递到已匹配的网格，无论其姿态和拓扑如何",
+    "Transfer UVs": "传递 UV",
+    (
+        "Carry the source's UV maps to the matched meshes, whatever their pose and topology, so that its textures "
+        "fit them. Islands stay islands: no face is smeared across a seam"
+    ): "将源的 UV 贴图传递到已匹配的网格，无论其姿态和拓扑如何，使纹理与之吻合。孤岛保持为孤岛：没有面跨缝合边被拉伸",
+    "Transfer Attributes": "传递属性",
+    (
+        "Carry color and other attributes, materials, sharp edges, creases and custom normals of the source to the "
+        "matched meshes, whatever their pose and topology"
+    ): "将源的颜色及其他属性、材质、锐边、折痕和自定义法向传递到已匹配的网格，无论其姿态和拓扑如何",
+    (
+        "Lay the source onto the matched mesh, as a shape key whose slider morphs one into the other. Parts that "
+        "the other mesh lacks follow their surroundings"
+    ): "将源贴到已匹配的网格上，成为一个形态键，其滑块使一方变形为另一方。另一网格所缺的部分跟随其周围",
+    "Symmetrise": "对称化",
+    (
+        "Take weights, shape keys and colors of one side of a mesh to its other side, also if its pose or its "
+        "topology is not symmetric"
+    ): "将网格一侧的权重、形态键和颜色复制到另一侧，即使其姿态或拓扑不对称",
+    "Name of the object to make symmetric; if empty, the active object": "要对称化的物体名称；为空时使用活动物体",
+    "Symmetry": "对称",
+    "Starting": "正在开始",
+    "The Prefix is empty. Enter what the names of the vertex groups shall start with.": (
+        "前缀为空。请输入顶点组名称的开头。"
+    ),
+    "This file of landmarks is of a newer version of HierMatch. Update the extension.": (
+        "此地标文件来自更新版本的 HierMatch。请更新扩展。"
+    ),
+    "This is no file of landmarks, or it is damaged. Choose one that Save Landmarks has written.": (
+        "这不是地标文件，或文件已损坏。请选择由“保存地标”写入的文件。"
+    ),
+    "HierMatch is at work. Wait for it, or cancel it": "HierMatch 正在工作。请等待或取消",
+    "Switch to Object Mode or to Edit Mode first": "请先切换到物体模式或编辑模式",
+    (
+        "It is open which vertices correspond. Select one vertex on each mesh in Edit Mode, or two empties near "
+        "the surfaces in Object Mode, or click on them with Pick Landmarks."
+    ): (
+        "无法确定哪些顶点对应。请在编辑模式下于每个网格上选择一个顶点，或在物体模式下选择表面附近的两个空物体，"
+        "或用“拾取地标”点击它们。"
+    ),
+    "The file holds the symmetry of one mesh, not the match of two. Choose another file.": (
+        "该文件保存的是一个网格的对称性，而不是两个网格的匹配。请选择其他文件。"
+    ),
+    "Nothing is running": "没有正在运行的任务",
+    "There is nothing here that HierMatch has written": "这里没有 HierMatch 写入的内容",
+    "None of these objects carries anything that HierMatch has written.": "这些物体都没有 HierMatch 写入的内容。",
+    "No landmark is chosen. Choose one in the list, or add one.": "未选择地标。请在列表中选择一个，或添加一个。",
+    "There is no such matched point. Match Source and Target first, or choose a point in the list.": (
+        "没有这个匹配点。请先匹配源与目标，或在列表中选择一个点。"
+    ),
+    "There is no match to flip. Match two meshes first, or name one that carries a match.": (
+        "没有可切换的匹配。请先匹配两个网格，或指定一个带有匹配的网格。"
+    ),
+    "No file is named. Choose where the landmarks are kept.": "未指定文件。请选择保存地标的位置。",
+    "Two mesh objects are needed": "需要两个网格物体",
+    "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
+        "没有可点击的对象。请用两个顶点调用 hiermatch.add_landmark。"
+    ),
+    "One of the two meshes was deleted or renamed. Press Esc and start again.": (
+        "两个网格之一被删除或重命名。请按 Esc 后重新开始。"
+    ),
+    "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
+        "没有可改善的匹配。请选取两个网格作为源和目标并进行匹配。"
+    ),
+    "A landmark is far from where the map had taken it. If the result is wrong, match again.": (
+        "某个地标远离映射原来所指的位置。如果结果有误，请重新匹配。"
+    ),
+    "There is no match to show. Pick two meshes as Source and Target, and match them.": (
+        "没有可显示的匹配。请选取两个网格作为源和目标并进行匹配。"
+    ),
+    "Pick a Source or a Target first": "请先选取源或目标",
+    "It is open which mesh is to be made symmetric. Make it the active object.": (
+        "无法确定要对称化哪个网格。请将其设为活动物体。"
+    ),
+    "Leave Out": "排除",
+    "Output": "输出",
+    "Advanced": "高级",
+    "Of Source": "源中",
+    "Of Target": "目标中",
+    "Write": "写入",
+    "Viewport Color": "视图颜色",
+    "Pick two meshes, or select them: the active one is the source": "选取两个网格，或直接选中它们：活动网格为源",
+    "Measuring the matched points": "正在测量匹配点",
+    "Wrap and Morph": "包裹与变形",
+    "Switch to Object Mode first": "请先切换到物体模式",
+    "Mirror": "镜像",
+    "Pick Source and Target first": "请先选取源和目标",
+    "There is no match yet": "还没有匹配",
+    "Which mesh is the Source is open: pick it in the panel, or make it the active object.": (
+        "无法确定哪个网格是源：请在面板中选取，或将其设为活动物体。"
+    ),
+    "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source.": (
+        "无法确定哪个网格是目标。请在面板中选取，或在源之外再选择一个或多个。"
+    ),
+    "Finding faces": "正在查找面",
+    "Carrying materials and normals": "正在传递材质和法向",
+    "The rig of the source was changed meanwhile. Nothing was written.": "源的绑定在此期间被更改。未写入任何内容。",
+    "Placing the joints": "正在放置关节",
+    "Finding the rest pose": "正在寻找静置姿态",
+    "No shape key is named. Enter the Names of some, separated by commas.": (
+        "未指定形态键。请在“名称”中输入，用逗号分隔。"
+    ),
+    "Telling the sides apart": "正在区分两侧",
+    "Mirroring": "正在镜像",
+    "No UV map is named. Enter the Names of some, separated by commas.": (
+        "未指定 UV 贴图。请在“名称”中输入，用逗号分隔。"
+    ),
+    "Finding shapes in between": "正在寻找中间形状",
+    "The attributes of the stored map hold numbers that no match has written. Match again.": (
+        "已存映射的属性中含有并非由匹配写入的数值。请重新匹配。"
+    ),
+    "The stored map is one of meshes with other vertices. Match again.": "已存映射属于顶点不同的网格。请重新匹配。",
+    "Some distances are not finite: all points must lie on one connected part of the surface.": (
+        "某些距离不是有限值：所有点必须位于表面的同一连通部分上。"
+    ),
+    "No matching is possible: too many pairs of a point and a candidate are forbidden.": (
+        "无法匹配：被禁止的点与候选组合过多。"
+    ),
+    "No triangle of the mesh has three different corners. Check its scale and its vertices.": (
+        "网格中没有三个角各不相同的三角形。请检查其缩放和顶点。"
+    ),
+    "Nothing of the mesh has an area once repeated and degenerate faces are left out.": (
+        "去除重复面和退化面之后，网格没有任何面积。"
+    ),
+    "A search along the surface starts at a vertex without a triangle. Delete loose vertices.": (
+        "沿表面的搜索始于没有三角形的顶点。请删除松散顶点。"
+    ),
+    "Some values at the corners of faces are not finite numbers. Repair them, or leave them out.": (
+        "某些面拐上的值不是有限数。请修复或排除它们。"
+    ),
+    "Measuring distances": "正在测量距离",
+    "Judging the map": "正在评估映射",
+    "Mapping every vertex": "正在映射每个顶点",
+    "Bounding the best matching": "正在求最佳匹配的界限",
+    "Tracing edges": "正在追踪边",
+    "Computing eigenfunctions": "正在计算特征函数",
+    "The faces use vertices that the map does not know. Match again.": "这些面使用了映射中没有的顶点。请重新匹配。",
+    "Refining maps": "正在改善映射",
+    "Comparing maps": "正在比较映射",
+    "Placing the first points": "正在放置最初的点",
+    "Comparing matchings": "正在比较各匹配",
+    "No bone of the rig moves a vertex.": "绑定中没有任何骨骼带动顶点。",
+    "The mesh has no vertices.": "网格没有顶点。",
+    "The mesh has no faces. A surface is needed, not only vertices or edges.": (
+        "网格没有面。需要有表面，而不仅仅是顶点或边。"
+    ),
+    (
+        "Every triangle of the mesh has zero area: the mesh has no surface. Check its scale and whether its "
+        "vertices all lie on one line or in one point."
+    ): "网格的每个三角形面积都为零：网格没有表面。请检查其缩放，以及顶点是否都在一条线上或一个点上。",
+    "The faces of the mesh are not those that the map was made for. Match again.": (
+        "网格的面不是制作映射时的面。请重新匹配。"
+    ),
+    "A face has fewer than three corners. Repair the mesh.": "有一个面少于三个角。请修复网格。",
+    "Cleaning": "正在清理",
+    (
+        "Some points do not lie on the largest part of the mesh, which is the one that is matched. Choose points "
+        "on that part."
+    ): "某些点不在网格的最大部分上，而匹配的正是该部分。请在该部分上选择点。",
+    "Simplifying the mesh": "正在简化网格",
+    "There are no landmarks to refine the map around. Name at least one pair of vertices.": (
+        "没有可用来改善映射的地标。请至少指定一对顶点。"
+    ),
+    "Fitting the surfaces": "正在拟合表面",
+    "No bone moves the largest part of the source. Give it weights, or choose another source.": (
+        "没有骨骼带动源的最大部分。请为其添加权重，或选择其他源。"
+    ),
+    "Fitting the bones": "正在适配骨骼",
+    "The weights of the bones should be finite numbers that are not negative.": "骨骼的权重应为非负的有限数。",
+    "Posing hands": "正在调整手部姿态",
+    "Sliding": "正在滑动",
+    "Moving points over the surface": "正在沿表面移动各点",
+    "Finding regions without confidence": "正在查找没有置信度的区域",
+    "A shape key of the source moves a vertex by what is not a finite number. Repair that key.": (
+        "源的某个形态键移动顶点的量不是有限数。请修复该键。"
+    ),
+    "Carrying offsets": "正在传递偏移",
+    "The skeleton has a joint whose position is not a finite number.": "骨架中有一个关节的位置不是有限数。",
+    "Some bones of the skeleton are their own ancestors.": "骨架中有些骨骼是自己的祖先。",
+    (
+        "Nothing tells the two sides apart. Give the vertex groups names that end in .L and .R, or move the "
+        "object's origin so that its X axis points to the left side."
+    ): "没有什么能区分两侧。请为顶点组使用以 .L 和 .R 结尾的名称，或移动物体原点，使其 X 轴指向左侧。",
+    "The mesh is too coarse to be matched to anything but itself: use more Coarse Candidates or subdivide it.": (
+        "网格过于粗糙，只能与自身匹配：请使用更多粗匹配候选，或将其细分。"
+    ),
+    "Placing the points": "正在放置各点",
+    "Cutting islands": "正在切分孤岛",
+    "Laying faces onto islands": "正在将面放到孤岛上",
+    "Carrying weights": "正在传递权重",
+    "Looking for torn vertices": "正在查找撕开的顶点",
+    "Filling in weights": "正在填充权重",
+    "The maps belong to other meshes than those to be wrapped. Match them again.": (
+        "这些映射属于其他网格，而不是要包裹的网格。请重新匹配。"
+    ),
+    "The map does not hold the source anywhere on the target: the two are too different. Match them again.": (
+        "映射无法将源固定在目标的任何位置：两者差异过大。请重新匹配。"
+    ),
+    "Placing parts that the target lacks": "正在放置目标所缺的部分",
+    "Laying the surface onto the other": "正在将表面贴到另一方",
+    "Coarse Match": "粗匹配",
+    "Left and Right": "左右",
+    "Time": "时间",
+    "none": "无",
+    "unclear": "不明确",
+    "kept": "保持",
+    "exchanged": "互换",
+    "optimum proven": "已证明最优",
+    "within {gap} of the optimum": "与最优值相差不超过 {gap}",
+    "{count} points matched": "已匹配 {count} 个点",
+    "Custom": "自定义",
+    "Metric and Descriptor": "度量与描述符",
+    "Refinement": "改善",
+    "The match was cancelled. Nothing was written": "匹配已取消。未写入任何内容",
+    "It was cancelled. Nothing was written": "已取消。未写入任何内容",
+    "It was cancelled. The match is as it was": "已取消。匹配保持原样",
+    "It was cancelled. No landmark was added": "已取消。未添加地标",
+    "There is no mirrored match, so the only one was written.": "没有镜像匹配，因此写入了唯一的匹配。",
+    "The map turns large parts of the surface over: do not trust it; try landmarks.": (
+        "映射将表面的大片区域翻转：不可信，请尝试使用地标。"
+    ),
+    "Another map was almost as likely, such as one that swaps left and right: check the sides.": (
+        "另一个映射几乎同样可能，例如左右互换的映射：请检查左右。"
+    ),
+    "The shapes differ much: the map is a good guess that keeps left and right, but details may slide.": (
+        "形状差异很大：映射是一个保持左右的良好估计，但细节可能滑移。"
+    ),
+    "The shapes correspond, with some stretching where they differ.": "形状相互对应，在有差异之处有些拉伸。",
+    "The shapes correspond closely.": "形状紧密对应。",
+    "HierMatch Presets": "HierMatch 预设",
+    "Add HierMatch Preset": "添加 HierMatch 预设",
+    "Save the options of Match and Retarget as a preset, or remove one that was saved": (
+        "将匹配和重定向的选项保存为预设，或移除已保存的预设"
+    ),
+    "Name": "名称",
+    "Name of the preset, of which its file is named": "预设的名称，也用作其文件名",
+    "Remove by Name": "按名称移除",
+    "Remove the preset of that name instead of saving one": "移除该名称的预设，而不是保存",
+    "Remove Active": "移除活动项",
+    "Remove the preset that was chosen last instead of saving one": "移除上次选择的预设，而不是保存",
+    "Check Existing": "检查是否存在",
+    "Fast Preview": "快速预览",
+    "Two-Legged Characters": "双足角色",
+    "Creatures": "生物",
+    "Scans": "扫描",
+}
+"""The translation of each English text."""
