@@ -285,11 +285,15 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     positions, matches = posed, registration.matched(posed)
     shares = body.vertex_areas / body.area, target.vertex_areas / target.area
     for number, stiffness in enumerate(_STIFFNESS):
+        # Each third takes some tenths of a second: whoever drives this may stop in between.
+        done = [Progress(0.3 + 0.5 * (number + part / 3) / len(_STIFFNESS), "Sliding") for part in (1, 2, 3)]
         positions = registration.slid(positions, posed, matches, stiffness)
+        yield done[0]
         matches = registration.matched(positions)
+        yield done[1]
         bones = evidence.bones(positions, matches, *shares)
         posed = bones.posed
-        yield Progress(0.3 + 0.5 * (number + 1) / len(_STIFFNESS), "Sliding")
+        yield done[2]
     covered = matches.squared_distances <= _NEAR**2 * target.area
     if shares[1][covered].sum() < _LEAST_COVERED:
         return None
