@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any, Protocol
 
 import bpy
@@ -24,6 +25,12 @@ __all__ = ["Job", "JobOperator"]
 
 _SLICE = 0.05
 """Seconds of work between two events, so that the window stays responsive."""
+
+_LONGEST_SLICE = 0.15
+"""The same where drawing the window takes longer than that: half of the time should be work."""
+
+_REDRAW = 0.1
+"""Least time between two drawings of the progress."""
 
 _PAUSE = 0.01
 """Seconds between the timer's events."""
@@ -58,6 +65,8 @@ class JobOperator(_Operator):
     _job: Job
     _timer: bpy.types.Timer
     _workspace: str
+    _worked = 0.0  # when the last slice of work ended
+    _drawn = 0.0  # when the progress was drawn last
 
     def _start(self, context: bpy.types.Context) -> Job:
         """Read what is needed and make the job."""
@@ -107,9 +116,11 @@ class JobOperator(_Operator):
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
+        elsewhere = time.perf_counter() - self._worked
         try:
-            if not self._job.advance(view_layer_of(context), _SLICE):
+            if not self._job.advance(view_layer_of(context), min(max(_SLICE, elsewhere), _LONGEST_SLICE)):
                 self._show_progress(context)
+                self._worked = time.perf_counter()
                 return {"PASS_THROUGH"}
             finished = self._finish(context, self._job)
         except HierMatchError as error:
@@ -135,6 +146,9 @@ class JobOperator(_Operator):
         """Show how far the job is, in the panel and the status bar."""
         now, shown = self._job.progress, progress_of(context)
         shown.fraction, shown.label = now.fraction, now.label
+        if time.perf_counter() - self._drawn < _REDRAW:
+            return
+        self._drawn = time.perf_counter()
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
             workspace.status_text_set(f"{self.doing}: {now.label}, {now.fraction:.0%}    Esc: cancel")
