@@ -35,6 +35,7 @@ def edge_chains(edges: NDArray[np.int64]) -> list[tuple[list[int], list[int]]]:
     left = set(range(len(pairs)))
 
     def follow(start: int, first: int) -> tuple[list[int], list[int]]:
+        """Go on from a vertex along an edge until the chain ends: its vertices and edges."""
         vertices, passed, edge = [start], [], first
         while True:
             left.discard(edge)

@@ -45,6 +45,7 @@ def smoothed_mean_curvature(mesh: TriangleMesh, distances: NDArray[np.float64], 
     values = np.concatenate([mesh.vertices, mesh.vertex_normals], axis=1)
 
     def mean_over_patch(size: float) -> NDArray[np.float64]:
+        """Average positions and normals over a Gaussian patch of that size."""
         weight = np.exp(-np.square(distances / size) / 2) * mesh.vertex_areas
         return (weight @ values) / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
 

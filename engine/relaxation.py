@@ -88,10 +88,12 @@ class RelaxedMatching:
         shape = self.candidates.shape
 
         def softmax(logits: NDArray[np.float64]) -> NDArray[np.float64]:
+            """Turn each row into a mixture: not negative, summing to one."""
             powers = np.exp(logits - logits.max(axis=1, keepdims=True))
             return powers / powers.sum(axis=1, keepdims=True)
 
         def objective(flat: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+            """Evaluate the distortion of the mixture of some logits, and its gradient by them."""
             mixture = softmax(flat.reshape(shape))
             value, gradient = self.value_and_gradient(mixture)
             gradient -= (gradient * mixture).sum(axis=1, keepdims=True)

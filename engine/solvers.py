@@ -179,6 +179,7 @@ def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) 
     target, assignment = pair.target, levels[-1].assignment
 
     def places(numbers: NDArray[np.int64]) -> SurfacePoints:
+        """Put samples of the target, by their numbers, on its mesh."""
         return SurfacePoints.at_vertices(target.mesh, target.samples[numbers])
 
     return Answer(

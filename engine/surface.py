@@ -80,6 +80,7 @@ class SurfacePoints:
         """
 
         def keys(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+            """Name each triangle by one number, whatever corner it starts at."""
             low, middle, high = np.sort(triangles, axis=1).T
             return (low * mesh.vertex_count + middle) * mesh.vertex_count + high
 

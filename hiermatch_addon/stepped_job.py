@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from ..engine import Progress
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["SteppedJob"]
 
 
-class SteppedJob:
+class SteppedJob(ABC):
     """What jobs have in common: a generator that is driven for some time again and again.
 
     A job holds no references to Blender's data, but looks its objects up again in `_check`.
@@ -55,9 +56,9 @@ class SteppedJob:
         """Drop the work; nothing has been written."""
         self._steps.close()
 
+    @abstractmethod
     def _all_steps(self) -> Steps[Any]:
         """Do the work; what comes of it is kept on the job."""
-        raise NotImplementedError
 
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:  # noqa: B027 - few jobs need no check
         """Make sure that the objects are still what was read."""
