@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from .skeleton import Skeleton
 
-__all__ = ["BoneTransforms", "blended_rotations", "fit_bones", "skinned"]
+__all__ = ["BoneTransforms", "fit_bones", "skinned"]
 
 _ROUNDS = 12
 """Rounds of finding transforms, their nearest similarities and the trust in each vertex in turn."""
@@ -79,13 +79,6 @@ def _similarities(matrices: NDArray[np.float64]) -> tuple[NDArray[np.float64], N
     """Find the nearest rotation to each matrix (k, 3, 3), and its mean scale along the axes, (k,)."""
     rotations = nearest_rotations(matrices)
     return rotations, np.einsum("kij,kij->k", rotations, matrices) / 3
-
-
-def blended_rotations(weights: csr_array, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Blend the rotations of bones (b, 3, 3) at vertices by their weights (n, b): rotations (n, 3, 3)."""
-    mean = (weights @ rotations.reshape(-1, 9)).reshape(-1, 3, 3)
-    mean[weights.sum(axis=1) <= 0] = np.eye(3)
-    return nearest_rotations(mean)
 
 
 def fit_bones(

@@ -5,7 +5,7 @@ from scipy.sparse import csr_array
 from scipy.spatial.transform import Rotation
 
 from engine import Skeleton
-from engine.bone_fit import blended_rotations, fit_bones, skinned
+from engine.bone_fit import fit_bones, skinned
 from tests.shapes import creature
 from tests.skeletons import CONTROLS, creature_bones, creature_weights
 
@@ -99,12 +99,3 @@ def test_what_nobody_knows_does_not_count(body):
     spoiled[::7] += 100
     known = fit_bones(vertices, spoiled, areas, weights, skeleton)
     assert np.abs(known.posed - positions).max() < 5e-3
-
-
-def test_rotations_blend_along_the_surface():
-    weights = csr_array([[1.0, 0.0], [0.5, 0.5], [0.0, 0.0]])
-    turns = Rotation.from_rotvec([[0, 0, 0], [0, 0, 1.0]]).as_matrix()
-    blended = blended_rotations(weights, turns)
-    np.testing.assert_allclose(blended[0], np.eye(3), atol=1e-12)
-    np.testing.assert_allclose(blended[1], Rotation.from_rotvec([0, 0, 0.5]).as_matrix(), atol=1e-12)
-    np.testing.assert_allclose(blended[2], np.eye(3), atol=1e-12)
