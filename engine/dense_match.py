@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from .deformable import DeformableSurface
-from .dense_map import registered_pair_steps
+from .dense_map import EIGENPAIRS, registered_pair_steps
 from .followers import follow
 from .functional_maps import nearest_both_ways
 from .landmarks import placed_at_vertices
@@ -65,14 +65,20 @@ class DenseMatch:
 
 
 def densify(
-    source: TriangleMesh, target: TriangleMesh, source_points: SurfacePoints, target_points: SurfacePoints
+    source: TriangleMesh | Shape,
+    target: TriangleMesh | Shape,
+    source_points: SurfacePoints,
+    target_points: SurfacePoints,
 ) -> DenseMatch:
     """Extend a sparse correspondence to all vertices; see `densify_steps`."""
     return run(densify_steps(source, target, source_points, target_points))
 
 
 def densify_steps(
-    source: TriangleMesh, target: TriangleMesh, source_points: SurfacePoints, target_points: SurfacePoints
+    source: TriangleMesh | Shape,
+    target: TriangleMesh | Shape,
+    source_points: SurfacePoints,
+    target_points: SurfacePoints,
 ) -> Steps[DenseMatch]:
     """Extend a sparse correspondence to all vertices, in steps.
 
@@ -80,8 +86,9 @@ def densify_steps(
 
     Parameters
     ----------
-    source, target : TriangleMesh
-        The surfaces.
+    source, target : TriangleMesh or Shape
+        The surfaces.  With one `Shape` as both, a correspondence that mirrors is taken for its own inverse: the map is
+        found in one direction, which is the other one as well.
     source_points, target_points : SurfacePoints
         Corresponding points (k,) on them: some twenty, spread over the surface, are needed at least.
 
@@ -95,25 +102,29 @@ def densify_steps(
     MatchError
         If a point does not lie on the largest part of its mesh.
     """
-    x = yield from within(Shape.steps(source, "source"), 0.0, 0.05)
-    y = yield from within(Shape.steps(target, "target"), 0.05, 0.1)
+    x = yield from within(_shape_steps(source, "source"), 0.0, 0.1)
+    y = yield from within(_shape_steps(target, "target"), 0.1, 0.2)
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
-    yield Progress(0.15, "Measuring distances")
-    mirrored = _mirrors(x, y, start)
-    if mirrored:
-        # Seen in a mirror, the source is matched by a map that keeps the orientation.
-        reflected = reflected_mesh(source)
-        source_points = reflected_points(reflected, source_points)
-        x = yield from within(Shape.steps(reflected, "source"), 0.15, 0.2)
-        start = LandmarkStart(_rows(x, source_points), start.target_distances, "given")
     yield from within(x.sample_steps(_SAMPLES), 0.2, 0.28)
-    yield from within(y.sample_steps(_SAMPLES), 0.28, 0.35)
-    steps = registered_pair_steps(x.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=False)
+    yield from within(y.sample_steps(_SAMPLES), 0.28, 0.34)
+    yield from within(x.spectrum_steps(EIGENPAIRS), 0.34, 0.35)
+    mirrored = _mirrors(x, y, start)
+    # Seen in a mirror, the source is matched by a map that keeps the orientation.
+    seen = x.reflected() if mirrored else x
+    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=False)
     pair = yield from within(steps, 0.35, 0.8)
-    dense = yield from within(dense_match_steps(pair), 0.8, 1.0)
+    involution = mirrored and x is y
+    dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
     if mirrored:
-        dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, source))
+        dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))
     return dense
+
+
+def _shape_steps(surface: TriangleMesh | Shape, name: str) -> Steps[Shape]:
+    """Prepare a mesh, or return a shape as it is."""
+    if isinstance(surface, Shape):
+        return surface
+    return (yield from Shape.steps(surface, name))
 
 
 def _rows(shape: Shape, points: SurfacePoints) -> NDArray[np.float64]:
@@ -142,7 +153,7 @@ def _mirrors(x: Shape, y: Shape, start: LandmarkStart) -> bool:
     return SurfaceMap.from_points(y.mesh, SurfacePoints.at_vertices(y.mesh, images)).orientation(x.mesh, y.mesh) < 0
 
 
-def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH) -> Steps[DenseMatch]:
+def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involution: bool = False) -> Steps[DenseMatch]:
     """Carry a registration to every vertex of the meshes that the surfaces stand for.
 
     Parameters
@@ -151,6 +162,8 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH) -> Steps[Den
         The surfaces, one laid onto the other.
     polish : Stage
         How meshes that have a proxy are registered once more in full resolution.
+    involution : bool
+        Whether `x` is the reflection of `y` and the map its own inverse: then it is carried one way only.
 
     Returns
     -------
@@ -158,12 +171,19 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH) -> Steps[Den
         The maps between all vertices, parts beside the main ones included.
     """
     x, y = pair.x.surface, pair.y.surface
-    there = yield from within(_lifted_steps(x, y, pair.target, pair.registration), 0.0, 0.2)
-    back = yield from within(_lifted_steps(y, x, pair.source, pair.reverse), 0.2, 0.4)
     main_x, main_y = x.cleaned.mesh, y.cleaned.mesh
+    polished = None
     if max(main_x.vertex_count, main_y.vertex_count) <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
-        steps = _polished_steps(main_x, main_y, (there, back), pair.landmarks, polish)
-        there, back = yield from within(steps, 0.4, 0.8)
+        polished = _Polish(main_x, main_y, pair.landmarks, polish)
+    there = yield from within(_lifted_steps(x, y, pair.target, pair.registration), 0.0, 0.2)
+    if polished is not None:
+        there = yield from within(polished.steps(there, 0), 0.2, 0.4)
+    if involution:
+        back = reflected_points(main_x, there)
+    else:
+        back = yield from within(_lifted_steps(y, x, pair.source, pair.reverse), 0.4, 0.6)
+        if polished is not None:
+            back = yield from within(polished.steps(back, 1), 0.6, 0.8)
     if pair.landmarks is not None:
         here, partners = pair.landmarks.source.main, pair.landmarks.target.main
         there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
@@ -182,25 +202,23 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH) -> Steps[Den
     return DenseMatch(forward, backward, quality)
 
 
-def _polished_steps(
-    main_x: TriangleMesh,
-    main_y: TriangleMesh,
-    maps: tuple[SurfacePoints, SurfacePoints],
-    landmarks: Landmarks | None,
-    polish: Stage,
-) -> Steps[tuple[SurfacePoints, SurfacePoints]]:
-    """Register once more in full resolution, where what is between the vertices of the proxies counts."""
-    surfaces = [DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (main_x, main_y)]
-    places = None if landmarks is None else (landmarks.source.main, landmarks.target.main)
-    polished = []
-    for here, there, begin in ((0, 1, 0.0), (1, 0, 0.5)):
-        source, target = surfaces[here], surfaces[there]
+class _Polish:
+    """Registers once more in full resolution, where what is between the vertices of the proxies counts."""
+
+    def __init__(self, main_x: TriangleMesh, main_y: TriangleMesh, landmarks: Landmarks | None, stage: Stage) -> None:
+        self._surfaces = [DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (main_x, main_y)]
+        self._places = None if landmarks is None else (landmarks.source.main, landmarks.target.main)
+        self._stage = stage
+
+    def steps(self, points: SurfacePoints, here: int) -> Steps[SurfacePoints]:
+        """Register X onto Y (`here` is 0) or Y onto X (1), from where a map takes its vertices."""
+        source, target = self._surfaces[here], self._surfaces[1 - here]
         ties = None
-        if places is not None:
-            at = SurfacePoints.at_vertices(source.mesh, places[here])
-            ties = Ties.at(source.mesh, at, target.vertices[places[there]])
-        steps = register_steps(source, target, target.in_unit_size(maps[here].positions), (polish,), ties=ties)
-        fine = yield from within(steps, begin, begin + 0.4)
+        if self._places is not None:
+            at = SurfacePoints.at_vertices(source.mesh, self._places[here])
+            ties = Ties.at(source.mesh, at, target.vertices[self._places[1 - here]])
+        steps = register_steps(source, target, target.in_unit_size(points.positions), (self._stage,), ties=ties)
+        fine = yield from within(steps, 0.0, 0.8)
         lift = lift_steps(
             source.mesh,
             Proxy.identity(source.mesh),
@@ -210,8 +228,7 @@ def _polished_steps(
             proxy_map=_nearest(fine.on_target, target.mesh),
             search=target.search,
         )
-        polished.append((yield from within(lift, begin + 0.4, begin + 0.5)))
-    return polished[0], polished[1]
+        return (yield from within(lift, 0.8, 1.0))
 
 
 def _lifted_steps(

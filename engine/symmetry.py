@@ -36,7 +36,6 @@ _CURVATURE_WEIGHT = 6.0
 _INVOLUTION_SCALE = 0.1  # mean distance between a point and the image of its image that counts as far
 _OVERSAMPLING = 2  # times the hypotheses of a match: many swap left and right in a part of the body only
 _ROUNDS = 4  # of making the map its own inverse, and of placing the images; both settle in two or three
-_ALTERNATIVES = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,8 +138,17 @@ def find_symmetry(surface: TriangleMesh | Shape, settings: MatchSettings | None 
     return run(find_symmetry_steps(surface, settings))
 
 
-def find_symmetry_steps(surface: TriangleMesh | Shape, settings: MatchSettings | None = None) -> Steps[SymmetryResult]:
+def find_symmetry_steps(
+    surface: TriangleMesh | Shape, settings: MatchSettings | None = None, alternatives: int = 3
+) -> Steps[SymmetryResult]:
     """Find the intrinsic symmetry of a surface in short steps; see `find_symmetry`.
+
+    Parameters
+    ----------
+    surface, settings
+        As there.
+    alternatives : int
+        How many other symmetries are placed on the surface, at most.
 
     Yields
     ------
@@ -167,7 +175,7 @@ def find_symmetry_steps(surface: TriangleMesh | Shape, settings: MatchSettings |
     coarse = yield from within(_coarse_steps(pair), 0.55, 0.7, "Matching the surface to itself")
     candidates = yield from within(_candidate_steps(pair, coarse), 0.7, 0.9, "Comparing symmetries")
     best = next((c for c in candidates if c.orientation < 0), candidates[0])
-    chosen = [best, *(c for c in candidates if c is not best)][: 1 + _ALTERNATIVES]
+    chosen = [best, *(c for c in candidates if c is not best)][: 1 + alternatives]
     results = []
     for number, candidate in enumerate(chosen):
         yield Progress(0.9 + 0.1 * number / len(chosen), "Placing the points")

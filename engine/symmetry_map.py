@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from .dense_match import densify_steps
 from .progress import run, within
+from .shape import Shape
 from .symmetry import find_symmetry_steps
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def symmetry_map(mesh: TriangleMesh, settings: MatchSettings | None = None) -> D
     Returns
     -------
     DenseMatch
-        The map in `source_to_target`, and its inverse in `target_to_source`, which is nearly the same.
+        The map in `source_to_target`, and its inverse in `target_to_source`: if it mirrors, the same map once more.
 
     Raises
     ------
@@ -47,6 +48,7 @@ def symmetry_map(mesh: TriangleMesh, settings: MatchSettings | None = None) -> D
 
 def symmetry_map_steps(mesh: TriangleMesh, settings: MatchSettings | None = None) -> Steps[DenseMatch]:
     """Map every vertex to its mirror image in short steps; see `symmetry_map`."""
-    symmetry = yield from within(find_symmetry_steps(mesh, settings), 0.0, 0.5)
-    steps = densify_steps(mesh, mesh, symmetry.source_points, symmetry.target_points)
-    return (yield from within(steps, 0.5, 1.0))
+    shape = yield from within(Shape.steps(mesh), 0.0, 0.05)
+    symmetry = yield from within(find_symmetry_steps(shape, settings, alternatives=0), 0.05, 0.4)
+    steps = densify_steps(shape, shape, symmetry.source_points, symmetry.target_points)
+    return (yield from within(steps, 0.4, 1.0))

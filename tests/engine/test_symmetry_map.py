@@ -39,6 +39,11 @@ def test_twice_the_map_is_nearly_the_identity(body, mirrored):
     assert gap.mean() < 0.02
 
 
+def test_the_map_is_its_own_inverse(body, mirrored):
+    assert len(mirrored.target_to_source) == body[0].vertex_count
+    np.testing.assert_allclose(mirrored.target_to_source.positions, mirrored.source_to_target.positions, atol=1e-12)
+
+
 def test_progress_rises(body):
     fractions = []
     steps = symmetry_map_steps(body[0], QUICK)
