@@ -28,8 +28,11 @@ def copy_armature(context: bpy.types.Context, source: bpy.types.Object, name: st
     """
     matrix = source.matrix_world.copy()
     copy, data = source.copy(), armature_of(source).copy()
-    copy.name = data.name = name
     copy.data = data
+    for made in (copy, data):  # the copy of a library override is one as well, and its bones could not be edited
+        if made.override_library is not None:
+            made.make_local(clear_liboverride=True)
+    copy.name = data.name = name
     copy.parent = None
     copy.constraints.clear()
     _stop_animation(copy)

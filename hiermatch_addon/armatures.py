@@ -17,7 +17,15 @@ if TYPE_CHECKING:
     import mathutils
     from numpy.typing import NDArray
 
-__all__ = ["SourceRig", "armature_modifier", "armature_of", "find_armature", "read_rig", "read_skeleton"]
+__all__ = [
+    "SourceRig",
+    "armature_modifier",
+    "armature_of",
+    "find_armature",
+    "moving_armatures",
+    "read_rig",
+    "read_skeleton",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +70,13 @@ def find_armature(obj: bpy.types.Object) -> bpy.types.Object | None:
     if modifier is not None:
         return modifier.object
     return obj.parent if obj.parent is not None and obj.parent.type == "ARMATURE" else None
+
+
+def moving_armatures(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return the armatures of all Armature modifiers of an object, each once."""
+    modifiers = [modifier for modifier in obj.modifiers if modifier.type == "ARMATURE"]
+    armatures = [cast("bpy.types.ArmatureModifier", modifier).object for modifier in modifiers]
+    return list(dict.fromkeys(armature for armature in armatures if armature is not None))
 
 
 def read_skeleton(armature: bpy.types.Object) -> Skeleton:

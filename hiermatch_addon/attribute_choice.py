@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .access import mesh_of
-from .attribute_io import AttributeLayout, attribute_layouts, is_known, read_seams
+from .attribute_io import AttributeLayout, attribute_layouts, is_free, is_known, read_seams
 from .errors import ObjectError
 from .written_names import written_names
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from .transfers.attributes_options import AttributeSettings
 
-__all__ = ["SEAMS", "AttributeChoice", "choose_attributes"]
+__all__ = ["SEAMS", "AttributeChoice", "choose_attributes", "taken_note"]
 
 SEAMS = AttributeLayout("uv_seam", "BOOLEAN", "EDGE")
 """Seams as an attribute: what newer versions call them; older ones have them, but not under a name."""
@@ -59,7 +59,6 @@ def choose_attributes(
         If an attribute is asked for by a name that the source does not have.
     """
     layouts = attribute_layouts(mesh_of(source))
-    present = attribute_layouts(mesh_of(target))
     ours = written_names(source) | written_names(target)
     unknown = [name for name in settings.names if name not in layouts]
     if unknown:
@@ -70,16 +69,21 @@ def choose_attributes(
             continue
         if not is_known(layout.kind):
             notes.append(f'The attribute "{name}" of "{source.name}" is of the type {layout.kind}, and was left out.')
-        elif present.get(name, layout) != layout or name in target.vertex_groups:
-            notes.append(
-                f'"{target.name}" already has something else called "{name}", so that attribute was left out. '
-                "Rename one of them."
-            )
+        elif not is_free(target, layout):
+            notes.append(taken_note(target, name))
         else:
             chosen.append(layout)
     if settings.seams and read_seams(mesh_of(source)).any():
         chosen.append(SEAMS)
     return AttributeChoice(tuple(chosen), tuple(notes))
+
+
+def taken_note(target: bpy.types.Object, name: str) -> str:
+    """Say that an attribute was left out, because its name is taken on the target."""
+    return (
+        f'"{target.name}" already has something else called "{name}", so that attribute was left out. Rename one of '
+        "them."
+    )
 
 
 def _is_wanted(layout: AttributeLayout, settings: AttributeSettings) -> bool:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..engine.polygons import Polygons
+from .access import mesh_of
 
 if TYPE_CHECKING:
     import bpy
@@ -18,6 +19,7 @@ __all__ = [
     "AttributeLayout",
     "attribute_layouts",
     "is_blended",
+    "is_free",
     "is_known",
     "read_attribute",
     "read_corner_normals",
@@ -82,6 +84,12 @@ def attribute_layouts(mesh: bpy.types.Mesh) -> dict[str, AttributeLayout]:
 def is_known(kind: str) -> bool:
     """Tell whether attributes of a type can be read and written."""
     return kind in _TYPES
+
+
+def is_free(obj: bpy.types.Object, layout: AttributeLayout) -> bool:
+    """Tell whether an attribute can be written on a mesh object: nothing else there has its name."""
+    present = attribute_layouts(mesh_of(obj)).get(layout.name, layout)
+    return present == layout and layout.name not in obj.vertex_groups
 
 
 def is_blended(kind: str) -> bool:

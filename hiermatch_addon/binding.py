@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import bpy
 
-from .armatures import armature_modifier, find_armature
+from .armatures import armature_modifier, find_armature, moving_armatures
 
 __all__ = ["bind", "made_rig", "mark_made"]
 
@@ -25,8 +25,8 @@ def mark_made(armature: bpy.types.Object, source: bpy.types.Object) -> None:
 
 def made_rig(target: bpy.types.Object, source: bpy.types.Object) -> bpy.types.Object | None:
     """Find the armature that moves `target`, or is its parent, and was made after the armature `source`."""
-    moving = [cast("Any", modifier).object for modifier in target.modifiers if modifier.type == "ARMATURE"]
-    for armature in (*moving, target.parent):
+    candidates: list[Any] = [*moving_armatures(target), target.parent]
+    for armature in candidates:
         if armature is None or armature.type != "ARMATURE" or armature == source or _MARKER not in armature:
             continue
         # One made after an armature that was renamed or deleted since is meant as well.
@@ -53,8 +53,7 @@ def bind(target: bpy.types.Object, armature: bpy.types.Object, source: bpy.types
         _take_settings(modifier, armature_modifier(source), target)
         modifier.object = armature
         target.modifiers.move(len(target.modifiers) - 1, 0)
-    moving = [cast("Any", one).object for one in target.modifiers if one.type == "ARMATURE"]
-    others = [other.name for other in moving if other not in {None, armature}]
+    others = [other.name for other in moving_armatures(target) if other != armature]
     if others:
         notes.append(
             f'"{target.name}" is moved by the armature "{others[0]}" as well. Remove that Armature modifier unless '

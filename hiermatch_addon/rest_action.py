@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["keep_pose", "pose_bases"]
 
+_MARKER = "hiermatch_rest"
+"""Custom property of the actions that were made here: the name of the armature they were made for."""
+
 _CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 
 
@@ -54,7 +57,7 @@ def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.flo
 
 
 def keep_pose(armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix], *, show: bool) -> bpy.types.Action:
-    """Keep a pose as an action of one frame, of that name, with a fake user; an action of that name is replaced.
+    """Keep a pose as an action of one frame, with a fake user; one that was made before is replaced.
 
     Parameters
     ----------
@@ -72,13 +75,13 @@ def keep_pose(armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix]
     bpy.types.Action
         The action.
     """
-    old = bpy.data.actions.get(name)
-    if old is not None:
-        bpy.data.actions.remove(old)
+    for old in [action for action in bpy.data.actions if cast("Any", action).get(_MARKER) == armature.name]:
+        bpy.data.actions.remove(old)  # another one of that name is the user's own
     animation: Any = armature.animation_data or armature.animation_data_create()
     before = animation.action, getattr(animation, "action_slot", None)
-    action = bpy.data.actions.new(name)
+    action: Any = bpy.data.actions.new(name)
     action.use_fake_user = True
+    action[_MARKER] = armature.name
     animation.action = action
     pose = cast("bpy.types.Pose", armature.pose)
     for bone_name, basis in bases.items():

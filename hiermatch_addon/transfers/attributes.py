@@ -13,9 +13,10 @@ from ...engine.face_transfer import carry_face_values
 from ...engine.local_frames import surface_frames
 from ...engine.progress import Progress, within
 from ..access import mesh_of
-from ..attribute_choice import SEAMS, choose_attributes
+from ..attribute_choice import SEAMS, choose_attributes, taken_note
 from ..attribute_io import (
     is_blended,
+    is_free,
     read_attribute,
     read_corner_normals,
     read_polygons,
@@ -127,6 +128,11 @@ class AttributeTransfer:
         """Write everything."""
         mesh = mesh_of(target)
         done = []
+        # The vertex groups that were carried just before may have taken a name.
+        taken = [layout for layout in self._values if layout != SEAMS and not is_free(target, layout)]
+        for layout in taken:
+            del self._values[layout]
+            self._notes.append(taken_note(target, layout.name))
         for layout, values in self._values.items():
             if layout == SEAMS:
                 write_seams(mesh, values)

@@ -12,7 +12,7 @@ from ...engine.progress import Progress
 from ...engine.rest_pose import is_posed, rest_pose
 from ..access import view_layer_of
 from ..armature_copy import copy_armature, move_joints, repoint
-from ..armatures import armature_of, find_armature, read_rig
+from ..armatures import armature_of, find_armature, moving_armatures, read_rig
 from ..binding import bind, made_rig, mark_made
 from ..bone_constraints import adapt_constraints, displaced_bones
 from ..errors import ObjectError
@@ -78,6 +78,12 @@ class RigTransfer:
             raise ObjectError(f'The armature "{armature.name}" has a scale of zero. Set its scale first.')
         if armature.mode == "EDIT":
             raise ObjectError(f'The armature "{armature.name}" is in Edit Mode. Switch to Object Mode first.')
+        others = [other.name for other in moving_armatures(source) if other != armature]
+        if others:
+            self._notes.append(
+                f'"{source.name}" is moved by {_listed(others)} as well as by "{armature.name}". Only the latter was '
+                "fitted."
+            )
         self._names = rig.names
         axes = [bone.matrix_local.to_3x3().col[2] for bone in armature_of(armature).bones]
         self._normals = np.array(axes, np.float64) @ matrix[:3, :3].T

@@ -11,7 +11,7 @@ from ...engine.uv_transfer import carry_uvs_steps
 from ..access import mesh_of
 from ..attribute_io import (
     AttributeLayout,
-    attribute_layouts,
+    is_free,
     read_attribute,
     read_polygons,
     write_attribute,
@@ -59,16 +59,11 @@ class UVTransfer:
     def read(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
         """Read the source's layers and both meshes' faces, and make sure that the layers can be written."""
         mine, theirs = mesh_of(source), mesh_of(target)
-        present = attribute_layouts(theirs)
         for name in self._chosen(source):
-            layout = _layout(name)
-            if present.get(name, layout) != layout or name in target.vertex_groups:
-                self._notes.append(
-                    f'"{target.name}" already has a vertex group or another attribute called "{name}", so that UV map '
-                    "was left out. Rename one of them."
-                )
-            else:
+            if is_free(target, _layout(name)):
                 self._layers[name] = read_attribute(mine, name)
+            else:
+                self._notes.append(_taken(target, name))
         count = len({layer.name for layer in theirs.uv_layers} | self._layers.keys())
         if count > _MOST_LAYERS:
             raise ObjectError(
@@ -95,6 +90,10 @@ class UVTransfer:
 
     def write(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
         """Write layers and seams."""
+        # The vertex groups that were carried just before may have taken a name.
+        for name in [name for name in self._carried if not is_free(target, _layout(name))]:
+            del self._carried[name]
+            self._notes.append(_taken(target, name))
         if not self._carried:
             return TransferReport("", tuple(self._notes))
         mesh = mesh_of(target)
@@ -134,6 +133,14 @@ class UVTransfer:
 def _layout(name: str) -> AttributeLayout:
     """Say what a UV layer is among the attributes."""
     return AttributeLayout(name, "FLOAT2", "CORNER")
+
+
+def _taken(target: bpy.types.Object, name: str) -> str:
+    """Say that a layer was left out, because its name is taken on the target."""
+    return (
+        f'"{target.name}" already has a vertex group or another attribute called "{name}", so that UV map was left '
+        "out. Rename one of them."
+    )
 
 
 def _remarks(name: str, carried: CarriedUVs, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:

@@ -79,6 +79,21 @@ def test_what_is_active_comes_along(pair):
     assert [layer.name for layer in target.data.uv_layers if layer.active_render] == ["Third"]
 
 
+def test_a_vertex_group_that_is_carried_as_well_takes_the_name(pair):
+    source, target = pair
+    source.vertex_groups.new(name="Mask").add([0, 1, 2], 1.0, "REPLACE")
+    source.data.uv_layers.new(name="Mask")
+    source.data.attributes.new("Fur", "FLOAT", "FACE")
+    source.vertex_groups.new(name="Wool").name = "Fur"
+    bpy.ops.hiermatch.retarget(source="Source", target="Target", refine=False, use_attributes=True)
+    assert {"Mask", "Fur"} <= set(target.vertex_groups.keys())
+    assert names(target) == ["UVMap"]
+    assert "Fur" not in target.data.attributes
+    notes = bpy.context.scene.hiermatch_retarget.report.notes
+    assert 'called "Mask", so that UV map' in notes
+    assert 'called "Fur", so that attribute' in notes
+
+
 def test_some_layers_only(pair):
     source, target = pair
     source.data.uv_layers.active = source.data.uv_layers.new(name="Second")

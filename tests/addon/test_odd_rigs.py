@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rig fit with rigs and files that are set up unusually."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from tests.addon.rigs import add_rigged, add_target
+from tests.addon.test_fit_rig import add_weights, fit, own, shown
+
+
+def test_a_library_override_is_copied_as_a_rig_of_its_own(tmp_path):
+    _, armature = add_rigged()
+    path = str(tmp_path / "library.blend")
+    bpy.data.libraries.write(path, {armature})
+    bpy.ops.wm.read_homefile(use_empty=True)
+    source, armature = add_rigged()
+    bpy.data.objects.remove(armature)
+    with bpy.data.libraries.load(path, link=True) as (there, here):
+        here.objects = list(there.objects)
+    bpy.context.scene.collection.objects.link(here.objects[0])
+    override = here.objects[0].override_create(remap_local_usages=True)
+    source.modifiers["Armature"].object = override
+    target, _ = add_target(source)
+    add_weights(source, target)
+    made, _ = fit(source, target)
+    assert made.override_library is None
+    assert made.library is None
+    assert made.data.library is None
+    assert override.override_library is not None
+    np.testing.assert_allclose(shown(target), own(target), atol=1e-5)
+
+
+def test_a_second_armature_is_told():
+    source, _ = add_rigged()
+    _, second = add_rigged("Second")
+    target, _ = add_target(source)
+    source.modifiers.new("Clothes", "ARMATURE").object = second
+    made, report = fit(source, target)
+    assert [modifier.object for modifier in target.modifiers] == [made]
+    assert any('moved by "Second Rig" as well' in note for note in report.notes)
+
+
+def test_an_action_of_the_users_own_is_not_replaced():
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    mine = bpy.data.actions.new("Source Rig Target Rest")
+    for _ in range(2):
+        fit(source, target, rest=True, pose="POSED")
+    assert mine == bpy.data.actions["Source Rig Target Rest"]
+    assert len(bpy.data.actions) == 2
