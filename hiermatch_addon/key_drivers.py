@@ -5,16 +5,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .shape_key_io import key_value_path, keys_of
+from .shape_key_io import keys_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping
 
     import bpy
 
 __all__ = ["copy_key_drivers", "counterparts"]
-
-_MEMBERS = "value", "mute", "slider_min", "slider_max"
 
 
 def counterparts(
@@ -31,7 +29,7 @@ def counterparts(
 
 
 def copy_key_drivers(
-    source: bpy.types.Key, target: bpy.types.Key, names: Sequence[str], places: Mapping[bpy.types.ID, bpy.types.ID]
+    source: bpy.types.Key, target: bpy.types.Key, paths: Collection[str], places: Mapping[bpy.types.ID, bpy.types.ID]
 ) -> tuple[int, set[str]]:
     """Copy the drivers of some keys, with their expressions, variables and curves.
 
@@ -41,8 +39,8 @@ def copy_key_drivers(
     ----------
     source, target : bpy.types.Key
         The shape keys of both.
-    names : sequence of str
-        Keys that both have.
+    paths : collection of str
+        What the drivers are wanted of, see `key_paths`; both have it.
     places : mapping
         What takes the place of what, see `counterparts`.
 
@@ -56,7 +54,6 @@ def copy_key_drivers(
     animation = source.animation_data
     if animation is None:
         return 0, set()
-    paths = {key_value_path(name, member) for name in names for member in _MEMBERS}
     count, kept = 0, set()
     for driver in [curve for curve in animation.drivers if curve.data_path in paths]:
         target.driver_remove(driver.data_path)

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 __all__ = [
     "KeySettings",
     "add_keys",
+    "can_be_absolute",
     "check_keys_writable",
+    "key_paths",
     "key_positions",
     "key_value_path",
     "keys_of",
@@ -32,6 +34,9 @@ __all__ = [
 
 _RANGE = 10.0
 """Blender's own bound of the range of a key's value."""
+
+_MEMBERS = "value", "mute", "slider_min", "slider_max"
+"""What of a key can be animated."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,8 @@ class KeySettings:
         Name of the group that limits it; may be empty.
     interpolation : str
         How it is interpolated when keys are absolute.
+    frame : float
+        At which time it is reached when keys are absolute.
     """
 
     name: str
@@ -62,6 +69,7 @@ class KeySettings:
     mute: bool = False
     vertex_group: str = ""
     interpolation: str = "KEY_LINEAR"
+    frame: float = 0.0
 
     @classmethod
     def of(cls, key: bpy.types.ShapeKey, names: Sequence[str]) -> KeySettings:
@@ -76,6 +84,7 @@ class KeySettings:
             mute=key.mute,
             vertex_group=key.vertex_group,
             interpolation=key.interpolation,
+            frame=key.frame,
         )
 
     def write(self, obj: bpy.types.Object, key: bpy.types.ShapeKey) -> None:
@@ -138,8 +147,13 @@ def read_offsets(obj: bpy.types.Object, names: Sequence[str], *, from_reference:
     return offsets
 
 
-def check_keys_writable(obj: bpy.types.Object, names: Sequence[str]) -> None:
-    """Make sure that shape keys of such names can be written on an object.
+def can_be_absolute(obj: bpy.types.Object, names: Sequence[str]) -> bool:
+    """Tell whether absolute keys of such names can be written on an object: there are no others but its basis."""
+    return set(shape_key_names(obj)) <= set(names)
+
+
+def check_keys_writable(obj: bpy.types.Object, names: Sequence[str], *, absolute: bool = False) -> None:
+    """Make sure that shape keys of such names can be written on an object, as absolute ones or relative ones.
 
     Raises
     ------
@@ -154,7 +168,7 @@ def check_keys_writable(obj: bpy.types.Object, names: Sequence[str]) -> None:
         )
     if keys is None:
         return
-    if not keys.use_relative:
+    if not keys.use_relative and not absolute:
         raise ObjectError(
             f'The shape keys of "{obj.name}" are absolute. Turn Relative on in its Shape Keys panel, or remove them.'
         )
@@ -168,7 +182,11 @@ def check_keys_writable(obj: bpy.types.Object, names: Sequence[str]) -> None:
 
 
 def add_keys(
-    obj: bpy.types.Object, settings: Sequence[KeySettings], offsets: NDArray[np.float64] | NDArray[np.float32]
+    obj: bpy.types.Object,
+    settings: Sequence[KeySettings],
+    offsets: NDArray[np.float64] | NDArray[np.float32],
+    *,
+    time: float | None = None,
 ) -> None:
     """Write shape keys: those of the same name are replaced, others added at the end, a basis if there is none.
 
@@ -180,19 +198,40 @@ def add_keys(
         What is set on each key.
     offsets : (k, n, 3) array of float
         By how much it moves the vertices from the reference key, in the object's space.
+    time : float, optional
+        The keys are absolute, in the order of their frames, and this is the time.
     """
     mesh, active = mesh_of(obj), obj.active_shape_key_index
     if mesh.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)
     keys = cast("bpy.types.Key", mesh.shape_keys)
+    if time is not None:
+        _begin_absolute(obj, keys)
     reference = key_positions(keys.reference_key)
     for one, moved in zip(settings, offsets, strict=True):
+        if time is not None:
+            keys.eval_time = one.frame
         key = keys.key_blocks.get(one.name) or obj.shape_key_add(name=one.name, from_mix=False)
         key.data.foreach_set("co", (reference + moved).astype(np.float32).ravel())
     for one in settings:  # when all are there, as they may be relative to each other
         one.write(obj, keys.key_blocks[one.name])
-    obj.active_shape_key_index = active
+    if time is not None:
+        keys.eval_time = time
+    obj.active_shape_key_index = min(active or 0, len(keys.key_blocks) - 1)
     mesh.update()
+
+
+def _begin_absolute(obj: bpy.types.Object, keys: bpy.types.Key) -> None:
+    """Make keys absolute, and leave the basis only: Blender gives a key its frame when it is added, and never again."""
+    for key in [key for key in keys.key_blocks if key != keys.reference_key]:
+        obj.shape_key_remove(key)
+    keys.use_relative = False
+
+
+def key_paths(names: Sequence[str], *, absolute: bool) -> set[str]:
+    """Return the paths from shape keys to all that can be animated of keys of those names."""
+    paths = {key_value_path(name, member) for name in names for member in _MEMBERS}
+    return paths | {"eval_time"} if absolute else paths
 
 
 def key_value_path(name: str, member: str = "value") -> str:

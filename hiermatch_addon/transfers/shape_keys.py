@@ -11,11 +11,14 @@ from ...engine.local_frames import bone_frames, surface_frames
 from ...engine.shape_key_transfer import carry_offsets_steps
 from ..armatures import find_armature
 from ..errors import ObjectError
+from ..key_actions import share_key_action
 from ..key_drivers import copy_key_drivers, counterparts
 from ..shape_key_io import (
     KeySettings,
     add_keys,
+    can_be_absolute,
     check_keys_writable,
+    key_paths,
     keys_of,
     linear_part,
     read_offsets,
@@ -50,6 +53,7 @@ class ShapeKeyTransfer:
         self._settings = settings
         self._keys: tuple[KeySettings, ...] = ()
         self._offsets: NDArray[np.float64] = np.empty((0, 0, 3))
+        self._time: float | None = None  # of the target's keys, if they become absolute
         self._to_local: NDArray[np.float64] = np.eye(3)
         self._carried: NDArray[np.float32] = np.empty((0, 0, 3), np.float32)
         self._notes: list[str] = []
@@ -63,13 +67,19 @@ class ShapeKeyTransfer:
             chosen = [name for name in chosen if name not in present]
             if skipped:
                 self._notes.append(f'"{target.name}" already has {_listed(skipped)}, which was skipped.')
-        check_keys_writable(target, chosen)
         keys = cast("bpy.types.Key", keys_of(source))
+        absolute = not keys.use_relative and can_be_absolute(target, chosen)
+        check_keys_writable(target, chosen, absolute=absolute)
         self._keys = tuple(KeySettings.of(keys.key_blocks[name], chosen) for name in chosen)
-        if not keys.use_relative:
-            self._notes.append(f'The shape keys of "{source.name}" are absolute; on "{target.name}" they are relative.')
+        self._time = keys.eval_time if absolute else None
+        if not keys.use_relative and not absolute:
+            self._notes.append(
+                f'The shape keys of "{source.name}" are absolute; on "{target.name}", which has others, they are '
+                "relative."
+            )
         # To world space, where the two surfaces are compared, and back into the target's.
-        local = read_offsets(source, chosen, from_reference=chosen)
+        direct = chosen if keys.use_relative else shape_key_names(source)
+        local = read_offsets(source, chosen, from_reference=direct)
         self._offsets = local @ linear_part(context, source).T
         self._to_local = np.linalg.inv(linear_part(context, target)).T
 
@@ -94,16 +104,15 @@ class ShapeKeyTransfer:
         """Write keys and drivers."""
         if not self._keys:
             return TransferReport("", tuple(self._notes))
-        add_keys(target, self._keys, self._carried)
+        add_keys(target, self._keys, self._carried, time=self._time)
         missing = sorted({key.vertex_group for key in self._keys} - {"", *target.vertex_groups.keys()})
         if missing:
             self._notes.append(
                 f'"{target.name}" has no vertex group {_listed(missing)}, by which shape keys of "{source.name}" are '
                 "limited. Carry the weights over first."
             )
-        done = _counted(len(self._keys), "shape key")
-        drivers = self._copy_drivers(source, target) if self._settings.drivers else 0
-        return TransferReport(f"{done} and {_counted(drivers, 'driver')}" if drivers else done, tuple(self._notes))
+        done = [_counted(len(self._keys), "shape key"), *self._animate(source, target)]
+        return TransferReport(" and ".join([", ".join(done[:-1]), done[-1]] if done[1:] else done), tuple(self._notes))
 
     def _chosen(self, source: bpy.types.Object) -> list[str]:
         """Names of the keys to carry, in the order of the source."""
@@ -126,14 +135,26 @@ class ShapeKeyTransfer:
             return [name for name in names if name in self._settings.names]
         return list(names)
 
-    def _copy_drivers(self, source: bpy.types.Object, target: bpy.types.Object) -> int:
-        """Copy the drivers of the keys that were written."""
-        places = counterparts(source, target, find_armature(source), find_armature(target))
+    def _animate(self, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
+        """Copy the drivers of the keys that were written, and share their action; say what was done."""
         mine, theirs = cast("bpy.types.Key", keys_of(source)), cast("bpy.types.Key", keys_of(target))
-        count, kept = copy_key_drivers(mine, theirs, [key.name for key in self._keys], places)
-        if kept:
-            self._notes.append(f'Drivers of the shape keys of "{target.name}" still point to {_listed(sorted(kept))}.')
-        return count
+        paths = key_paths([key.name for key in self._keys], absolute=self._time is not None)
+        done = []
+        if self._settings.drivers:
+            places = counterparts(source, target, find_armature(source), find_armature(target))
+            count, kept = copy_key_drivers(mine, theirs, paths, places)
+            if count:
+                done.append(_counted(count, "driver"))
+            if kept:
+                points = _listed(sorted(kept))
+                self._notes.append(f'Drivers of the shape keys of "{target.name}" still point to {points}.')
+        if self._settings.action:
+            shared, note = share_key_action(source, target, paths)
+            if shared:
+                done.append(f'the action "{shared}"')
+            if note:
+                self._notes.append(note)
+        return done
 
 
 def _listed(names: list[str]) -> str:

@@ -34,6 +34,8 @@ class ShapeKeySettings:
         Part of a key's largest offset below which offsets are dropped.
     drivers : bool
         Whether their drivers are copied.
+    action : bool
+        Whether the target's keys play the source's action.
     """
 
     choice: str = "ALL"
@@ -42,6 +44,7 @@ class ShapeKeySettings:
     scaling: Scaling = "auto"
     threshold: float = 0.001
     drivers: bool = True
+    action: bool = True
 
 
 _SCALINGS: dict[str, Scaling] = {"AUTO": "auto", "NONE": "none", "OVERALL": "overall", "LOCAL": "local"}
@@ -105,6 +108,12 @@ class ShapeKeyOptions:
             "copies point to the target and its armature",
             default=True,
         ),
+        "key_action": _props.BoolProperty(
+            name="Action",
+            description="Let the target's shape keys play the action of the source's, unless they have one of their "
+            "own. Both share it",
+            default=True,
+        ),
     }
 
     if TYPE_CHECKING:
@@ -114,6 +123,7 @@ class ShapeKeyOptions:
         key_scaling: str
         key_threshold: float
         key_drivers: bool
+        key_action: bool
 
 
 def shape_key_settings(options: ShapeKeyOptions) -> ShapeKeySettings:
@@ -126,4 +136,5 @@ def shape_key_settings(options: ShapeKeyOptions) -> ShapeKeySettings:
         scaling=_SCALINGS[options.key_scaling],
         threshold=options.key_threshold,
         drivers=options.key_drivers,
+        action=options.key_action,
     )

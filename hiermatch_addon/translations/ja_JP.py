@@ -688,6 +688,11 @@ MESSAGES: Final[dict[str, str]] = {
         "シェイプキーのドライバーをコピーします。ソースまたはそのアーマチュアを参照している箇所は、ターゲットと"
         "そのアーマチュアを参照します"
     ),
+    "Action": "アクション",
+    "Let the target's shape keys play the action of the source's, unless they have one of their own. Both share it": (
+        "ターゲットのシェイプキーに独自のアクションがなければ、ソースのシェイプキーのアクションで動かします。"
+        "アクションは両者で共有されます"
+    ),
     "Which UV maps of the source are carried over. Those of the same name are replaced": (
         "ソースのどのUVマップを転送するか。同名のものは置き換えられます"
     ),

@@ -575,6 +575,10 @@ MESSAGES: Final[dict[str, str]] = {
         "Copy the drivers of the shape keys. Where they point to the source or its armature, the copies point to "
         "the target and its armature"
     ): "复制形态键的驱动器。其中指向源或其骨架之处，在副本中指向目标及其骨架",
+    "Action": "动作",
+    "Let the target's shape keys play the action of the source's, unless they have one of their own. Both share it": (
+        "若目标的形态键没有自己的动作，则播放源的形态键的动作。两者共用该动作"
+    ),
     "Which UV maps of the source are carried over. Those of the same name are replaced": (
         "传递源的哪些 UV 贴图。同名的会被替换"
     ),

@@ -194,6 +194,79 @@ def test_offsets_are_those_of_the_world(pair, scale):
     np.testing.assert_allclose(offsets_of(target, "Lift") * scale, before, atol=2e-3)
 
 
+def make_absolute(obj, frames):
+    """Give an object's keys frames of their own, in the order of their names; Blender only does that to new keys."""
+    keys = obj.data.shape_keys
+    shapes = {key.name: positions(obj) + offsets_of(obj, key.name) for key in keys.key_blocks[1:]}
+    for key in list(keys.key_blocks[1:]):
+        obj.shape_key_remove(key)
+    keys.use_relative = False
+    for (name, shape), frame in zip(shapes.items(), frames, strict=True):
+        keys.eval_time = frame
+        obj.shape_key_add(name=name, from_mix=False).data.foreach_set("co", shape.astype(np.float32).ravel())
+    return keys
+
+
+def shown(obj):
+    """Vertices as the shape keys move them."""
+    bpy.context.view_layer.update()
+    mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    return np.array([vertex.co for vertex in mesh.vertices])
+
+
+def test_absolute_keys_stay_absolute(pair):
+    source, target = pair
+    keys = make_absolute(source, [12.5, 40])
+    keys.key_blocks["Swell"].interpolation = "KEY_CARDINAL"
+    keys.eval_time = 12.5
+    for _ in range(2):  # the second time they are there already
+        assert carry() == {"FINISHED"}
+        carried = target.data.shape_keys
+        assert not carried.use_relative
+        assert carried.eval_time == 12.5
+        assert [(key.name, key.frame) for key in carried.key_blocks] == [("Basis", 0), ("Swell", 12.5), ("Lift", 40)]
+        assert carried.key_blocks["Swell"].interpolation == "KEY_CARDINAL"
+        np.testing.assert_allclose(shown(target) - positions(target), offsets_of(target, "Swell"), atol=1e-5)
+
+
+def test_absolute_keys_become_relative_beside_others(pair):
+    source, target = pair
+    make_absolute(source, [10, 20])
+    add_key(target, "Own", 0 * positions(target))
+    assert carry() == {"FINISHED"}
+    assert target.data.shape_keys.use_relative
+    assert names(target) == ["Basis", "Own", "Swell", "Lift"]
+    assert "they are relative" in bpy.context.scene.hiermatch_retarget.report.notes
+
+
+@pytest.mark.parametrize("absolute", [False, True])
+def test_the_action_of_the_keys_is_shared(pair, absolute):
+    source, target = pair
+    keys = make_absolute(source, [10, 20]) if absolute else source.data.shape_keys
+    moved = keys if absolute else keys.key_blocks["Swell"]
+    for frame, value in ((1, 0), (11, 10 if absolute else 1)):
+        setattr(moved, "eval_time" if absolute else "value", value)
+        moved.keyframe_insert("eval_time" if absolute else "value", frame=frame)
+    carry(key_action=False)
+    assert target.data.shape_keys.animation_data is None
+    assert carry() == {"FINISHED"}
+    assert target.data.shape_keys.animation_data.action == keys.animation_data.action
+    bpy.context.scene.frame_set(11)
+    np.testing.assert_allclose(shown(target) - positions(target), offsets_of(target, "Swell"), atol=1e-5)
+    assert f'the action "{keys.animation_data.action.name}"' in bpy.context.scene.hiermatch_retarget.report.done
+
+
+def test_an_action_of_its_own_stays(pair):
+    source, target = pair
+    source.data.shape_keys.key_blocks["Swell"].keyframe_insert("value", frame=1)
+    own = add_key(target, "Own", 0 * positions(target))
+    own.keyframe_insert("value", frame=1)
+    mine = target.data.shape_keys.animation_data.action
+    assert carry() == {"FINISHED"}
+    assert target.data.shape_keys.animation_data.action == mine
+    assert "keep their own action" in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 def test_bad_input_changes_nothing(pair):
     source, target = pair
     for options, words in (
