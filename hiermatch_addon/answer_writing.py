@@ -6,8 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..engine import Progress
+from ..engine.progress import run, within
 from . import writing
-from .contents import contents
+from .contents import contents_steps
 from .vertex_maps import add_maps, place_points
 
 if TYPE_CHECKING:
@@ -16,11 +18,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..engine import SurfacePoints, TriangleMesh
+    from ..engine.progress import Steps
     from .contents import Content
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["Restored", "contents_with_maps", "restored", "write_answer"]
+__all__ = ["Restored", "contents_with_maps", "mapped_contents_steps", "restored", "write_answer"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +54,21 @@ def contents_with_maps(
     other: StoredMaps | None,
 ) -> tuple[Content, Content]:
     """Prepare the chosen answer with its dense maps, and those of the other one."""
-    maps, left_out = shown.between(*meshes), stored.left_out
-    prepared = contents(restored(stored, meshes), prefix, stored.written, maps, left_out=left_out)
+    return run(mapped_contents_steps(stored, meshes, prefix, shown, other))
+
+
+def mapped_contents_steps(
+    stored: StoredMatch,
+    meshes: tuple[TriangleMesh, TriangleMesh],
+    prefix: str,
+    shown: StoredMaps,
+    other: StoredMaps | None,
+) -> Steps[tuple[Content, Content]]:
+    """Prepare them in steps; see `contents_with_maps`."""
+    yield Progress(0.0, "Preparing what is written")
+    maps = shown.between(*meshes)
+    steps = contents_steps(restored(stored, meshes), prefix, stored.written, maps, left_out=stored.left_out)
+    prepared = yield from within(steps, 0.3, 1.0)
     add_maps(prepared, prefix, shown, other)
     return prepared
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from ..engine import Progress
+from ..engine.progress import run
 from . import colors
 from .stretch import DOUBLED, vertex_stretch
 
@@ -16,9 +18,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..engine.progress import Steps
     from .vertex_maps import MapPair
 
-__all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents"]
+__all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents", "contents_steps"]
+
+_LABEL = "Preparing what is written"
 
 UNREACHED = -1.0
 """Value of the distortion where there is none to tell: at a vertex without an edge, or, if there is no dense map, one
@@ -146,26 +151,41 @@ def contents(
     source, target : Content
         What to write on each.
     """
+    return run(contents_steps(result, prefix, kinds, maps, left_out=left_out))
+
+
+def contents_steps(
+    result: Correspondence,
+    prefix: str,
+    kinds: Kinds,
+    maps: MapPair | None = None,
+    *,
+    left_out: Collection[int] = (),
+) -> Steps[tuple[Content, Content]]:
+    """Prepare it in steps; see `contents`."""
     prepared = (Content(), Content())
     if kinds.vertex_groups:
         for content, points in zip(prepared, (result.source_points, result.target_points), strict=True):
             content.groups.update(_groups(points, prefix, left_out))
     if maps is not None:
-        _add_mapped(prepared, maps, prefix, kinds)
+        yield from _add_mapped_steps(prepared, maps, prefix, kinds)
     elif result.source_distances is not None and result.target_distances is not None:
         _add_spread(prepared, result, (result.source_distances, result.target_distances), prefix, kinds)
     return prepared
 
 
-def _add_mapped(prepared: tuple[Content, Content], maps: MapPair, prefix: str, kinds: Kinds) -> None:
+def _add_mapped_steps(prepared: tuple[Content, Content], maps: MapPair, prefix: str, kinds: Kinds) -> Steps[None]:
     """Add what dense maps tell of every vertex."""
+    yield Progress(0.0, _LABEL)
     if kinds.match_colors:
         own = colors.match_colors(maps.source.vertices, maps.source.vertex_areas)
         for content, shown in zip(prepared, (own, maps.target_to_source.transfer(own)), strict=True):
             content.colors[f"{prefix} Match"] = colors.opaque(colors.to_linear(shown))
-    for content, sides in zip(prepared, (maps, maps.reverse), strict=True):
+    for number, (content, sides) in enumerate(zip(prepared, (maps, maps.reverse), strict=True)):
+        yield Progress((1 + number) / 3, _LABEL)
         if kinds.distortion:
             stretch = vertex_stretch(sides.source_to_target, sides.source, sides.target)
+            yield Progress((1.5 + number) / 3, _LABEL)
             _add_distortion(content, prefix, stretch, DOUBLED)
         if kinds.confidence:
             shades = colors.confidence_colors(sides.source_to_target.confidence)

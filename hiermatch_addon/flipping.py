@@ -1,27 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write the other answer of a match that is kept on two meshes."""
+"""The other answer of a match that two meshes keep: from what they keep to what is written on them anew."""
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar, cast
+from typing import TYPE_CHECKING
 
 from ..engine import Shape, densify_steps
 from ..engine.progress import within
 from ..engine.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .access import mesh_of, view_layer_of
-from .answer_writing import contents_with_maps, restored, write_answer
-from .contents import contents
+from .answer_writing import mapped_contents_steps, restored, write_answer
+from .contents import contents_steps
 from .errors import ObjectError
-from .halves import find_keyed
+from .halves import find_again, find_keyed
 from .mesh_io import read_mesh
 from .pair import check_pair
+from .stepped_job import SteppedJob
 from .stored_match import StoredMatch
 from .vertex_maps import StoredMaps, map_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import bpy
     import numpy as np
     from numpy.typing import NDArray
@@ -31,17 +31,18 @@ if TYPE_CHECKING:
     from .contents import Content
     from .halves import Half
 
-__all__ = ["flip"]
+__all__ = ["FlipJob"]
 
-_Result = TypeVar("_Result")
+_MAPPED = 0.95
+"""Where on the bar of progress the making of dense maps ends."""
 
 
-def flip(
-    context: bpy.types.Context, half: Half, progress: Callable[[float], None]
-) -> tuple[StoredMatch, tuple[str, str]]:
-    """Write the other answer of a match in place of the one that is written.
+class FlipJob(SteppedJob):
+    """Writes the other answer of a match in place of the one that is written.
 
-    The dense maps of the answer that was written stay on the meshes, so that the way back takes no time.
+    The dense maps of the answer that was written stay on the meshes, so that the way back takes no time.  Between two
+    calls of `advance` Blender may do anything, so the job holds no references to its objects but looks them up again,
+    and ends with an error if they are not what they were.  Nothing is written before `finish`.
 
     Parameters
     ----------
@@ -49,43 +50,107 @@ def flip(
         Where the objects are.
     half : Half
         One side of the match.
-    progress : callable
-        Is told how much is done, from 0 to 1.
 
-    Returns
-    -------
-    stored : StoredMatch
-        The match as it is now.
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
     names : tuple of str
-        What source and target are called now.
+        What source and target of the match are called now.
+    prefix, key : str
+        Which match it is.
+    seconds : float
+        Once finished, how long it took.
 
     Raises
     ------
     HierMatchError
-        If there is no other answer, or the meshes are not what they were; nothing is written then.
+        If there is no other answer, or the meshes are not what they were.
     """
-    depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
-    view_layer = view_layer_of(context)
-    partner = find_keyed(view_layer, half.key, half.prefix, half.partner_role, half.partner_name)
-    source, target = (half, partner) if half.role == "source" else (partner, half)
-    objects = (source.obj, target.obj)
-    check_pair(view_layer, *objects)
-    for side in (source, target):
-        _check_topology(side)
-    stored = StoredMatch.from_plain(source.kept, target.kept)
-    if len(stored.answers) < 2:
-        raise ObjectError(
-            f'The match of "{source.obj.name}" and "{target.obj.name}" has no mirrored answer: '
-            "the meshes are not symmetric enough for one."
+
+    def __init__(self, context: bpy.types.Context, half: Half) -> None:
+        self._start = time.perf_counter()
+        depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
+        view_layer = view_layer_of(context)
+        partner = find_keyed(view_layer, half.key, half.prefix, half.partner_role, half.partner_name)
+        source, target = (half, partner) if half.role == "source" else (partner, half)
+        check_pair(view_layer, source.obj, target.obj)
+        for side in (source, target):
+            _check_topology(side)
+        self.names, self.prefix, self.key = (source.obj.name, target.obj.name), half.prefix, half.key
+        self._uids = (source.obj.session_uid, target.obj.session_uid)
+        stored = StoredMatch.from_plain(source.kept, target.kept)
+        if len(stored.answers) < 2:
+            raise ObjectError(
+                f'The match of "{source.obj.name}" and "{target.obj.name}" has no mirrored answer: '
+                "the meshes are not symmetric enough for one."
+            )
+        self._stored = replace(stored, mirrored=not stored.mirrored)
+        use_modifiers = stored.written.use_modifiers
+        self._meshes = (
+            read_mesh(source.obj, depsgraph, use_modifiers=use_modifiers),
+            read_mesh(target.obj, depsgraph, use_modifiers=use_modifiers),
         )
-    stored = replace(stored, mirrored=not stored.mirrored)
-    source_mesh, target_mesh = (
-        read_mesh(obj, depsgraph, use_modifiers=stored.written.use_modifiers) for obj in objects
-    )
-    restore = _with_maps if stored.written.dense else _with_distances
-    stored, prepared = restore(stored, objects, (source_mesh, target_mesh), half.prefix, progress)
-    write_answer(objects, stored, prepared, half.prefix)
-    return stored, (objects[0].name, objects[1].name)
+        self._maps, self._other_maps = (
+            StoredMaps.read(mesh_of(source.obj), mesh_of(target.obj), map_name(half.prefix, other=other))
+            for other in (False, True)
+        )
+        self._prepared: tuple[Content, Content] | None = None
+        self.seconds = 0.0
+        super().__init__()
+
+    def finish(self, context: bpy.types.Context) -> StoredMatch:
+        """Write the other answer on both objects, and return what is kept of the match.
+
+        Raises
+        ------
+        HierMatchError
+            If the objects have changed, or the user's own vertex groups or attributes are in the way.
+        """
+        if self._prepared is None:
+            raise RuntimeError("The work has not come to its end yet.")
+        source, target = self._halves(view_layer_of(context))
+        for side in (source, target):
+            _check_topology(side)
+        self.names = (source.obj.name, target.obj.name)
+        write_answer((source.obj, target.obj), self._stored, self._prepared, self.prefix)
+        self.seconds = time.perf_counter() - self._start
+        return self._stored
+
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+        self._halves(view_layer)
+
+    def _halves(self, view_layer: bpy.types.ViewLayer) -> tuple[Half, Half]:
+        """Look the objects up again and make sure that they still carry the match."""
+        halves = find_again(self._uids, self.names, self.prefix, self.key)
+        check_pair(view_layer, halves[0].obj, halves[1].obj)
+        return halves
+
+    def _all_steps(self) -> Steps[None]:
+        """Find what the other answer says of every vertex, and prepare what is written."""
+        steps = self._mapped_steps() if self._stored.written.dense else self._measured_steps()
+        self._prepared = yield from steps
+
+    def _mapped_steps(self) -> Steps[tuple[Content, Content]]:
+        """Prepare the answer from its dense maps, which are made if the meshes do not keep them."""
+        stored, meshes, maps, start = self._stored, self._meshes, self._other_maps, 0.0
+        if maps is None:
+            points = restored(stored, meshes)
+            dense = yield from within(densify_steps(*meshes, points.source_points, points.target_points), 0.0, _MAPPED)
+            maps, start = StoredMaps.of(dense.source_to_target, dense.target_to_source), _MAPPED
+            self._stored = stored.with_quality(dense.quality)
+        steps = mapped_contents_steps(self._stored, meshes, self.prefix, maps, self._maps)
+        return (yield from within(steps, start, 1.0))
+
+    def _measured_steps(self) -> Steps[tuple[Content, Content]]:
+        """Prepare the answer from the distances between its points and the vertices."""
+        stored, (source, target) = self._stored, self._meshes
+        answer = restored(stored, self._meshes)
+        if stored.written.match_colors or stored.written.distortion:
+            from_source = yield from within(_distances_steps(source, answer.source_points), 0.0, 0.5)
+            from_target = yield from within(_distances_steps(target, answer.target_points), 0.5, 1.0)
+            answer = replace(answer, source_distances=from_source, target_distances=from_target)
+        return (yield from contents_steps(answer, self.prefix, stored.written, left_out=stored.left_out))
 
 
 def _check_topology(half: Half) -> None:
@@ -97,52 +162,8 @@ def _check_topology(half: Half) -> None:
         )
 
 
-def _with_maps(
-    stored: StoredMatch,
-    objects: tuple[bpy.types.Object, bpy.types.Object],
-    meshes: tuple[TriangleMesh, TriangleMesh],
-    prefix: str,
-    progress: Callable[[float], None],
-) -> tuple[StoredMatch, tuple[Content, Content]]:
-    """Prepare the chosen answer from its dense maps, which are made if the meshes do not keep them."""
-    source, target = (mesh_of(obj) for obj in objects)
-    shown = StoredMaps.read(source, target, map_name(prefix))
-    maps = StoredMaps.read(source, target, map_name(prefix, other=True))
-    if maps is None:
-        points = restored(stored, meshes)
-        dense = _drive(densify_steps(*meshes, points.source_points, points.target_points), progress)
-        maps = StoredMaps.of(dense.source_to_target, dense.target_to_source)
-        stored = stored.with_quality(dense.quality)
-    return stored, contents_with_maps(stored, meshes, prefix, maps, shown)
-
-
-def _with_distances(
-    stored: StoredMatch,
-    _objects: tuple[bpy.types.Object, bpy.types.Object],
-    meshes: tuple[TriangleMesh, TriangleMesh],
-    prefix: str,
-    progress: Callable[[float], None],
-) -> tuple[StoredMatch, tuple[Content, Content]]:
-    """Prepare the chosen answer from the distances between its points and the vertices."""
-    answer, (source, target) = restored(stored, meshes), meshes
-    if stored.written.match_colors or stored.written.distortion:
-        from_source = _drive(_distances_steps(source, answer.source_points), lambda done: progress(done / 2))
-        from_target = _drive(_distances_steps(target, answer.target_points), lambda done: progress((1 + done) / 2))
-        answer = replace(answer, source_distances=from_source, target_distances=from_target)
-    return stored, contents(answer, prefix, stored.written, left_out=stored.left_out)
-
-
 def _distances_steps(mesh: TriangleMesh, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
     """Measure the distances from points to all vertices of a mesh, as a match does."""
     shape = yield from within(Shape.steps(mesh), 0.0, 0.2)
     own = points if shape.surface.is_whole else shape.surface.on_mesh(points)
     return (yield from within(to_all_vertices_steps(SurfaceDistances(shape), own), 0.2, 1.0))
-
-
-def _drive(steps: Steps[_Result], progress: Callable[[float], None]) -> _Result:
-    """Drive a computation to its end, telling how far it is."""
-    while True:
-        try:
-            progress(next(steps).fraction)
-        except StopIteration as stop:
-            return cast("_Result", stop.value)

@@ -15,7 +15,7 @@ from bpy.app.handlers import persistent
 from .access import summary_of
 from .halves import find_carriers
 from .landmark_layer import has_landmarks
-from .redraw import redraw_panels
+from .redraw import redraw_sidebars
 from .steering_lists import sync_lists
 from .writing import is_marked
 
@@ -42,7 +42,7 @@ def refresh(scene: bpy.types.Scene) -> None:
     if summary.stale != stale:
         summary.stale = stale
         # Blender draws again what an operator changed, but not what a timer did.
-        redraw_panels(cast("bpy.types.WindowManager", bpy.context.window_manager))
+        redraw_sidebars(cast("bpy.types.WindowManager", bpy.context.window_manager))
     sync_lists(scene)
 
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import bpy
+
 from . import writing
 from .access import mesh_of
 from .errors import ObjectError
@@ -14,9 +16,7 @@ from .mesh_io import position_digest, topology
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    import bpy
-
-__all__ = ["Half", "find_carriers", "find_common", "find_half", "find_keyed"]
+__all__ = ["Half", "find_again", "find_carriers", "find_common", "find_half", "find_keyed"]
 
 
 @dataclass(frozen=True)
@@ -149,6 +149,33 @@ def find_carriers(objects: Iterable[bpy.types.Object], key: str, prefix: str, ro
         and (kept := writing.kept(obj, prefix))
         and (kept["key"], kept["role"]) == (key, role)
     ]
+
+
+def find_again(uids: tuple[int, int], names: tuple[str, str], prefix: str, key: str) -> tuple[Half, Half]:
+    """Find the two sides of a match again that some work has begun with.
+
+    Parameters
+    ----------
+    uids : tuple of int
+        By which Blender knows the two objects in this session.
+    names : tuple of str
+        What they were called when the work began.
+    prefix, key : str
+        Which match.
+
+    Raises
+    ------
+    ObjectError
+        If one of them is gone, or does not carry the match any more.
+    """
+    halves = []
+    for uid, name in zip(uids, names, strict=True):
+        obj = next((obj for obj in bpy.data.objects if obj.session_uid == uid), None)
+        half = None if obj is None else Half(obj, prefix, writing.kept(obj, prefix))
+        if half is None or not half.kept or half.key != key:
+            raise ObjectError(f'"{name}" was deleted, cleared or matched anew meanwhile. Nothing was written.')
+        halves.append(half)
+    return halves[0], halves[1]
 
 
 def find_common(one: bpy.types.Object, other: bpy.types.Object) -> list[tuple[Half, Half]]:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..engine import MatchSettings, SettingsError, densify_steps, match_steps
+from ..engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
 from ..engine.progress import within
 from . import writing
 from .access import mesh_of, view_layer_of
-from .contents import contents
+from .contents import contents_steps
 from .errors import ObjectError
 from .excluded_regions import excluded_vertices
 from .landmarks import find_landmarks, landmark_array
@@ -27,10 +27,14 @@ from .vertex_maps import StoredMaps, add_maps
 if TYPE_CHECKING:
     from ..engine import DenseMatch, MatchResult
     from ..engine.progress import Steps
+    from .contents import Content
     from .properties import MatchOptions
     from .vertex_maps import MapPair
 
 __all__ = ["JobOptions", "MatchJob", "Outcome", "job_options"]
+
+_MATCHED = 0.98
+"""Where on the bar of progress the match ends, and what is written is prepared."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,15 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """What the engine found: the result, and the dense maps of its mirrored answer if they are wanted."""
+    """What the engine found.
+
+    Attributes
+    ----------
+    result : MatchResult
+        The result.
+    mirrored : DenseMatch or None
+        The dense maps of its mirrored answer, if they are wanted.
+    """
 
     result: MatchResult
     mirrored: DenseMatch | None
@@ -134,6 +146,15 @@ class _Found:
         if found is None or found.source_to_target is None or found.target_to_source is None:
             return None
         return StoredMaps.of(found.source_to_target, found.target_to_source)
+
+
+@dataclass(frozen=True, eq=False)
+class _Prepared:
+    """The answer that is written, its maps, and what is written of it on source and target."""
+
+    result: MatchResult
+    maps: MapPair | None
+    contents: tuple[Content, Content]
 
 
 class MatchJob(SteppedJob):
@@ -185,12 +206,18 @@ class MatchJob(SteppedJob):
             excluded_vertices(target, options.exclude_target),
         )
         self._found: _Found | None = None
+        self._prepared: _Prepared | None = None
         super().__init__()
 
     def _check(self, view_layer: bpy.types.ViewLayer) -> None:
         self._objects(view_layer)
 
     def _all_steps(self) -> Steps[None]:
+        """Match, and prepare what is to be written."""
+        self._found = yield from within(self._match_steps(), 0.0, _MATCHED)
+        self._prepared = yield from within(self._prepare_steps(self._found), _MATCHED, 1.0)
+
+    def _match_steps(self) -> Steps[_Found]:
         """Match, and make the dense maps of the mirrored answer if that is to be written."""
         options, (source, target) = self._options, self._meshes
         both = options.use_mirrored and options.settings.dense
@@ -198,17 +225,32 @@ class MatchJob(SteppedJob):
         result = yield from within(steps, 0.0, 0.7 if both else 1.0)
         mirrored = result.mirrored
         if not both or mirrored is None:
-            self._found = _Found(result, None)
-            return
+            return _Found(result, None)
         dense = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
-        self._found = _Found(result, (yield from within(dense, 0.7, 1.0)))
+        return _Found(result, (yield from within(dense, 0.7, 1.0)))
+
+    def _prepare_steps(self, found: _Found) -> Steps[_Prepared]:
+        """Prepare what is to be written of either answer."""
+        prefix, direct, mirrored = self._options.prefix, found.result, self._writes_mirrored(found)
+        result = direct.mirrored if mirrored and direct.mirrored is not None else direct
+        kept, maps = found.maps(mirrored=mirrored), None
+        if kept is not None:
+            yield Progress(0.0, "Preparing what is written")
+            maps = kept.between(*self._meshes)
+        contents = yield from within(contents_steps(result, prefix, self._options, maps), 0.3, 1.0)
+        if kept is not None:
+            add_maps(contents, prefix, kept, found.maps(mirrored=not mirrored))
+        return _Prepared(result, maps, contents)
+
+    def _writes_mirrored(self, found: _Found) -> bool:
+        return self._options.use_mirrored and found.result.mirrored is not None
 
     @property
     def maps(self) -> StoredMaps | None:
         """The dense maps of the answer that is to be written, as they are kept; None as long as there are none."""
         if self._found is None:
             return None
-        return self._found.maps(mirrored=self._options.use_mirrored and self._found.result.mirrored is not None)
+        return self._found.maps(mirrored=self._writes_mirrored(self._found))
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
         """Write the result on both objects.
@@ -218,26 +260,19 @@ class MatchJob(SteppedJob):
         HierMatchError
             If the objects have changed, or the user's own vertex groups or attributes are in the way.
         """
-        if self._found is None:
+        if self._found is None or self._prepared is None:
             raise RuntimeError("The match has not come to its end yet.")
         objects = self._objects(view_layer)
         for obj, read in zip(objects, self._topologies, strict=True):
             if topology(mesh_of(obj)) != read:
                 raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
         names, prefix = (objects[0].name, objects[1].name), self._options.prefix
-        stored = self._stored(self._found, names)
-        direct = self._found.result
-        result = direct.mirrored if stored.mirrored and direct.mirrored is not None else direct
-        stored_maps = self._found.maps(mirrored=stored.mirrored)
-        maps = None if stored_maps is None else stored_maps.between(*self._meshes)
-        prepared = contents(result, prefix, self._options, maps)
-        if stored_maps is not None:
-            add_maps(prepared, prefix, stored_maps, self._found.maps(mirrored=not stored.mirrored))
-        for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
+        stored, prepared = self._stored(self._found, names), self._prepared
+        for obj, content, kept in zip(objects, prepared.contents, stored.to_plain(), strict=True):
             writing.check_names(obj, content, prefix)
             content.keep.update(kept)
-        writing.write(list(zip(objects, prepared, strict=True)), prefix)
-        return Outcome(*names, result, maps, stored, time.perf_counter() - self._start)
+        writing.write(list(zip(objects, prepared.contents, strict=True)), prefix)
+        return Outcome(*names, prepared.result, prepared.maps, stored, time.perf_counter() - self._start)
 
     def _stored(self, found: _Found, names: tuple[str, str]) -> StoredMatch:
         """Collect what is kept of the match in the file."""
@@ -261,7 +296,7 @@ class MatchJob(SteppedJob):
             ),
             source_points=CornerPoints.of(result.source_points),
             answers=tuple(answers),
-            mirrored=options.use_mirrored and result.mirrored is not None,
+            mirrored=self._writes_mirrored(found),
             notes=tuple(notes),
         )
 

@@ -10,7 +10,7 @@ import bpy
 
 from ..engine import HierMatchError
 from .access import progress_of, view_layer_of, window_manager_of
-from .redraw import redraw_panels
+from .redraw import redraw_sidebars
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -26,7 +26,7 @@ __all__ = ["Job", "JobOperator"]
 _SLICE = 0.05
 """Seconds of work between two events, so that the window stays responsive."""
 
-_LONGEST_SLICE = 0.15
+_LONGEST_SLICE = 0.1
 """The same where drawing the window takes longer than that: half of the time should be work."""
 
 _REDRAW = 0.1
@@ -57,10 +57,13 @@ class JobOperator(_Operator):
         What the status bar says while it runs.
     cancelled : str
         What is reported when it was cancelled.
+    panel : str
+        Identifier of the panel that shows how far it is.
     """
 
     doing: str
     cancelled: str
+    panel = "HIERMATCH_PT_match"
 
     _job: Job
     _timer: bpy.types.Timer
@@ -140,7 +143,7 @@ class JobOperator(_Operator):
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
             workspace.status_text_set(None)
-        redraw_panels(window_manager_of(context))
+        redraw_sidebars(window_manager_of(context))
 
     def _show_progress(self, context: bpy.types.Context) -> None:
         """Show how far the job is, in the panel and the status bar."""
@@ -152,4 +155,4 @@ class JobOperator(_Operator):
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
             workspace.status_text_set(f"{self.doing}: {now.label}, {now.fraction:.0%}    Esc: cancel")
-        redraw_panels(window_manager_of(context))
+        redraw_sidebars(window_manager_of(context))

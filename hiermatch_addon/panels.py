@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from .access import layout_of, progress_of, state_of, window_manager_of
+from .access import layout_of, state_of
 from .pair import selected_meshes
 from .panel_text import draw_text, translated
 from .preset_menu import HIERMATCH_PT_presets
+from .progress_bar import draw_progress
 from .properties import copy_options
-from .running import is_running
 from .setting_groups import APART, shown_groups
 from .setups import current_setup
 
@@ -147,10 +147,7 @@ def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> Non
 
 def _draw_run(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_scene) -> None:
     """Draw the button, or how far the running match is."""
-    if is_running(window_manager_of(context)):
-        progress = progress_of(context)
-        layout.progress(text=progress.label, factor=progress.fraction)
-        layout.operator("hiermatch.cancel", icon="CANCEL")
+    if draw_progress(layout, context, HIERMATCH_PT_match.bl_idname):
         return
     row = layout.row()
     row.scale_y = 1.5
@@ -170,8 +167,8 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         ("Source", summary.source),
         ("Target", summary.target),
         ("Confidence", f"{summary.confidence:.0%}" if summary.verdict else ""),
-        ("Distortion", f"{summary.distortion:.4g}"),
-        ("Worst Point", f"{summary.worst_distortion:.3f}"),
+        ("Distortion", f"{summary.stretch:.0%}" if summary.verdict else f"{summary.distortion:.4g}"),
+        ("Worst Point", "" if summary.verdict else f"{summary.worst_distortion:.3f}"),
         ("Coarse Match", _coarse_text(summary)),
         ("Left and Right", _orientation_text(summary)),
         ("Mirrored Match", "" if summary.has_mirrored else translated("none")),
@@ -187,9 +184,6 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         box.operator("hiermatch.flip", icon="MOD_MIRROR", depress=summary.mirrored)
     for note in summary.notes.splitlines():
         draw_text(box, context, note, "ERROR")
-    shading = cast("bpy.types.SpaceView3D", context.space_data).shading
-    if shading.type == "SOLID":
-        box.prop(shading, "color_type", text="Viewport Color")
 
 
 def _coarse_text(summary: HIERMATCH_PG_summary) -> str:

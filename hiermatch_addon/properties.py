@@ -217,6 +217,11 @@ class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
     source: _props.StringProperty(name="Source", description="Name of the source object")
     target: _props.StringProperty(name="Target", description="Name of the target object")
     distortion: _props.FloatProperty(name="Distortion", description="Distortion of the whole match")
+    stretch: _props.FloatProperty(
+        name="Stretch",
+        description="By how much lengths differ between the two meshes on average, by the dense map",
+        subtype="FACTOR",
+    )
     worst_distortion: _props.FloatProperty(
         name="Worst Point",
         description="Largest distortion of a matched point, in units of the square root of the surface area",

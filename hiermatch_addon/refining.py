@@ -7,30 +7,30 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
 
 from ..engine import Progress, SurfacePoints
 from ..engine.progress import within
 from ..engine.refinement import point_distortions, refine_map_steps
 from .access import mesh_of, view_layer_of
-from .answer_writing import contents_with_maps, restored, write_answer
+from .answer_writing import mapped_contents_steps, restored, write_answer
 from .errors import ObjectError
 from .excluded_regions import excluded_vertices
-from .halves import Half
+from .halves import find_again
 from .landmarks import find_landmarks, landmark_array
 from .mesh_io import read_mesh
 from .pair import check_pair
 from .stepped_job import SteppedJob
 from .stored_match import CornerPoints, Quality, StoredMatch
 from .vertex_maps import StoredMaps, map_name
-from .writing import kept
 
 if TYPE_CHECKING:
+    import bpy
     from numpy.typing import NDArray
 
-    from ..engine import DenseMatch
     from ..engine.progress import Steps
+    from .contents import Content
+    from .halves import Half
 
 __all__ = ["RefineJob"]
 
@@ -104,7 +104,8 @@ class RefineJob(SteppedJob):
         at, to = self._landmarks.T
         apart = np.linalg.norm(self._meshes[1].vertices[to] - self._map.positions[at], axis=1)
         self.moved = float(apart.max() / np.sqrt(self._meshes[1].area))
-        self._dense: DenseMatch | None = None
+        self._other_maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(self.prefix, other=True))
+        self._prepared: tuple[Content, Content] | None = None
         self.seconds = 0.0
         super().__init__()
 
@@ -116,13 +117,15 @@ class RefineJob(SteppedJob):
         HierMatchError
             If the objects have changed, or the user's own vertex groups or attributes are in the way.
         """
-        if self._dense is None:
+        if self._prepared is None:
             raise RuntimeError("The work has not come to its end yet.")
-        objects = self._objects(view_layer_of(context))
-        prefix, shown = self.prefix, StoredMaps.of(self._dense.source_to_target, self._dense.target_to_source)
-        other = StoredMaps.read(mesh_of(objects[0]), mesh_of(objects[1]), map_name(prefix, other=True))
-        prepared = contents_with_maps(self._stored, self._meshes, prefix, shown, other)
-        write_answer(objects, self._stored, prepared, prefix)
+        first, second = self._halves(view_layer_of(context))
+        for half in (first, second):
+            if half.staleness():
+                raise ObjectError(f'"{half.obj.name}" was edited meanwhile. Nothing was written.')
+        objects = (first.obj, second.obj)
+        self.names = (first.obj.name, second.obj.name)
+        write_answer(objects, self._stored, self._prepared, self.prefix)
         self.seconds = time.perf_counter() - self._start
         return self._stored
 
@@ -130,11 +133,11 @@ class RefineJob(SteppedJob):
         """Refine the map, and let the matched points follow it."""
         source, target = self._meshes
         steps = refine_map_steps(source, target, self._map, self._landmarks, self._excluded)
-        self._dense = yield from within(steps, 0.0, 0.9)
+        dense = yield from within(steps, 0.0, 0.9)
         yield Progress(0.9, "Measuring the matched points")
         places = restored(self._stored, self._meshes).source_points
         vertices = places.nearest_vertices  # the points of a source are at vertices
-        found = self._dense.source_to_target
+        found = dense.source_to_target
         images = SurfacePoints.from_barycentric(target, found.triangles[vertices], found.barycentric[vertices])
         distortion = point_distortions(source, target, vertices, images.nearest_vertices)
         answer = self._stored.answer
@@ -147,19 +150,19 @@ class RefineJob(SteppedJob):
             point_distortion=distortion,
             distortion=answer.distortion * ratio,  # it is made of the same squares
             proven=False,
-            quality=Quality.of(self._dense.quality),
+            quality=Quality.of(dense.quality),
             refined=False,
         )
         self._stored = replace(self._stored, answers=tuple(answers))
+        shown = StoredMaps.of(dense.source_to_target, dense.target_to_source)
+        writing = mapped_contents_steps(self._stored, self._meshes, self.prefix, shown, self._other_maps)
+        self._prepared = yield from within(writing, 0.92, 1.0)
 
-    def _objects(self, view_layer: bpy.types.ViewLayer) -> tuple[bpy.types.Object, bpy.types.Object]:
-        """Look the objects up again and make sure that they still carry the match, and are what was read."""
-        objects = []
-        for uid, name in zip(self._uids, self.names, strict=True):
-            obj = next((obj for obj in bpy.data.objects if obj.session_uid == uid), None)
-            half = None if obj is None else Half(obj, self.prefix, kept(obj, self.prefix))
-            if obj is None or half is None or not half.kept or half.key != self._key or half.staleness():
-                raise ObjectError(f'"{name}" was deleted, edited or matched anew meanwhile. Nothing was written.')
-            objects.append(obj)
-        check_pair(view_layer, objects[0], objects[1])
-        return objects[0], objects[1]
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+        self._halves(view_layer)
+
+    def _halves(self, view_layer: bpy.types.ViewLayer) -> tuple[Half, Half]:
+        """Look the objects up again and make sure that they still carry the match."""
+        halves = find_again(self._uids, self.names, self.prefix, self._key)
+        check_pair(view_layer, halves[0].obj, halves[1].obj)
+        return halves

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
 
-from .access import layout_of, progress_of, window_manager_of
+from .access import layout_of
 from .panel_text import draw_text
+from .progress_bar import draw_progress
 from .retarget_options import KINDS, option_names
 from .retarget_properties import copy_named, retarget_of
-from .running import is_running
 from .transfers.symmetrise_options import SymmetriseOptions
 from .transfers.wrap_options import WrapOptions
 
@@ -48,10 +48,7 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         for switch, kind in KINDS.items():
             _draw_kind(layout, state, switch, option_names(kind))
         layout.prop(state, "refine")
-        if is_running(window_manager_of(context)):
-            progress = progress_of(context)
-            layout.progress(text=progress.label, factor=progress.fraction)
-            layout.operator("hiermatch.cancel", icon="CANCEL")
+        if draw_progress(layout, context, self.bl_idname):
             return
         row = layout.row()
         row.scale_y = 1.5
@@ -81,7 +78,7 @@ class HIERMATCH_PT_symmetry(bpy.types.Panel):
         names = option_names(SymmetriseOptions)
         for name in names:
             layout.prop(state, name)
-        if not is_running(window_manager_of(context)):
+        if not draw_progress(layout, context, self.bl_idname):
             copy_named(state, layout.operator("hiermatch.symmetrise", icon="MOD_MIRROR"), names)
 
 

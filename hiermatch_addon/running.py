@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .access import window_manager_of
 
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["can_start", "is_running"]
+__all__ = ["can_start", "is_running", "running_panel"]
 
 _PICKING = "HIERMATCH_OT_pick_landmarks"
 """This one waits for clicks and does no work."""
@@ -18,11 +18,16 @@ _PICKING = "HIERMATCH_OT_pick_landmarks"
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
     """Return whether one of our operators runs modally in a window."""
-    return any(
-        operator.bl_idname.startswith("HIERMATCH_OT_") and operator.bl_idname != _PICKING
-        for window in window_manager.windows
-        for operator in window.modal_operators
-    )
+    return bool(running_panel(window_manager))
+
+
+def running_panel(window_manager: bpy.types.WindowManager) -> str:
+    """Return the identifier of the panel that shows the job that runs; empty if none does."""
+    operators: Any = (operator for window in window_manager.windows for operator in window.modal_operators)
+    for operator in operators:
+        if operator.bl_idname.startswith("HIERMATCH_OT_") and operator.bl_idname != _PICKING:
+            return str(operator.panel)
+    return ""
 
 
 def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:

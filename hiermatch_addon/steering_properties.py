@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import bpy
 
-from .redraw import redraw_panels
+from .redraw import redraw_views
 
 __all__ = ["HIERMATCH_PG_landmark", "HIERMATCH_PG_pair", "HIERMATCH_PG_steering", "steering_of"]
 
@@ -17,7 +17,7 @@ _props: Any = bpy.props  # whose functions Blender's stubs declare to return not
 
 def _redraw(_owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Draw the overlay anew, in all viewports."""
-    redraw_panels(cast("bpy.types.WindowManager", context.window_manager))
+    redraw_views(cast("bpy.types.WindowManager", context.window_manager))
 
 
 class HIERMATCH_PG_landmark(bpy.types.PropertyGroup):

@@ -39,6 +39,7 @@ def remember(
     summary.proven, summary.gap = answer.proven, answer.gap
     summary.orientation = answer.orientation
     summary.has_mirrored, summary.mirrored = len(stored.answers) > 1, stored.mirrored
+    summary.stretch = answer.quality.distortion if answer.quality else 0.0
     summary.verdict = answer.quality.sentence if answer.quality else ""
     summary.confidence = answer.quality.confidence if answer.quality else 0.0
     summary.seconds = seconds

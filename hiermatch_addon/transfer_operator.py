@@ -72,6 +72,7 @@ class TransferOperator(JobOperator):
 
     doing = "Carrying over"
     cancelled = "It was cancelled. Nothing was written"
+    panel = "HIERMATCH_PT_retarget"
     optional = False
 
     def _transfers(self) -> list[Transfer]:

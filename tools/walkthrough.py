@@ -138,11 +138,12 @@ def match_and_flip(look: Callable[[str], None]) -> Any:  # noqa: ANN401 - a gene
     look("04-matched")
 
     press(bpy.ops.hiermatch.flip)
+    yield from until(lambda: not running(), "Flipping")
     check(state().summary.mirrored, "The mirrored answer was not written")
-    yield
     look("05-flipped")
     press(bpy.ops.hiermatch.flip)
-    yield
+    yield from until(lambda: not running(), "Flipping back")
+    check(not state().summary.mirrored, "The first answer was not written again")
 
 
 def steer(look: Callable[[str], None]) -> Any:  # noqa: ANN401 - a generator of pauses

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ...engine import HierMatchError
-from ..access import state_of, view_layer_of, window_manager_of
+from ..access import state_of, view_layer_of
 from ..errors import ObjectError
-from ..flipping import flip
+from ..flipping import FlipJob
 from ..freshness import refresh
 from ..halves import Half, find_half, find_keyed
+from ..job_operator import JobOperator
 from ..pair import named_object
 from ..running import can_start
 from ..summary import remember
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["HIERMATCH_OT_flip"]
 
 
-class HIERMATCH_OT_flip(bpy.types.Operator):
+class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
     """Exchange the two answers of a match."""
 
     bl_idname = "hiermatch.flip"
@@ -46,31 +46,27 @@ class HIERMATCH_OT_flip(bpy.types.Operator):
         "carries several matches",
     )
 
+    doing = "Writing the other answer"
+    cancelled = "It was cancelled. The match is as it was"
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object Mode."""
         return can_start(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
-        """Write the other answer."""
-        manager = window_manager_of(context)
-        manager.progress_begin(0, 100)
-        try:
-            half = self._half(context)
-            stored, names = flip(
-                context, half, lambda done: manager.progress_update(min(99, int(100 * done)))
-            )  # 100 breaks the cursor
-        except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        finally:
-            manager.progress_end()
+    def _start(self, context: bpy.types.Context) -> FlipJob:
+        """Read both objects."""
+        return FlipJob(context, self._half(context))
+
+    def _finish(self, context: bpy.types.Context, job: FlipJob) -> set[OperatorReturnItems]:
+        """Write, remember and report."""
+        stored = job.finish(context)
         summary = state_of(context).summary
-        same = (summary.prefix, summary.key) == (half.prefix, stored.key)
-        remember(summary, stored, names, half.prefix, summary.seconds if same else 0.0)
+        same = (summary.prefix, summary.key) == (job.prefix, job.key)
+        remember(summary, stored, job.names, job.prefix, summary.seconds if same else 0.0)
         refresh(cast("bpy.types.Scene", context.scene))
         which = "mirrored" if stored.mirrored else "direct"
-        self.report({"INFO"}, f'Wrote the {which} match of "{names[0]}" and "{names[1]}"')
+        self.report({"INFO"}, f'Wrote the {which} match of "{job.names[0]}" and "{job.names[1]}"')
         return {"FINISHED"}
 
     def _half(self, context: bpy.types.Context) -> Half:

@@ -15,7 +15,7 @@ from ..landmark_operator import pick_pair, steerable_pair
 from ..landmark_picking import cast_ray
 from ..landmarks import add_landmarks
 from ..overlay import show_pending
-from ..redraw import redraw_panels
+from ..redraw import redraw_views
 from ..running import can_start
 from ..steering_lists import sync_lists
 from ..steering_properties import steering_of
@@ -96,7 +96,7 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
             workspace.status_text_set(None)
-        redraw_panels(window_manager_of(context))
+        redraw_views(window_manager_of(context))
 
     def _hit(
         self,
@@ -143,7 +143,7 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
                 (other,) = (name for name in self._names if name != self._pending[0])
                 what = f'Click on the corresponding place of "{other}"'
             workspace.status_text_set(f"{what}    {self._added} landmarks added    Enter: done    Esc: back")
-        redraw_panels(window_manager_of(context))
+        redraw_views(window_manager_of(context))
 
 
 def _viewport_at(context: bpy.types.Context, x: int, y: int) -> tuple[bpy.types.Region, Any] | None:

@@ -13,7 +13,7 @@ from ...engine import HierMatchError
 from ..access import mesh_of, window_manager_of
 from ..errors import ObjectError
 from ..pair import check_writable
-from ..redraw import redraw_panels
+from ..redraw import redraw_views
 from ..running import can_start
 from ..steering_lists import common_match, steered_pair
 from ..steering_properties import steering_of
@@ -73,7 +73,7 @@ class HIERMATCH_OT_show(bpy.types.Operator):
         except HierMatchError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        redraw_panels(window_manager_of(context))
+        redraw_views(window_manager_of(context))
         return {"FINISHED"}
 
 

@@ -39,6 +39,7 @@ class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator
     )
 
     doing = "Symmetrising"
+    panel = "HIERMATCH_PT_symmetry"
     cancelled = "It was cancelled. Nothing was written"
 
     @classmethod

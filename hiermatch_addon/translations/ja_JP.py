@@ -17,6 +17,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Name of the target object": "ターゲットオブジェクトの名前",
     "Distortion": "歪み",
     "Distortion of the whole match": "マッチング全体の歪み",
+    "Stretch": "伸び",
+    "By how much lengths differ between the two meshes on average, by the dense map": (
+        "密なマップによる、二つのメッシュの間での長さの平均的な違い"
+    ),
     "Worst Point": "最悪のポイント",
     "Largest distortion of a matched point, in units of the square root of the surface area": (
         "対応点の最大の歪み。表面積の平方根を単位とします"
@@ -935,7 +939,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Of Source": "ソースから",
     "Of Target": "ターゲットから",
     "Write": "書込",
-    "Viewport Color": "表示の色",
     "Pick two meshes, or select them: the active one is the source": (
         "二つのメッシュを指定するか、選択してください。アクティブな方がソースです"
     ),
@@ -1029,6 +1032,7 @@ MESSAGES: Final[dict[str, str]] = {
     ): (
         "一部のポイントが、マッチングの対象であるメッシュの最大の部分にありません。その部分のポイントを選んでください。"
     ),
+    "Preparing what is written": "書き込む内容を準備しています",
     "Simplifying the mesh": "メッシュを単純化しています",
     "There are no landmarks to refine the map around. Name at least one pair of vertices.": (
         "マップを改良するためのランドマークがありません。少なくとも一組の頂点を指定してください。"

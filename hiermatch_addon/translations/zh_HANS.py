@@ -17,6 +17,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Name of the target object": "目标物体的名称",
     "Distortion": "畸变",
     "Distortion of the whole match": "整个匹配的畸变",
+    "Stretch": "拉伸",
+    "By how much lengths differ between the two meshes on average, by the dense map": (
+        "根据稠密映射，两个网格之间长度的平均差异"
+    ),
     "Worst Point": "最差的点",
     "Largest distortion of a matched point, in units of the square root of the surface area": (
         "匹配点的最大畸变，以表面积的平方根为单位"
@@ -777,7 +781,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Of Source": "源中",
     "Of Target": "目标中",
     "Write": "写入",
-    "Viewport Color": "视图颜色",
     "Pick two meshes, or select them: the active one is the source": "选取两个网格，或直接选中它们：活动网格为源",
     "Measuring the matched points": "正在测量匹配点",
     "Wrap and Morph": "包裹与变形",
@@ -856,6 +859,7 @@ MESSAGES: Final[dict[str, str]] = {
         "Some points do not lie on the largest part of the mesh, which is the one that is matched. Choose points "
         "on that part."
     ): "某些点不在网格的最大部分上，而匹配的正是该部分。请在该部分上选择点。",
+    "Preparing what is written": "正在准备要写入的内容",
     "Simplifying the mesh": "正在简化网格",
     "There are no landmarks to refine the map around. Name at least one pair of vertices.": (
         "没有可用来改善映射的地标。请至少指定一对顶点。"

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import bpy
 import pytest
+from hiermatch.hiermatch_addon.errors import ObjectError
+from hiermatch.hiermatch_addon.flipping import FlipJob
+from hiermatch.hiermatch_addon.halves import find_half
 
 from tests.addon.scenes import (
     DENSE,
@@ -366,3 +369,52 @@ class TestFile:
             bpy.context.collection.objects.link(obj)
         flip(object="Source")
         assert written() == expected
+
+
+class TestInSteps:
+    """What happens between two steps."""
+
+    @pytest.fixture
+    def job(self, dense_pair):
+        return FlipJob(bpy.context, find_half(dense_pair[0]))
+
+    def advance(self, job, seconds=0.0):
+        return job.advance(bpy.context.view_layer, seconds)
+
+    def test_nothing_is_written_before_the_end(self, job):
+        before = snapshot()
+        fractions = []
+        while not self.advance(job):
+            fractions.append(job.progress.fraction)
+        assert fractions == sorted(fractions)
+        assert len(fractions) > 20
+        assert snapshot() == before
+        assert job.finish(bpy.context).mirrored
+        assert snapshot() != before
+
+    def test_closing_changes_nothing(self, job):
+        before = snapshot()
+        self.advance(job)
+        job.close()
+        with pytest.raises(RuntimeError, match="not come to its end"):
+            job.finish(bpy.context)
+        assert snapshot() == before
+
+    def test_clearing_meanwhile_ends_it(self, job):
+        self.advance(job)
+        bpy.ops.hiermatch.clear(object="Source")
+        with pytest.raises(ObjectError, match="cleared or matched anew meanwhile"):
+            self.advance(job)
+
+    def test_renaming_does_not_matter_and_other_faces_do(self, job, dense_pair):
+        self.advance(job)
+        dense_pair[0].name = "Renamed"
+        while not self.advance(job, 1.0):
+            pass
+        bpy.context.view_layer.objects.active = dense_pair[1]
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        with pytest.raises(ObjectError, match="other vertices or faces"):
+            job.finish(bpy.context)

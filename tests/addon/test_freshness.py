@@ -262,7 +262,16 @@ class TestWatching:
     def test_not_while_an_animation_plays(self, quiet, monkeypatch):
         quiet[1].data.vertices[0].co.x += 1
         drawn = []
-        areas = [SimpleNamespace(type=kind, tag_redraw=partial(drawn.append, kind)) for kind in ("VIEW_3D", "OUTLINER")]
+        areas = [
+            SimpleNamespace(
+                type=area,
+                regions=[
+                    SimpleNamespace(type=region, tag_redraw=partial(drawn.append, (area, region)))
+                    for region in ("WINDOW", "UI")
+                ],
+            )
+            for area in ("VIEW_3D", "OUTLINER")
+        ]
         playing = SimpleNamespace(screen=SimpleNamespace(is_animation_playing=True, areas=areas))
         context = SimpleNamespace(window_manager=SimpleNamespace(windows=[playing]))
         with monkeypatch.context() as patch:
@@ -272,7 +281,7 @@ class TestWatching:
             assert not drawn
             playing.screen.is_animation_playing = False
             assert freshness._look() is None  # noqa: SLF001
-            assert drawn == ["VIEW_3D"]  # Blender does not draw by itself what a timer changed
+            assert drawn == [("VIEW_3D", "UI")]  # Blender does not draw by itself what a timer changed
             freshness._look()  # noqa: SLF001
-            assert drawn == ["VIEW_3D"]  # nothing new to show
+            assert drawn == [("VIEW_3D", "UI")]  # nothing new to show
         assert summary().stale

@@ -175,13 +175,23 @@ def test_it_says_what_to_do_until_there_are_two_meshes(context):
 
 
 def test_while_a_match_runs_there_are_a_bar_and_a_way_out(context):
-    running = SimpleNamespace(bl_idname="HIERMATCH_OT_match")
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_match", panel="HIERMATCH_PT_match")
     progress = SimpleNamespace(fraction=0.4, label="Measuring")
     context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
     drawn = draw(context)
     assert ("progress", "Measuring", 0.4) in drawn
     assert ("operator", "hiermatch.cancel") in drawn
     assert ("operator", "hiermatch.match") not in drawn
+
+
+def test_while_something_else_runs_the_bar_is_where_it_was_started(context):
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_retarget", panel="HIERMATCH_PT_retarget")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
+    drawn = draw(context)
+    assert not [entry for entry in drawn if entry[0] == "progress" or entry == ("operator", "hiermatch.cancel")]
+    assert "HierMatch is at work" in texts(drawn)
+    assert ("operator", "hiermatch.match") in drawn
 
 
 def test_the_last_result(context):
@@ -193,7 +203,7 @@ def test_the_last_result(context):
     assert "Source Source Target Target" in shown
     assert "optimum proven" in shown
     assert "kept" in shown
-    assert ("prop", "color_type") in draw(context)
+    assert "Worst Point" in shown
 
 
 def test_what_is_not_proven_and_what_is_mirrored(context):
@@ -224,10 +234,12 @@ def test_how_far_the_dense_map_can_be_trusted(context):
     summary = context.scene.hiermatch.summary
     summary.points = 5
     assert "Confidence" not in texts(draw(context))
-    summary.verdict, summary.confidence = "The map can be trusted.", 0.874
+    summary.verdict, summary.confidence, summary.stretch = "The map can be trusted.", 0.874, 0.123
     shown = texts(draw(context))
     assert "The map can be trusted." in shown
     assert "Confidence 87%" in shown
+    assert "Distortion 12%" in shown
+    assert "Worst Point" not in shown
 
 
 def test_a_match_that_is_out_of_date(context):
