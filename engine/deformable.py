@@ -12,6 +12,7 @@ from scipy.sparse.linalg import splu
 
 from .closest_points import ClosestPoints
 from .elastic import ElasticSurface
+from .normal_equations import NormalEquations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -71,6 +72,11 @@ class DeformableSurface:
     def elastic(self) -> ElasticSurface:
         """Its resistance to deformation."""
         return ElasticSurface(self.vertices, self._laplace)
+
+    @cached_property
+    def equations(self) -> NormalEquations:
+        """What its elastic energy and points that it is drawn to demand together."""
+        return NormalEquations(self.elastic.stiffness, self.triangles)
 
     def in_its_units(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
         """Turn positions (k, 3) around the unit surface into the coordinates of its mesh."""

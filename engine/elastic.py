@@ -66,13 +66,24 @@ class ElasticSurface:
         ends = (np.concatenate([self._tails, self._heads]), np.tile(np.arange(count), 2))
         # Sums over the edges around each vertex: of what does not, and of what does change sign with the direction.
         self._around = csr_array((np.ones(2 * count), ends), shape=(n, count))
-        self._divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
-        self.stiffness = csr_array(self._divergence @ diags_array(self._weights) @ self._divergence.T)
+        divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
+        self.stiffness = csr_array(divergence @ diags_array(self._weights) @ divergence.T)
+        self._covariance = self._covariances(n)
+        self._pull = csr_array(self._covariance.T) / 2
         one_way = csr_array((np.ones(count), (self._tails, self._heads)), shape=(n, n))
         neighbours = csr_array(one_way + one_way.T)
         degree = np.maximum(neighbours.sum(axis=1), 1)
         self._average = csr_array((diags_array(np.ones(n)) + diags_array(1 / degree) @ neighbours) / 2)
         self._edge_length = float(np.sqrt(np.square(self._edges).sum(axis=1).mean())) if count else 1.0
+
+    def _covariances(self, n: int) -> csr_array:
+        """Matrix (3 n, n) that makes of positions the covariances (3, 3) of rest edges and edges around each vertex."""
+        weighted = self._weights[:, None] * self._edges  # (e, 3)
+        ends = self._tails, self._heads
+        rows = np.stack([[3 * here[:, None] + np.arange(3)] * 2 for here in ends])  # (2, 2, e, 3)
+        columns = np.broadcast_to(np.stack(ends)[:, :, None], rows.shape)
+        signed = np.broadcast_to(np.stack([weighted, -weighted]), rows.shape)
+        return csr_array((signed.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, n))
 
     def rotations(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
         """Fit a rotation to the deformation around each vertex.
@@ -89,11 +100,10 @@ class ElasticSurface:
         (n, 3, 3) array of float
             Rotations, never reflections.
         """
-        now = positions[self._tails] - positions[self._heads]
-        products = self._weights[:, None, None] * now[:, :, None] * self._edges[:, None, :]
-        fit = self._around @ products.reshape(-1, 9)  # the covariance of edges before and after, (n, 9)
+        fit = (self._covariance @ positions).reshape(-1, 9)  # (n, 9)
         fit = self._averaged(fit, radius)
-        return nearest_rotations(fit.reshape(-1, 3, 3))
+        # The rest edges come first: of such a matrix the nearest rotation is the inverse.
+        return nearest_rotations(fit.reshape(-1, 3, 3)).transpose(0, 2, 1)
 
     def scales(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
         """Measure by what factor the deformation lengthens edges, averaged over a radius around each vertex, (n,)."""
@@ -105,7 +115,8 @@ class ElasticSurface:
 
     def pull(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum of the rotated edges at each vertex, (n, 3): the right-hand side of the equilibrium."""
-        return self._divergence @ (self._weights[:, None] * self._rotated(rotations))
+        pulled: NDArray[np.float64] = self._pull @ rotations.transpose(0, 2, 1).reshape(-1, 3)
+        return pulled
 
     def energy(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> float:
         """Energy of a deformation, an area: a number without unit for a surface of unit area."""

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array
-from scipy.sparse.linalg import splu
 
 from .progress import Progress, Steps
 
@@ -122,8 +120,11 @@ class _Matcher:
 
     def __init__(self, source: DeformableSurface, target: DeformableSurface, stage: Stage) -> None:
         self.source, self.target, self.stage = source, target, stage
-        self._source_curvatures = stage.curvature_length * source.curvatures
-        target_curvatures = stage.curvature_length * target.curvatures
+        # What does not count is left out: the searches take as long as there are coordinates.
+        self._source_curvatures, target_curvatures = (
+            stage.curvature_length * surface.curvatures[:, : None if stage.curvature_length else 0]
+            for surface in (source, target)
+        )
         self.target_features = np.concatenate(
             [target.vertices, stage.normal_length * target.normals, target_curvatures], axis=1
         )
@@ -135,11 +136,21 @@ class _Matcher:
         features = np.concatenate([positions, self.stage.normal_length * normals, self._source_curvatures], axis=1)
         return self.source.search.moved(features), normals
 
-    def matches(self, source: ClosestPoints, *, last: bool = False) -> tuple[FoundPoints, FoundPoints]:
-        """Match every vertex of either surface, by the features of the deformed source."""
+    def matches(
+        self, source: ClosestPoints, before: tuple[FoundPoints, FoundPoints] | None = None, *, last: bool = False
+    ) -> tuple[FoundPoints, FoundPoints]:
+        """Match every vertex of either surface, by the features of the deformed source.
+
+        What was found `before`, anywhere and from almost the same positions, is where exact searches start.
+        """
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
         coarse = min(len(self.source.vertices), len(self.target.vertices)) < _COARSE
         find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
+        if before is not None and self.stage.matched == "anywhere":
+            return (
+                _from_before(self.target_search, source.vertices, before[0]),
+                _from_before(source, self.target_features, before[1]),
+            )
         return find(self.target_search, source.vertices), find(source, self.target_features)
 
 
@@ -153,6 +164,11 @@ def _around_nearest_vertices(search: ClosestPoints, points: NDArray[np.float64])
 
 def _anywhere(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
     return search.nearest(points)
+
+
+def _from_before(search: ClosestPoints, points: NDArray[np.float64], before: FoundPoints) -> FoundPoints:
+    heaviest = before.barycentric.argmax(axis=1)
+    return search.walk(points, search.triangles[before.triangles, heaviest])
 
 
 def smooth_start(
@@ -261,17 +277,18 @@ def register_steps(
     matches = first
     for stage in stages:
         matcher = _Matcher(source, target, stage)
+        before = None
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)
             if matches is None:
-                matches = matcher.matches(search)
+                matches = before = matcher.matches(search, before)
             solved = _solved(matcher, positions, normals, matches, weight=weight, ties=ties)
             positions = solved + stage.lead * (solved - positions)
             matches = None
             done += 1
             yield Progress(done / total, "Fitting the surfaces")
     search, _ = matcher.source_search(positions)
-    on_target, on_source = matcher.matches(search, last=True)
+    on_target, on_source = matcher.matches(search, before, last=True)
     rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
     there = _at(on_target, target.triangles, target.vertices)
     misfit = float(source.mass @ np.square(there - positions).sum(axis=1))
@@ -299,26 +316,13 @@ def _solved(
     seen = _at(on_target, target.triangles, target.normals)
     own = weight * source.mass * _agreement(normals, seen)
     theirs = weight * target.mass * _agreement(_at(on_source, source.triangles, normals), target.normals)
-    rows = np.repeat(np.arange(len(target.vertices)), 3)
-    corners = source.triangles[on_source.triangles].ravel()
-    evaluate = csr_array(
-        (on_source.barycentric.ravel(), (rows, corners)), shape=(len(target.vertices), len(source.vertices))
-    )
-    weighted = csr_array(evaluate.T @ diags_array(theirs))
-    system = source.elastic.stiffness + diags_array(own) + weighted @ evaluate
-    factor = splu(
-        system.tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        relax=1,
-        panel_size=1,
-        options={"SymmetricMode": True},
-    )
-    right = own[:, None] * wanted + weighted @ target.vertices
-    response = None if ties is None else ties.response(factor.solve)
+    equations = source.equations
+    solve = equations.solver(own, on_source, theirs)
+    right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
+    response = None if ties is None else ties.response(solve)
     for _ in range(_SOLVES):
         rotations = source.elastic.rotations(positions, matcher.stage.rotation_radius)
-        positions = factor.solve(source.elastic.pull(rotations) + right)
+        positions = solve(source.elastic.pull(rotations) + right)
         if ties is not None and response is not None:
             positions = ties.held(positions, response)
     return positions

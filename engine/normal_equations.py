@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The linear equations of a surface that is drawn to points, solved again and again with other points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array
+from scipy.sparse.linalg import splu
+
+from .symmetric_factor import symmetric_factor
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+    from scipy.sparse import csr_array
+
+    from .closest_points import FoundPoints
+
+    Solve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+__all__ = ["NormalEquations"]
+
+
+class NormalEquations:
+    r"""Least squares for the vertices x of a surface that are drawn to places, and so are points of its triangles.
+
+    With the stiffness K of the surface, a weight a for each vertex, and for each point a weight b and the row e of its
+    barycentric coordinates, the matrix is
+
+    .. math:: K + \mathrm{diag}(a) + \sum_k b_k e_k^T e_k .
+
+    Each point joins the corners of one triangle: where entries can be, and the order of elimination that fills in
+    least, do not depend on the points, and are found once.
+
+    Parameters
+    ----------
+    stiffness : (n, n) csr_array of float
+        K, symmetric and positive semi-definite.
+    triangles : (m, 3) array of int
+        Corners of the triangles.
+    """
+
+    def __init__(self, stiffness: csr_array, triangles: NDArray[np.int64]) -> None:
+        n = stiffness.shape[0]
+        known, vertices = coo_array(stiffness), np.arange(n)
+        corners = np.stack([triangles.repeat(3, axis=1).ravel(), np.tile(triangles, 3).ravel()])
+        both = np.concatenate([[known.row, known.col], [vertices, vertices], corners], axis=1)
+        pattern = csc_array((np.where(both[0] == both[1], len(both[0]), 1.0), both), shape=(n, n))
+        # Everything is kept in the order in which it is eliminated.
+        self._place = symmetric_factor(pattern).perm_c.astype(np.int64)
+        self._order = np.argsort(self._place)
+        entries, slots = np.unique(self._place[both[1]] * n + self._place[both[0]], return_inverse=True)
+        columns, self._rows = np.divmod(entries, n)
+        self._starts = np.searchsorted(columns, np.arange(n + 1))
+        of_stiffness, self._diagonal, of_triangles = np.split(slots, np.cumsum([len(known.row), n]))
+        self._corners = of_triangles.reshape(-1, 9)
+        self._triangles = triangles
+        self._stiffness = np.bincount(of_stiffness, known.data, len(entries))
+
+    def solver(self, own: NDArray[np.float64], points: FoundPoints, weights: NDArray[np.float64]) -> Solve:
+        """Factor the matrix for some points.
+
+        Parameters
+        ----------
+        own : (n,) array of float
+            Weight of each vertex, a.
+        points : FoundPoints
+            Points (k,) of the triangles.
+        weights : (k,) array of float
+            Their weights b.
+
+        Returns
+        -------
+        callable
+            Takes a right-hand side (n, d) and returns the solution (n, d).
+        """
+        here = points.barycentric
+        squares = (weights[:, None, None] * here[:, :, None] * here[:, None, :]).ravel()
+        values = self._stiffness + np.bincount(self._corners[points.triangles].ravel(), squares, len(self._stiffness))
+        values[self._diagonal] += own
+        n = len(self._place)
+        factor = splu(
+            csc_array((values, self._rows, self._starts), shape=(n, n)),
+            permc_spec="NATURAL",
+            diag_pivot_thresh=0.0,
+            relax=1,
+            panel_size=1,
+            options={"SymmetricMode": True},
+        )
+
+        def solve(right: NDArray[np.float64]) -> NDArray[np.float64]:
+            """Solve for a right-hand side in the order of the vertices."""
+            solution: NDArray[np.float64] = factor.solve(right[self._order])[self._place]
+            return solution
+
+        return solve
+
+    def pull(self, points: FoundPoints, forces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Sum forces (k, 3) at points (k,) of the triangles, over the vertices that they act on: (n, 3)."""
+        corners = self._triangles[points.triangles].ravel()
+        shares = points.barycentric[:, :, None] * forces[:, None, :]  # (k, 3, 3)
+        sums = [np.bincount(corners, part, len(self._place)) for part in shares.reshape(-1, 3).T]
+        return np.stack(sums, axis=1)
