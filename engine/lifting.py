@@ -140,7 +140,7 @@ def lift_steps(
             starts[part], positions[part], lift.turned(motion, part)
         )
     yield Progress(0.9, _LABEL)
-    untangle(source, positions, target, triangles, barycentric, search=lift.search)
+    untangle(source, target, triangles, barycentric, search=lift.search)
     return SurfacePoints.from_barycentric(target, triangles, barycentric)
 
 

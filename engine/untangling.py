@@ -6,7 +6,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array
+
+from .quasi_newton import minimize_lbfgs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,9 +17,13 @@ if TYPE_CHECKING:
 
 __all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle"]
 
-_ROUNDS = 4
-_RINGS = 2  # of vertices around a flipped triangle that move with it
-_SWEEPS = 3  # of averaging before each search
+_ROUNDS = 8
+_AVERAGED = 4  # round before which what is still flipped is averaged
+_SWEEPS = 3  # of averaging
+_ITERATIONS = 20
+_LEAST_AREA = 0.2  # part of its own area, in the scale of the target, that a triangle's image should have
+_SMALLEST = 0.01  # part of the mean area from which on a triangle counts: one without area has no side to be on
+_TETHER = 1e-3  # weight of staying in place, squared distances in units of the mean area, against the areas that lack
 _CHUNK = 200_000
 _TORN = 6.0  # times the median: edges that a map stretches more than this lead to another place
 _TINY = np.finfo(float).tiny
@@ -105,22 +110,60 @@ def flipped_triangles(
     array of int
         Triangles of the source whose image looks against the mean normal of the target at its corners.
     """
-    if among is None:
-        among, vertices = np.arange(source.triangle_count), np.arange(source.vertex_count)
-        number = vertices
-    else:
-        vertices = np.unique(source.triangles[among])
-        number = np.zeros(source.vertex_count, np.int64)
-        number[vertices] = np.arange(len(vertices))
-    images = located(target, triangles[vertices], barycentric[vertices])
-    flipped = []
+    among = np.arange(source.triangle_count) if among is None else among
+    flipped = [among[:0]]
     for start in range(0, len(among), _CHUNK):
         part = among[start : start + _CHUNK]
-        corners = source.triangles[part]
-        outward = sum(target.triangle_normals.take(triangles.take(corner), axis=0) for corner in corners.T)
-        a, b, c = (images.take(number.take(corner), axis=0) for corner in corners.T)
-        flipped.append(part[np.einsum("fd,fd->f", np.cross(b - a, c - a), outward) < 0])
-    return np.concatenate(flipped) if flipped else among
+        image = _Image(source, target, triangles, barycentric, part)
+        flipped.append(part[image.areas(image.positions) < 0])
+    return np.concatenate(flipped)
+
+
+class _Image:
+    """Where a map takes some triangles (f,): their v vertices, with the sides of the target that they should be on."""
+
+    def __init__(
+        self,
+        source: TriangleMesh,
+        target: TriangleMesh,
+        triangles: NDArray[np.int64],
+        barycentric: NDArray[np.float64],
+        among: NDArray[np.int64],
+    ) -> None:
+        self.vertices, corners = np.unique(source.triangles[among], return_inverse=True)
+        self.corners = corners.reshape(-1, 3)  # numbers in `vertices`
+        self.triangles, self.barycentric = triangles[self.vertices], barycentric[self.vertices]
+        self.positions = located(target, self.triangles, self.barycentric)
+        there = target.triangles[self.triangles]
+        normals = np.einsum("vc,vcd->vd", self.barycentric, target.vertex_normals[there])[self.corners].sum(axis=1)
+        self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)  # (f, 3)
+
+    def areas(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Areas of the triangles, as seen from their sides, for positions (v, 3) of the vertices: (f,)."""
+        a, b, c = positions[self.corners].transpose(1, 0, 2)
+        areas: NDArray[np.float64] = np.einsum("fd,fd->f", np.cross(b - a, c - a), self.normals) / 2
+        return areas
+
+    def pulled(self, positions: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Gradient (v, 3) of the sum of the areas by weights (f,)."""
+        a, b, c = positions[self.corners].transpose(1, 0, 2)
+        gradient = np.zeros_like(positions)
+        for corner, opposite in zip(self.corners.T, (b - c, c - a, a - b), strict=True):
+            pull = (weights / 2)[:, None] * np.cross(opposite, self.normals)
+            for axis in range(3):
+                gradient[:, axis] += np.bincount(corner, pull[:, axis], len(positions))
+        return gradient
+
+    def average(self, chosen: NDArray[np.bool_]) -> None:
+        """Move chosen ones of the vertices (v,) to the mean of their neighbours, some times."""
+        for _ in range(_SWEEPS):
+            around = np.zeros_like(self.positions)
+            for axis in range(3):
+                values = self.positions[:, axis][self.corners]
+                others = values.sum(axis=1, keepdims=True) - values
+                around[:, axis] = np.bincount(self.corners.ravel(), others.ravel(), len(around))
+            counts = 2 * np.bincount(self.corners.ravel(), minlength=len(around))
+            self.positions[chosen] = (around / counts[:, None])[chosen]
 
 
 def located(mesh: TriangleMesh, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -138,24 +181,26 @@ def heaviest_corners(
 
 def untangle(
     source: TriangleMesh,
-    reference: NDArray[np.float64],
     target: TriangleMesh,
     triangles: NDArray[np.int64],
     barycentric: NDArray[np.float64],
     *,
     search: ClosestPoints,
 ) -> None:
-    """Turn flipped triangles of a map back, in place.
+    r"""Turn flipped triangles of a map back, in place.
 
-    Where a triangle is flipped, the steps from the reference to the surface are averaged over the vertices around, and
-    the closest points are searched anew from those of neighbours that are in order.
+    The vertices x of the flipped triangles and their neighbours are moved to where
+
+    .. math:: \sum_t \frac{(\beta r_t - a_t(x))_+^2}{r_t} + \epsilon |x - x_0|^2
+
+    is least, and back onto the target.  Here :math:`a_t` is the area of the image of a triangle as seen from outside,
+    negative if it is flipped, and :math:`r_t` what it would be in the scale of the target [1]_.  Half way, vertices
+    that this did not help go to the mean of their neighbours.
 
     Parameters
     ----------
     source : TriangleMesh
         The surface that is mapped.
-    reference : (n, 3) array of float
-        Its vertices laid near to the target, without folds: where its details are taken from.
     target : TriangleMesh
         The surface that it is mapped to.
     triangles, barycentric : (n,) array of int, (n, 3) array of float
@@ -165,54 +210,53 @@ def untangle(
 
     Notes
     -----
-    Flips that are in the reference itself, or where the target folds more sharply than its triangles show, stay.
+    Flips where the target folds more sharply than its triangles show may stay.
+
+    References
+    ----------
+    .. [1] P. Knupp, "Hexahedral and tetrahedral mesh untangling", Engineering with Computers 17, 2001.
     """
-    flipped = flipped_triangles(source, target, triangles, barycentric)
-    if not len(flipped):
-        return
     edges = source.edges
-    moving = np.zeros(source.vertex_count, bool)
-    moving[source.triangles[flipped]] = True
-    for _ in range(_RINGS):
-        moving[edges[moving[edges].any(axis=1)]] = True
-    members = np.flatnonzero(moving)
-    near = np.flatnonzero(moving[edges].any(axis=1))
-    around = np.flatnonzero(moving[source.triangles].any(axis=1))
-    average, known = _neighbour_average(source, near, members)
-    for _ in range(_ROUNDS):
-        astray = np.zeros(source.vertex_count, bool)
-        astray[source.triangles[flipped]] = True
-        astray &= moving
-        steps = located(target, triangles[known], barycentric[known]) - reference[known]
-        rows = np.searchsorted(known, members)
-        for _ in range(_SWEEPS):
-            steps[rows] = average @ steps
-        starts = np.zeros(source.vertex_count, np.int64)
-        starts[known] = heaviest_corners(target, triangles[known], barycentric[known])
-        starts = follow_neighbours(source, starts, astray)[members]
-        found = search.walk(reference[members] + steps[rows], starts)
-        triangles[members], barycentric[members] = found.triangles, found.barycentric
-        flipped = flipped_triangles(source, target, triangles, barycentric, around)
+    flipped = flipped_triangles(source, target, triangles, barycentric)
+    for number in range(_ROUNDS):
         if not len(flipped):
             break
+        moving = np.zeros(source.vertex_count, bool)
+        moving[source.triangles[flipped]] = True
+        moving[edges[moving[edges].any(axis=1)]] = True
+        around = np.flatnonzero(moving[source.triangles].any(axis=1))
+        image = _Image(source, target, triangles, barycentric, around)
+        rest = source.triangle_areas[around] * (target.area / source.area)
+        free = np.flatnonzero(moving[image.vertices])
+        if number == _AVERAGED:
+            image.average(np.isin(image.vertices, source.triangles[flipped]))
+        members = image.vertices[free]
+        found = search.walk(
+            _opened(image, rest, free), heaviest_corners(target, image.triangles[free], image.barycentric[free])
+        )
+        triangles[members], barycentric[members] = found.triangles, found.barycentric
+        flipped = flipped_triangles(source, target, triangles, barycentric, around)
 
 
-def _neighbour_average(
-    mesh: TriangleMesh, edges: NDArray[np.int64], members: NDArray[np.int64]
-) -> tuple[csr_array, NDArray[np.int64]]:
-    """Matrix that averages over the neighbours of members (q,), and which vertices it reads (p,), sorted: (q, p).
+def _opened(image: _Image, rest: NDArray[np.float64], free: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Positions of the free vertices (q,), (q, 3), at which the triangles come nearer to their areas (f,) at rest."""
+    unit = float(rest.mean())
+    rest = np.maximum(rest, _SMALLEST * unit)
 
-    `edges` are those that touch members.  Neighbours count by the inverse of their distance.
-    """
-    tail, head = _both_ways(mesh.edges[edges])
-    weights = np.repeat(1 / np.maximum(mesh.edge_lengths[edges], _TINY), 2)
-    known = np.unique(mesh.edges[edges])
-    is_member = np.zeros(mesh.vertex_count, bool)
-    is_member[members] = True
-    inside = is_member[tail]
-    rows, columns = np.searchsorted(members, tail[inside]), np.searchsorted(known, head[inside])
-    sums = csr_array((weights[inside], (rows, columns)), shape=(len(members), len(known)))
-    return csr_array(diags_array(1 / sums.sum(axis=1)) @ sums), known
+    def moved(steps: NDArray[np.float64]) -> NDArray[np.float64]:
+        positions = image.positions.copy()
+        positions[free] += np.sqrt(unit) * steps.reshape(-1, 3)
+        return positions
+
+    def energy(steps: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        positions = moved(steps)
+        lack = np.maximum(_LEAST_AREA * rest - image.areas(positions), 0)
+        value = (np.square(lack) / rest).sum() / unit + _TETHER * np.square(steps).sum()
+        gradient = image.pulled(positions, -2 * lack / rest)[free] / np.sqrt(unit)
+        return float(value), gradient.ravel() + 2 * _TETHER * steps
+
+    steps, _ = minimize_lbfgs(energy, np.zeros(3 * len(free)), _ITERATIONS)
+    return moved(steps)[free]
 
 
 def _both_ways(edges: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

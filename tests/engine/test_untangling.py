@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from engine import SurfacePoints, TriangleMesh
+from engine import SurfaceMap, SurfacePoints, TriangleMesh
 from engine.closest_points import ClosestPoints
 from engine.untangling import flipped_triangles, follow_neighbours, heaviest_corners, located, torn_vertices, untangle
 from tests.shapes import icosphere, permuted, plane
@@ -59,7 +59,7 @@ def test_a_knot_is_untied_and_the_rest_left_alone():
     triangles[near], barycentric[near] = triangles[moved], barycentric[moved]
     before = flipped_triangles(source, target, triangles, barycentric)
     assert len(before) > 20
-    untangle(source, source.vertices, target, triangles, barycentric, search=search)
+    untangle(source, target, triangles, barycentric, search=search)
     assert len(flipped_triangles(source, target, triangles, barycentric)) == 0
     far = np.linalg.norm(source.vertices - source.vertices[700], axis=1) > 0.8
     np.testing.assert_array_equal(triangles[far], found.triangles[far])
@@ -72,7 +72,7 @@ def test_a_map_in_order_is_not_touched():
     search = ClosestPoints(target)
     found = search.nearest(source.vertices)
     triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
-    untangle(source, source.vertices, target, triangles, barycentric, search=search)
+    untangle(source, target, triangles, barycentric, search=search)
     np.testing.assert_array_equal(triangles, found.triangles)
     np.testing.assert_array_equal(barycentric, found.barycentric)
 
@@ -87,3 +87,37 @@ def test_vertices_far_from_the_images_of_their_neighbours_are_torn():
     pair = mesh.edges[40]
     images[pair] *= -1
     np.testing.assert_array_equal(np.flatnonzero(torn_vertices(mesh, images)), np.sort(pair))
+
+
+def test_what_is_untied_is_what_the_map_calls_flipped():
+    """The very faces, whose areas the map adds up, and none smaller than it was meant to be is left flat."""
+    source, target = TriangleMesh(*icosphere(12)), TriangleMesh(*icosphere(9))
+    found = ClosestPoints(target).nearest(source.vertices)
+    triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
+    ring = source.triangles[(source.triangles == 400).any(axis=1)]
+    other = ring[ring != 400][0]
+    triangles[[400, other]], barycentric[[400, other]] = triangles[[other, 400]], barycentric[[other, 400]]
+    folded = SurfaceMap.from_barycentric(target, triangles, barycentric)
+    flipped = np.flatnonzero(folded.face_orientations(source, target) < 0)
+    assert len(flipped)
+    np.testing.assert_array_equal(flipped_triangles(source, target, triangles, barycentric), flipped)
+    untangle(source, target, triangles, barycentric, search=ClosestPoints(target))
+    mended = SurfaceMap.from_barycentric(target, triangles, barycentric)
+    assert mended.flipped_faces(source, target) == 0
+    a, b, c = mended.positions[source.triangles[flipped]].transpose(1, 0, 2)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    assert (areas > 0.1 * source.triangle_areas[flipped]).all()
+
+
+def test_vertices_move_along_the_surface_only():
+    mesh = TriangleMesh(*plane(12))
+    points = SurfacePoints.at_vertices(mesh, np.arange(mesh.vertex_count))
+    triangles, barycentric = points.triangles.copy(), points.barycentric.copy()
+    triangles[65], barycentric[65] = triangles[67], barycentric[67]
+    assert len(flipped_triangles(mesh, mesh, triangles, barycentric))
+    untangle(mesh, mesh, triangles, barycentric, search=ClosestPoints(mesh))
+    assert len(flipped_triangles(mesh, mesh, triangles, barycentric)) == 0
+    offsets = located(mesh, triangles, barycentric) - mesh.vertices
+    np.testing.assert_allclose(offsets[:, 2], 0, atol=1e-12)
+    far = np.linalg.norm(mesh.vertices - mesh.vertices[66], axis=1) > 5 / 11
+    np.testing.assert_allclose(offsets[far], 0, atol=1e-12)
