@@ -10,6 +10,8 @@ import numpy as np
 
 from .closest_points import FoundPoints
 from .deformable import DeformableSurface
+from .functional_maps import PointMaps
+from .limb_sides import repaired_start
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps
 from .progress import Steps, within
 from .registration import CLOSE, FINE, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
@@ -148,6 +150,13 @@ def registered_pair_steps(
         begin, end = (0.4 + 0.3 * (number + i) / len(plausible) for i in (0, 1))
         candidates.append((yield from within(_candidate_steps(source, target, hypothesis, smooth, ties), begin, end)))
     candidates.sort(key=lambda candidate: candidate.score)
+    if search:
+        # Where no map is looked for, the one that is given is followed as it is.
+        repairing = _limbs_repaired_steps((x, y), (source, target), candidates[0], smooth, ties)
+        repaired = yield from within(repairing, 0.69, 0.7)
+        if repaired is not None:
+            hypotheses = [h for h in hypotheses if h is not candidates[0].hypothesis]
+            candidates[0] = repaired
     best = candidates[0]
     first = yield from within(
         register_steps(source, target, best.registration.positions, (FINE,), ties=ties), 0.7, 0.76
@@ -191,6 +200,32 @@ def _candidate_steps(
     return Candidate(hypothesis, registration, score)
 
 
+def _limbs_repaired_steps(
+    shapes: tuple[Shape, Shape],
+    surfaces: tuple[DeformableSurface, DeformableSurface],
+    best: Candidate,
+    smooth: NDArray[np.float64],
+    ties: Ties | None,
+) -> Steps[Candidate | None]:
+    """Follow the best candidate up anew if it exchanges limbs; None if it does not, or if that makes it no better."""
+    start = repaired_start(*shapes, _vertex_maps(*surfaces, best.registration))
+    if start is None:
+        return None
+    hypotheses = yield from within(map_hypotheses_steps(*shapes, (start,), search=False), 0.0, 0.3)
+    repaired = yield from within(_candidate_steps(*surfaces, hypotheses[0], smooth, ties), 0.3, 1.0)
+    still = repaired_start(*shapes, _vertex_maps(*surfaces, repaired.registration)) is not None
+    return None if still or repaired.score > best.score + _AMBIGUOUS else repaired
+
+
+def _vertex_maps(source: DeformableSurface, target: DeformableSurface, registration: Registration) -> PointMaps:
+    """Take the maps of a registration between all vertices."""
+    on_target, on_source = registration.on_target, registration.on_source
+    return PointMaps(
+        target.triangles[on_target.triangles, on_target.barycentric.argmax(axis=1)],
+        source.triangles[on_source.triangles, on_source.barycentric.argmax(axis=1)],
+    )
+
+
 def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
     points = SurfacePoints.at_vertices(surface.mesh, vertices)
     return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))
@@ -201,4 +236,5 @@ def _margin(best: Candidate, candidates: list[Candidate], hypotheses: list[MapHy
     gaps = [candidate.score - best.score for candidate in candidates[1:]]
     tried = {id(candidate.hypothesis) for candidate in candidates}
     gaps += [h.score - best.hypothesis.score for h in hypotheses if id(h) not in tried and h.orientation > 0]
-    return float(min(gaps)) if gaps else None
+    # What exchanged limbs may have scored better than what does not.
+    return max(float(min(gaps)), 0.0) if gaps else None

@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from engine import Shape, SurfacePoints, TriangleMesh, run
+from engine import Shape, SurfacePoints, TriangleMesh, dense_map, run
 from engine.dense_map import EIGENPAIRS, registered_pair_steps
-from engine.map_hypotheses import LandmarkStart
+from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps
 from tests.bodies import mirrored_body
 from tests.shapes import icosphere, rotation
 
@@ -107,6 +107,30 @@ def test_of_two_starts_the_one_that_keeps_the_orientation_is_taken(bodies, start
     pair = run(registered_pair_steps(x, y, starts[::-1], search=False))
     assert pair.candidates[0].hypothesis.origin == "true"
     assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
+
+
+def fore_legs_exchanged(x, y, rest_x, rest_y):
+    """Start from pairs of vertices of which those on the fore legs are the mirror images of the true ones."""
+    places = rest_x[x.samples].copy()
+    places[(places[:, 0] > 0.2) & (places[:, 2] < -0.4), 1] *= -1
+    images = np.linalg.norm(places[:, None] - rest_y, axis=2).argmin(axis=1)
+    return start_from(x, y, x.samples, images, "exchanged")
+
+
+def test_limbs_that_the_best_hypothesis_exchanges_are_put_right(bodies, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    wrong = fore_legs_exchanged(*bodies)
+    left = run(registered_pair_steps(x, y, [wrong], search=False))
+    assert errors(left.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() > 0.15
+
+    def misled(x, y, starts=(), *, search=True):
+        return map_hypotheses_steps(x, y, [wrong] if search else starts, search=False)
+
+    monkeypatch.setattr(dense_map, "map_hypotheses_steps", misled)
+    pair = run(registered_pair_steps(x, y))
+    assert pair.candidates[0].hypothesis.origin == "limbs"
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
+    assert pair.margin is None or pair.margin >= 0
 
 
 def test_motion_and_scale_do_not_matter(registered, bodies):
