@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from .bone_fit import skinned
@@ -45,8 +44,8 @@ _SAMPLES = 350
 _FIRST_ROUNDS, _LAST_ROUNDS, _KEPT = 6, 24, 3
 """Rounds for every start, rounds for the best after them, and how many best there are."""
 
-_GOOD = 0.085
-"""Cost of a pose that nothing better is sought for: about that of points scattered on the same surface."""
+_GOOD = 0.04
+"""Cost of a pose that nothing better is sought for: about that of samples of one and the same hand."""
 
 _WIDE, _NARROW = 0.35, 0.06
 """Distance at which a match counts half, at first and at last, in lengths of the hand."""
@@ -61,8 +60,12 @@ _JOINT = 10.0
 _HELD = 100.0
 """How much joints that come apart count, and how much the bone that the hand hangs on is held."""
 
-_CLEARLY = 0.93
+_CLEARLY = 0.95
 """A pose is taken that costs less than this part of what the pose costs that was found first."""
+
+_UNTWIST = 0.7
+"""How much is taken back, in each round, of a digit's turn around itself, which its joints hardly allow: free to turn,
+the digits take hold of one another's surfaces."""
 
 _TINY = np.finfo(float).tiny
 
@@ -263,10 +266,11 @@ class _Hand:
         found = self._pose_of(bones)
         solver = _Solver(self, float(np.median(found.scales)) * self.length, found)
         first = solver.improved(found, 0.3, _LAST_ROUNDS)
-        if first.cost < _GOOD:
+        usual = min(first.cost, solver.cost(found))
+        if usual < _GOOD:
             return bones
         best = self._best(solver, found)
-        return self._with_pose(bones, best) if best.cost < _CLEARLY * first.cost else bones
+        return self._with_pose(bones, best) if best.cost < _CLEARLY * usual else bones
 
     def _best(self, solver: _Solver, found: _Pose) -> _Pose:
         """Find the best of many poses: first rough ones all around, then such near the best of them."""
@@ -374,8 +378,13 @@ class _Solver:
         spread = np.square(hand.points[:, None] - centres).sum(axis=2)
         self._moments = np.maximum((hand.weights * spread).mean(axis=0) / 3, 1e-6 * hand.length**2)
         self._moments[0] *= _HELD
-        self._ties = np.zeros((4 * count, 4 * count))
         place = {int(bone): number for number, bone in enumerate(hand.numbers)}
+        digits = hand.group.bones[1:]
+        self._own = np.array([place[int(bone)] for bone in digits])
+        self._above = np.array([place[int(bone)] for bone in hand.skeleton.parents[digits]])
+        axes = hand.skeleton.tails[digits] - hand.skeleton.heads[digits]
+        self._axes = axes / np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), _TINY)
+        self._ties = np.zeros((4 * count, 4 * count))
         for bone in hand.group.bones:
             child, parent = place[int(bone)], place[int(hand.skeleton.parents[bone])]
             head = hand.skeleton.heads[bone] - hand.skeleton.heads[hand.group.hub]
@@ -391,7 +400,7 @@ class _Solver:
         """Match closest points and solve for the bones in turn, forgiving less and less; from `begin` of the way on."""
         for done in np.linspace(begin, 1.0, rounds):
             pose = self._round(pose, float(done))
-        return replace(pose, cost=self._cost(pose))
+        return replace(pose, cost=self.cost(pose))
 
     def _placed(self, pose: _Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Points (s, 3) and normals of the hand in a pose."""
@@ -408,8 +417,9 @@ class _Solver:
         points, normals = self._placed(pose)
         here = np.concatenate([points, reach * normals], axis=1)
         there = np.concatenate([hand.places, reach * hand.sides], axis=1)
-        onto = cKDTree(there).query(here)[1]
-        back = cKDTree(here).query(there)[1]
+        # All pairs: so few points are compared faster than trees over them are built.
+        apart = np.square(here).sum(axis=1)[:, None] + np.square(there).sum(axis=1) - 2 * here @ there.T
+        onto, back = apart.argmin(axis=1), apart.argmin(axis=0)
         own = np.concatenate([np.arange(len(here)), back])
         other = np.concatenate([onto, np.arange(len(there))])
         distances = np.linalg.norm(points[own] - hand.places[other], axis=1)
@@ -439,13 +449,28 @@ class _Solver:
         right = self._design.T @ drawn + diagonal[:, None] * wanted.reshape(-1, 3)
         unknowns = np.linalg.solve(matrix, right).reshape(count, 4, 3)
         linear = unknowns[:, :3].transpose(0, 2, 1)
-        rotations = nearest_rotations(linear)
+        rotations = self._untwisted(nearest_rotations(linear))
         scales = np.clip(np.einsum("kij,kij->k", rotations, linear) / 3, 0.2 * pose.scales, 5 * pose.scales)
         return _Pose(unknowns, rotations, np.sqrt(scales * np.median(scales)))
 
-    def _cost(self, pose: _Pose) -> float:
-        """Mean distance of both surfaces, normals included, in lengths of the hand; far is far."""
-        own, _, distances, agree = self._found_pairs(pose, _NORMALS[1] * self._length)
-        each = np.minimum(distances / self._length + 0.2 * (1 - agree), 0.5)
+    def _untwisted(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Take back most of the turn of each digit's bones around themselves, against the bones that they hang on."""
+        relative = rotations[self._above].transpose(0, 2, 1) @ rotations[self._own]
+        skew = relative - relative.transpose(0, 2, 1)
+        spin = np.einsum("kd,kd->k", skew[:, [2, 0, 1], [1, 2, 0]], self._axes)
+        angles = 2 * np.arctan2(spin, 1 + np.trace(relative, axis1=1, axis2=2))
+        turned = rotations.copy()
+        back = Rotation.from_rotvec(-_UNTWIST * angles[:, None] * self._axes)
+        turned[self._own] = rotations[self._own] @ back.as_matrix()
+        return turned
+
+    def cost(self, pose: _Pose) -> float:
+        """Mean distance across both surfaces, normals included, in lengths of the hand; far is far."""
+        own, other, _, agree = self._found_pairs(pose, _NORMALS[1] * self._length)
+        points, normals = self._placed(pose)
+        apart = (self._hand.places[other] - points[own]) / self._length
+        # Across the surfaces: along them the distance to a sample says only how far apart the samples are.
+        across = [np.abs(np.einsum("kd,kd->k", apart, side)) for side in (normals[own], self._hand.sides[other])]
+        each = np.minimum(np.maximum(*across) + 0.2 * (1 - agree), 0.5)
         count = len(self._hand.points)
         return float(each[:count].mean() + each[count:].mean()) if len(own) else np.inf

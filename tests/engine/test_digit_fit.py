@@ -130,6 +130,18 @@ def test_fingers_that_were_taken_for_others_are_put_right(body, pose):
     )
 
 
+def test_round_fingers_do_not_turn_around_themselves(body):
+    mesh, weights, skeleton = body
+    target, matches, found, _ = found_and_true(body, {"roll": 30.0, "curl": 55.0}, shift=1)
+    bones = with_digits(mesh, weights, skeleton, target, matches, bones=found)
+    fingers = np.arange(PALM + 1, len(skeleton))
+    above = bones.rotations[skeleton.parents[fingers]]
+    spin = Rotation.from_matrix(above.transpose(0, 2, 1) @ bones.rotations[fingers]).as_quat(canonical=True)
+    axes = skeleton.tails[fingers] - skeleton.heads[fingers]
+    along = np.einsum("kd,kd->k", spin[:, :3], axes / np.linalg.norm(axes, axis=1, keepdims=True))
+    assert np.degrees(2 * np.abs(np.arctan2(along, spin[:, 3]))).max() < 12
+
+
 def test_a_hand_that_was_right_stays_as_it_was(body):
     mesh, weights, skeleton = body
     target, matches, found, truth = found_and_true(body, {"roll": 20.0, "curl": 30.0})
