@@ -16,6 +16,7 @@ from .elastic import ElasticSurface
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from .homes import Homes
     from .laplacian import LaplaceBeltrami
     from .mesh import TriangleMesh
 
@@ -94,6 +95,8 @@ class PosedRegistration:
         Its operator.
     target : TriangleMesh
         The target, m vertices.
+    homes : Homes, optional
+        Where on the body the target's vertices belong, roughly: limbs that touch are not taken for one another then.
 
     References
     ----------
@@ -101,8 +104,10 @@ class PosedRegistration:
        planes.
     """
 
-    def __init__(self, body: TriangleMesh, laplace: LaplaceBeltrami, target: TriangleMesh) -> None:
-        self._body, self._laplace = body, laplace
+    def __init__(
+        self, body: TriangleMesh, laplace: LaplaceBeltrami, target: TriangleMesh, homes: Homes | None = None
+    ) -> None:
+        self._body, self._laplace, self._homes = body, laplace, homes
         self._search = ClosestPoints(body)
         scale = float(np.sqrt(target.area))
         centre = np.average(target.vertices, axis=0, weights=target.vertex_areas)
@@ -160,6 +165,8 @@ class PosedRegistration:
         first = _Planes(there, target.points, target.normals, target.shares)
         normals = self._search.moved(now).vertex_normals
         found = facing(self._target_search, now, normals, 1.0)
+        if self._homes is not None:
+            found = self._homes.on_target(self._target_search, found, now)
         triangles = self._target_search_triangles[found.triangles]
         places = np.einsum("kc,kcd->kd", found.barycentric, target.points[triangles])
         seen = np.einsum("kc,kcd->kd", found.barycentric, target.normals[triangles])
@@ -172,7 +179,9 @@ class PosedRegistration:
     def matched(self, positions: NDArray[np.float64]) -> FoundPoints:
         """Match every vertex of the target, m, with the closest point of the body, which is at positions (n, 3)."""
         target = self._target
-        return facing(self._search.moved(self._inside(positions)), target.points, target.normals, 1.0)
+        search = self._search.moved(self._inside(positions))
+        found = facing(search, target.points, target.normals, 1.0)
+        return found if self._homes is None else self._homes.on_body(search, found, target.points)
 
     def _inside(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
         """Turn coordinates of the target into units of the root of its area, around its centre."""

@@ -16,6 +16,7 @@ from .digit_fit import with_digits
 from .errors import RigError
 from .fitted_rig import FittedRig
 from .followers import follow
+from .homes import Homes
 from .laplacian import laplace_beltrami
 from .posed_registration import PosedRegistration, facing
 from .progress import Progress, Steps, run, within
@@ -277,8 +278,8 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     body, target = proxy.mesh, target_proxy.mesh
     weights = _proxy_weights(proxy, pair.weights)
     evidence = _Evidence(body, weights, target, pair.skeleton)
-    registration = PosedRegistration(body, laplace_beltrami(body), target)
     found = _on_proxies(pair, back, proxy, target_proxy)
+    registration = PosedRegistration(body, laplace_beltrami(body), target, Homes.of(body, target, found))
     bones = with_digits(body, weights, pair.skeleton, target, found, bones=bones)
     yield Progress(0.3, "Posing hands")
     posed = bones.posed
@@ -301,7 +302,7 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     if not proxy.is_identity:
         positions = whole + _evaluation(proxy.points, body) @ (positions - posed)
     yield Progress(0.85, "Mapping every vertex")
-    maps = _maps(pair, positions)
+    maps = _maps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back))
     bones = BoneTransforms(bones.linear, bones.translations, bones.rotations, bones.scales, whole)
     return _Slid(bones, positions, maps)
 
@@ -328,13 +329,14 @@ def _proxy_weights(proxy: Proxy, weights: csr_array) -> csr_array:
     return averaged
 
 
-def _maps(pair: _Pair, positions: NDArray[np.float64]) -> tuple[SurfaceMap, SurfaceMap]:
+def _maps(pair: _Pair, positions: NDArray[np.float64], homes: Homes) -> tuple[SurfaceMap, SurfaceMap]:
     """Read the maps between the original meshes off the body that lies on the target at positions (n, 3)."""
     x, y = pair.x, pair.y
     size = float(np.sqrt(y.mesh.area))
     lying = ClosestPoints(x.mesh).moved(positions)
-    there = facing(ClosestPoints(y.mesh), positions, lying.vertex_normals, size)
-    back = facing(lying, y.mesh.vertices, y.mesh.vertex_normals, size)
+    lies_on = ClosestPoints(y.mesh)
+    there = homes.on_target(lies_on, facing(lies_on, positions, lying.vertex_normals, size), positions)
+    back = homes.on_body(lying, facing(lying, y.mesh.vertices, y.mesh.vertex_normals, size), y.mesh.vertices)
     on_y = SurfacePoints.from_barycentric(y.mesh, there.triangles, there.barycentric)
     on_x = SurfacePoints.from_barycentric(x.mesh, back.triangles, back.barycentric)
     forward = _followed(x, y, on_y, map_confidence(x.mesh, y.mesh, on_y, on_x))
