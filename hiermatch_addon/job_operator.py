@@ -29,7 +29,7 @@ _SLICE = 0.05
 _LONGEST_SLICE = 0.1
 """The same where drawing the window takes longer than that: half of the time should be work."""
 
-_REDRAW = 0.1
+_REDRAW = 0.2
 """Least time between two drawings of the progress."""
 
 _PAUSE = 0.01

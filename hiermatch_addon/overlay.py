@@ -17,13 +17,15 @@ import numpy as np
 from bpy.app.handlers import persistent
 from gpu_extras.batch import batch_for_shader
 
+from .hover_data import hovered, pointed_at
 from .overlay_data import Drawing, project
 from .overlay_io import read_drawing, signature
+from .panel_text import translated
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["show_pending", "start_overlay", "stop_overlay"]
+__all__ = ["draw_hovered", "pair_under_mouse", "show_pending", "start_overlay", "stop_overlay"]
 
 _gpu: Any = gpu  # whose functions Blender's stubs declare to return nothing
 
@@ -32,6 +34,12 @@ _BIAS = 2e-4
 
 _LETTERS = 11
 """Height of the numbers, in points."""
+
+_REACH = 9.0
+"""How near the mouse has to come to a point, in pixels at normal interface scale."""
+
+_RINGS = ((15.0, (0.0, 0.0, 0.0, 0.6)), (12.0, (1.0, 1.0, 1.0, 1.0)))
+"""Widths and colors of what is drawn below a point that the mouse is on, the largest first."""
 
 
 class _Overlay:
@@ -100,10 +108,7 @@ class _Overlay:
         space = cast("bpy.types.SpaceView3D", context.space_data)
         if not space.overlay.show_overlays or not self.update(context) or not self._drawing.labels:
             return
-        region, view = cast("Any", context).region, cast("Any", context).region_data
-        places, inside = project(
-            self._label_places, np.array(view.perspective_matrix, np.float64), (region.width, region.height)
-        )
+        places, inside = project(self._label_places, *_eye(context))
         blf.size(0, _LETTERS * cast("Any", context.preferences).system.ui_scale)
         blf.enable(0, blf.SHADOW)
         blf.shadow(0, 0, 0, 0, 0, 1)
@@ -112,6 +117,47 @@ class _Overlay:
             blf.color(0, *label.color)
             blf.position(0, places[number, 0] + 6, places[number, 1] + 4, 0)
             blf.draw(0, label.text)
+        blf.disable(0, blf.SHADOW)
+
+    def pair_under_mouse(self, context: bpy.types.Context, mouse: tuple[float, float]) -> int:
+        """Find the pair that the mouse points at, in the viewport of the context."""
+        space = cast("bpy.types.SpaceView3D", context.space_data)
+        if not space.overlay.show_overlays or not self.update(context):
+            return -1
+        reach = _REACH * cast("Any", context.preferences).system.ui_scale
+        return pointed_at(self._drawing, *_eye(context), mouse, reach)
+
+    def draw_hovered(self, context: bpy.types.Context, row: int) -> None:
+        """Draw over everything the pair that the mouse points at, with its name and its distortion."""
+        found = hovered(self._drawing, row, *_eye(context))
+        if found is None:
+            return
+        scale, state = cast("Any", context.preferences).system.ui_scale, _gpu.state
+        state.blend_set("ALPHA")
+        lines, points = self._shader("POLYLINE_UNIFORM_COLOR"), self._point_shader()
+        for width, color in _RINGS:
+            if len(found.ends) > 1:
+                lines.bind()
+                lines.uniform_float("viewportSize", state.viewport_get()[2:])
+                lines.uniform_float("lineWidth", width / 4 * scale)
+                lines.uniform_float("color", color)
+                batch_for_shader(lines, "LINES", {"pos": found.ends}).draw(lines)
+            state.point_size_set(width * scale)
+            batch_for_shader(points, "POINTS", {"pos": found.ends, "color": [color] * len(found.ends)}).draw(points)
+        state.point_size_set(1.0)
+        state.blend_set("NONE")
+        if found.distortion is None:
+            text = translated("Landmark {number}").format(number=found.number)
+        else:
+            said = translated("Point {number}, distortion {distortion}")
+            text = said.format(number=found.number, distortion=f"{found.distortion:.3f}")
+        blf.size(0, (_LETTERS + 1) * scale)
+        blf.enable(0, blf.SHADOW)
+        blf.shadow(0, 3, 0, 0, 0, 1)
+        blf.color(0, 1, 1, 1, 1)
+        for x, y, _ in found.ends.tolist():
+            blf.position(0, x + 12 * scale, y + 8 * scale, 0)
+            blf.draw(0, text)
         blf.disable(0, blf.SHADOW)
 
     def _upload(self) -> None:
@@ -150,6 +196,16 @@ def show_pending(pending: tuple[str, int] | None) -> None:
     _overlay.pending = pending
 
 
+def pair_under_mouse(context: bpy.types.Context, mouse: tuple[float, float]) -> int:
+    """Return the row of the pair that the mouse points at, matched points before landmarks; -1 if there is none."""
+    return _overlay.pair_under_mouse(context, mouse)
+
+
+def draw_hovered(context: bpy.types.Context, row: int) -> None:
+    """Draw that pair over everything."""
+    _overlay.draw_hovered(context, row)
+
+
 def start_overlay() -> None:
     """Let the viewports be drawn over."""
     for draw, when in ((_overlay.draw_view, "POST_VIEW"), (_overlay.draw_pixels, "POST_PIXEL")):
@@ -162,6 +218,12 @@ def stop_overlay() -> None:
     cast("Any", bpy.app.handlers).depsgraph_update_post.remove(_on_update)
     while _overlay.handles:
         bpy.types.SpaceView3D.draw_handler_remove(_overlay.handles.pop(), "WINDOW")
+
+
+def _eye(context: bpy.types.Context) -> tuple[NDArray[np.float64], tuple[int, int]]:
+    """Return the perspective matrix of the viewport that is drawn, and its size in pixels."""
+    region, view = cast("Any", context).region, cast("Any", context).region_data
+    return np.array(view.perspective_matrix, np.float64), (region.width, region.height)
 
 
 @persistent  # type: ignore[untyped-decorator]

@@ -6,7 +6,7 @@ Nothing here knows the graphics card; all that it draws is computed here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -119,13 +119,19 @@ class Label:
     color: tuple[float, float, float, float]
 
 
+_NONE = Marks(np.empty((0, 3)), np.empty((0, 3)), np.empty(0, np.int64))
+
+
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """All that is drawn, in order: lines, then points, then labels."""
+    """All that is drawn, in order: lines, then points, then labels; and the pairs whose points are drawn."""
 
     lines: tuple[Lines, ...] = ()
     points: tuple[PointCloud, ...] = ()
     labels: tuple[Label, ...] = ()
+    pairs: Marks = _NONE
+    landmarks: Marks = _NONE
+    distortion: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
 
 
 def place(positions: NDArray[np.float32], places: Places, matrix: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -218,6 +224,9 @@ def drawing(
         tuple(group for group in lines if len(group.positions)),
         tuple(group for group in points if len(group.positions)),
         tuple(labels),
+        pairs if shown.points else _NONE,
+        landmarks,
+        distortion,
     )
 
 

@@ -9,6 +9,7 @@ import bpy
 
 from .command_line import register_command, unregister_command
 from .freshness import start_watching, stop_watching
+from .hover import HIERMATCH_GGT_hover, HIERMATCH_GT_hover
 from .operators.add_landmark import HIERMATCH_OT_add_landmark
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.clear import HIERMATCH_OT_clear
@@ -107,11 +108,13 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_add_preset,
     HIERMATCH_PT_presets,
     HIERMATCH_PT_match,
+    HIERMATCH_PT_overlay,
     HIERMATCH_PT_landmarks,
     HIERMATCH_PT_pairs,
-    HIERMATCH_PT_overlay,
     HIERMATCH_PT_retarget,
     HIERMATCH_PT_symmetry,
+    HIERMATCH_GT_hover,
+    HIERMATCH_GGT_hover,
 )
 """Property groups before what contains them."""
 

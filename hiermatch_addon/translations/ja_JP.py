@@ -1032,6 +1032,8 @@ MESSAGES: Final[dict[str, str]] = {
     ): (
         "一部のポイントが、マッチングの対象であるメッシュの最大の部分にありません。その部分のポイントを選んでください。"
     ),
+    "Landmark {number}": "ランドマーク {number}",
+    "Point {number}, distortion {distortion}": "ポイント {number}、歪み {distortion}",
     "Preparing what is written": "書き込む内容を準備しています",
     "Simplifying the mesh": "メッシュを単純化しています",
     "There are no landmarks to refine the map around. Name at least one pair of vertices.": (

@@ -859,6 +859,8 @@ MESSAGES: Final[dict[str, str]] = {
         "Some points do not lie on the largest part of the mesh, which is the one that is matched. Choose points "
         "on that part."
     ): "某些点不在网格的最大部分上，而匹配的正是该部分。请在该部分上选择点。",
+    "Landmark {number}": "地标 {number}",
+    "Point {number}, distortion {distortion}": "点 {number}，畸变 {distortion}",
     "Preparing what is written": "正在准备要写入的内容",
     "Simplifying the mesh": "正在简化网格",
     "There are no landmarks to refine the map around. Name at least one pair of vertices.": (
