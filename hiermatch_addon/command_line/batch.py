@@ -93,12 +93,12 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         except KeyboardInterrupt:
             interrupted = True
             console.error("Interrupted. What is done stays done; the same command goes on from here.")
-    rows = summary_rows(ledger, pairs)
+    rows = summary_rows(ledger, pairs, any_options=parsed.summary)  # those of the shards need not be given again
     whole = parsed.summary or shard == (1, 1)
     path = ledger.write_summary(rows, "summary" if whole else f"summary-{shard[0]}-of-{shard[1]}")
     found = counts(rows)
     told = ", ".join(f"{number} {status}" for status, number in found.items() if number)
-    console.say(f"{len(rows)} pairs: {told}. See {path}")
+    console.say(f"{len(rows)} {'pair' if len(rows) == 1 else 'pairs'}: {told}. See {path}")
     if interrupted:
         return ExitCode.INTERRUPTED
     if found["failed"] or found["crashed"] or found["timeout"] or (found["pending"] and not parsed.summary):

@@ -59,13 +59,18 @@ class Ledger:
         """Return where all that is kept that Blender printed about a pair."""
         return self.folder / f"{pair.stem}.log"
 
-    def report_of(self, pair: Pair) -> dict[str, Any] | None:
-        """Return the report of a pair; None if there is none, or the pair or its files are others since."""
+    def report_of(self, pair: Pair, *, any_options: bool = False) -> dict[str, Any] | None:
+        """Return the report of a pair; None if there is none, or the pair or its files are others since.
+
+        With `any_options` the pair may have been done with other options.
+        """
         try:
             report = json.loads(self.report_path(pair).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
-        if not isinstance(report, dict) or report.get("format") != FORMAT or report.get("key") != pair.key:
+        if not isinstance(report, dict) or report.get("format") != FORMAT:
+            return None
+        if report.get("key") != pair.key and not any_options:
             return None
         if report.get("status") not in STATUSES or report["status"] == "interrupted":
             return None
@@ -111,11 +116,11 @@ class Ledger:
         return path
 
 
-def summary_rows(ledger: Ledger, pairs: Sequence[Pair]) -> list[dict[str, Any]]:
-    """Return a line for each pair; those without a report are "pending"."""
+def summary_rows(ledger: Ledger, pairs: Sequence[Pair], *, any_options: bool = False) -> list[dict[str, Any]]:
+    """Return a line for each pair; those without a report are "pending".  See `Ledger.report_of`."""
     rows = []
     for pair in pairs:
-        report = ledger.report_of(pair) or {}
+        report = ledger.report_of(pair, any_options=any_options) or {}
         match = report.get("match") or {}
         quality = match.get("quality") or {}
         rows.append(

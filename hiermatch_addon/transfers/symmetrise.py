@@ -152,7 +152,7 @@ class _Weights:
     def write(self, obj: bpy.types.Object) -> str:
         """Write them."""
         write_weights(obj, self.names, self._weights)
-        return f"{len(self.names)} vertex groups"
+        return _counted(len(self.names), "vertex group")
 
 
 class _Keys:
@@ -191,7 +191,7 @@ class _Keys:
         before = [KeySettings.of(blocks[name], self.names) for name in self.names]
         new = [replace(one, name=flipped_name(one.name), vertex_group=_flipped_group(one)) for one in self._missing]
         add_keys(obj, [*before, *new], np.concatenate([self._offsets, self._made]))
-        return f"{len(before) + len(new)} shape keys"
+        return _counted(len(before) + len(new), "shape key")
 
 
 class _Colors:
@@ -222,7 +222,11 @@ class _Colors:
         for name, (_, values) in self._values.items():
             write_attribute(mesh, attribute_layouts(mesh)[name], values)
         mesh.update()
-        return f"{len(self.names)} color attributes"
+        return _counted(len(self.names), "color attribute")
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def _state(obj: bpy.types.Object) -> tuple[str, str]:

@@ -185,6 +185,13 @@ def test_shards_are_summed_up_apart_and_together(stand_in):
     assert stand_in.summary["bad"]["status"] == "failed"
 
 
+def test_a_summary_does_not_ask_for_the_options_again(stand_in):
+    stand_in.write(["a", "b"])
+    assert stand_in.run("--points=12") == (0, ["a", "b"])
+    assert stand_in.run("--summary") == (0, [])
+    assert [row["status"] for row in stand_in.summary.values()] == ["done", "done"]
+
+
 def test_strict_tells_of_doubt(stand_in):
     stand_in.write(["a", "doubt"])
     assert stand_in.run("--strict")[0] == 3
