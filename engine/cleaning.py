@@ -28,7 +28,7 @@ _MOST_PARTS = 256
 """Parts that are kept beside the main one, the largest; there may be thousands of hairs or crumbs."""
 
 
-def clean(mesh: TriangleMesh, name: str = "mesh") -> CleanSurface:
+def clean(mesh: TriangleMesh, name: str = "mesh", left_out: NDArray[np.bool_] | None = None) -> CleanSurface:
     """Make a mesh into oriented manifolds.
 
     In this order: vertices along open seams are welded; triangles without three different vertices, and repeated ones,
@@ -41,6 +41,8 @@ def clean(mesh: TriangleMesh, name: str = "mesh") -> CleanSurface:
         Any mesh.
     name : str
         What the notes call it, such as 'source'.
+    left_out : (n,) array of bool, optional
+        Vertices whose faces were left out on purpose: notes do not count them among the loose ones.
 
     Returns
     -------
@@ -67,7 +69,14 @@ def clean(mesh: TriangleMesh, name: str = "mesh") -> CleanSurface:
     _make_manifold(work, groups)
     inward = inward_components(work.vertices, work.triangles, work.twins, work.components)
     work.turn(inward[work.components])
+    work.counts.loose = _loose_vertices(mesh, left_out)
     return _in_parts(mesh, work, inward, representatives, name)
+
+
+def _loose_vertices(mesh: TriangleMesh, left_out: NDArray[np.bool_] | None) -> int:
+    """Count the vertices without a face, but for those whose faces were left out on purpose."""
+    loose = np.bincount(mesh.triangles.ravel(), minlength=mesh.vertex_count) == 0
+    return int((loose if left_out is None else loose & ~left_out).sum())
 
 
 class _Work:
@@ -244,7 +253,6 @@ def _in_parts(
     parts_of_vertices = vertex_parts[images]
     counts.inverted = pieces[0].inverted
     counts.parts = len(areas) - 1
-    counts.loose = int((np.bincount(mesh.triangles.ravel(), minlength=mesh.vertex_count) == 0).sum())
     return CleanSurface(mesh, tuple(pieces), parts_of_vertices, local[images], cleaning_notes(name, counts))
 
 

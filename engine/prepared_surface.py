@@ -160,17 +160,19 @@ def prepared_steps(
     """
     yield Progress(0.0, "Cleaning")
     kept = np.arange(mesh.triangle_count)
-    part = mesh
+    part, left_out = mesh, np.zeros(mesh.vertex_count, bool)
     if excluded is not None:
         if excluded.shape != (mesh.vertex_count,):
             raise MatchError(
                 f"The vertices to leave out of the {name} should be given by {mesh.vertex_count} values, one for each "
                 f"vertex, not by an array of the shape {excluded.shape}."
             )
-        kept = np.flatnonzero(~excluded[mesh.triangles].any(axis=1))
+        hit = excluded[mesh.triangles].any(axis=1)
+        kept = np.flatnonzero(~hit)
+        left_out[mesh.triangles[hit]] = True
         if not mesh.triangle_areas[kept].any():
             raise MatchError(f"Nothing of the {name} is left to match: all of its faces are left out.")
         part = TriangleMesh(mesh.vertices, mesh.triangles[kept]) if len(kept) < mesh.triangle_count else mesh
-    cleaned = clean(part, name)
+    cleaned = clean(part, name, left_out)
     proxy = yield from within(proxy_steps(cleaned.mesh, proxy_vertices), 0.3, 1.0, "Simplifying")
     return PreparedSurface(mesh, kept, cleaned, proxy)

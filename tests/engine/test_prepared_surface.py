@@ -113,6 +113,12 @@ def test_points_return_exactly_from_a_mesh_with_a_part_left_out(body):
     np.testing.assert_allclose(surface.on_mesh(there).positions, points.positions, atol=1e-9)
 
 
+def test_what_is_left_out_is_not_called_loose(body):
+    mesh = TriangleMesh(np.concatenate([body.vertices, [[0.0, 0.0, 9.0]]]), body.triangles)
+    notes = prepared(mesh, excluded=mesh.vertices[:, 2] < -0.6).cleaned.notes
+    assert [note for note in notes if "loose" in note] == ["The mesh has 1 loose vertex: it follows its surroundings."]
+
+
 def test_an_empty_exclusion_changes_nothing(body):
     surface = prepared(body, excluded=np.zeros(body.vertex_count, bool))
     assert surface.is_whole
