@@ -13,6 +13,7 @@ from scipy.sparse.linalg import splu
 from .closest_points import ClosestPoints
 from .elastic import ElasticSurface
 from .normal_equations import NormalEquations
+from .progress import Progress, Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +28,8 @@ _HEAT_STEPS = 3
 
 _CURVATURE_TIMES = 1e-3, 3e-3
 """How long the mean curvature is smoothed by heat, in units of area: over some hundredths of the surface's size."""
+
+_PREPARED = "search", "curvatures", "elastic", "equations"
 
 
 class DeformableSurface:
@@ -77,6 +80,12 @@ class DeformableSurface:
     def equations(self) -> NormalEquations:
         """What its elastic energy and points that it is drawn to demand together."""
         return NormalEquations(self.elastic.stiffness, self.triangles)
+
+    def prepare_steps(self) -> Steps[None]:
+        """Compute what registrations need of the surface, in short steps."""
+        for number, name in enumerate(_PREPARED):
+            getattr(self, name)
+            yield Progress((number + 1) / len(_PREPARED), "Fitting the surfaces")
 
     def in_its_units(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
         """Turn positions (k, 3) around the unit surface into the coordinates of its mesh."""

@@ -134,11 +134,15 @@ def registered_pair_steps(
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.05, 0.1)
     mirrored = False
     if landmarks is None:
-        hypotheses = yield from within(map_hypotheses_steps(x, y, starts, search=search), 0.1, 0.4)
+        # Mirrored maps serve only landmarks that ask for one.
+        proposals = map_hypotheses_steps(x, y, starts, search=search, mirrored=False)
+        hypotheses = yield from within(proposals, 0.1, 0.4)
     else:
         steered = yield from within(steered_hypotheses_steps(x, y, starts, landmarks, search=search), 0.1, 0.4)
         x, hypotheses, mirrored = steered.x, steered.hypotheses, steered.mirrored
     source, target = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
+    yield from within(source.prepare_steps(), 0.4, 0.41)
+    yield from within(target.prepare_steps(), 0.41, 0.42)
     ties = None if landmarks is None else _ties(x, y, target, landmarks.source, landmarks.target)
     ties_back = None if landmarks is None else _ties(y, x, source, landmarks.target, landmarks.source)
     # Both surfaces are seen from outside, so the true map keeps the orientation.
@@ -147,7 +151,7 @@ def registered_pair_steps(
     smooth = _functions(x, _SMOOTH)
     candidates = []
     for number, hypothesis in enumerate(plausible):
-        begin, end = (0.4 + 0.3 * (number + i) / len(plausible) for i in (0, 1))
+        begin, end = (0.42 + 0.28 * (number + i) / len(plausible) for i in (0, 1))
         candidates.append((yield from within(_candidate_steps(source, target, hypothesis, smooth, ties), begin, end)))
     candidates.sort(key=lambda candidate: candidate.score)
     if search:
@@ -192,9 +196,11 @@ def _candidate_steps(
     smooth: NDArray[np.float64],
     ties: Ties | None,
 ) -> Steps[Candidate]:
-    start = smooth_start(source, target, hypothesis.images_on_y, smooth)
-    first = _at_vertices(target, hypothesis.images_on_y), _at_vertices(source, hypothesis.images_on_x)
-    registration = yield from register_steps(source, target, start, (SOFT,), first, ties=ties)
+    images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
+    start = smooth_start(source, target, images.on_y, smooth)
+    first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
+    steps = register_steps(source, target, start, (SOFT,), first, ties=ties)
+    registration = yield from within(steps, 0.2, 1.0)
     cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
     score = hypothesis.score + _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
     return Candidate(hypothesis, registration, score)

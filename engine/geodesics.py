@@ -27,6 +27,9 @@ __all__ = ["GeodesicSolver", "geodesic_distances"]
 _BLOCK = 320_000
 """Pairs of a source and a vertex that are computed together: as many as the processor's caches like."""
 
+_PAUSES = 2
+"""How often the updates of a block are interrupted, for those who want to be able to stop."""
+
 _WIDTH = 0.971
 """Width of the bands of distance in which vertices are updated together."""
 
@@ -146,7 +149,8 @@ class GeodesicSolver:
         first : int
             Index in `sources` of the block's first source.
         block : (s, n) array of float
-            Distances from `sources[first:first + s]`.
+            Distances from `sources[first:first + s]`.  Some blocks are empty: so those who want to be able to stop get
+            their turn while the next one is computed.
 
         Raises
         ------
@@ -155,8 +159,16 @@ class GeodesicSolver:
         """
         checked = self._checked(sources)
         size = max(1, _BLOCK // self._vertex_count)
+        nothing = np.empty((0, self._vertex_count))
         for first in range(0, len(checked), size):
-            yield first, self._march(checked[first : first + size])
+            march = self._march(checked[first : first + size])
+            while True:
+                try:
+                    next(march)
+                except StopIteration as stop:
+                    yield first, stop.value
+                    break
+                yield first, nothing
 
     def _checked(self, sources: ArrayLike) -> NDArray[np.int64]:
         array = np.asarray(sources)
@@ -173,16 +185,21 @@ class GeodesicSolver:
             )
         return array.astype(np.int64)
 
-    def _march(self, sources: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Compute the distances (s, n) of one block of sources."""
+    def _march(self, sources: NDArray[np.int64]) -> Generator[None, None, NDArray[np.float64]]:
+        """Compute the distances (s, n) of one block of sources, in some steps."""
         distances: NDArray[np.float64] = dijkstra(self.graph, indices=sources)
+        yield
         squares = np.square(distances)
         corner, pair, ends = self._in_order(distances)
+        yield
         changed = np.zeros(squares.size, bool)
         memory = np.empty(6 * int(np.diff(ends).max(initial=0)))
-        for start, end in pairwise(ends):
+        pauses = set(np.searchsorted(ends, ends[-1] * np.arange(1, _PAUSES + 1) / (_PAUSES + 1)).tolist())
+        for group, (start, end) in enumerate(pairwise(ends)):
             if end > start:
                 self._relax(squares.ravel(), corner[start:end], pair[start:end], changed, memory)
+            if group in pauses:
+                yield
         np.sqrt(squares, out=distances)
         self._repair(squares.ravel(), self._jumps(distances))
         np.sqrt(squares, out=distances)

@@ -15,6 +15,7 @@ from .functional_maps import (
     fit_functional_maps,
     nearest_both_ways,
     points_from_functions,
+    points_from_functions_steps,
     refine_bijective_steps,
     spectral_sizes,
 )
@@ -91,7 +92,13 @@ class MapHypothesis:
     @cached_property
     def images(self) -> PointMaps:
         """The map between all vertices: extended when it is asked for, as many hypotheses never are."""
-        return _between_all_vertices(*self.domains, self.points)
+        return run(_between_all_vertices_steps(*self.domains, self.points))
+
+    def images_steps(self) -> Steps[PointMaps]:
+        """Extend the map to all vertices in short steps; the result is kept as `images`."""
+        if "images" not in self.__dict__:
+            self.__dict__["images"] = yield from _between_all_vertices_steps(*self.domains, self.points)
+        return self.images
 
     @property
     def images_on_y(self) -> NDArray[np.int64]:
@@ -110,7 +117,7 @@ class MapHypothesis:
 
 
 def map_hypotheses_steps(
-    x: Shape, y: Shape, starts: Sequence[LandmarkStart] = (), *, search: bool = True
+    x: Shape, y: Shape, starts: Sequence[LandmarkStart] = (), *, search: bool = True, mirrored: bool = True
 ) -> Steps[list[MapHypothesis]]:
     """Propose dense maps between two surfaces, most credible first.
 
@@ -128,6 +135,8 @@ def map_hypotheses_steps(
         Correspondences from elsewhere that enter the comparison.
     search : bool
         Whether matchings of extremities are tried as well; without, there must be a start.
+    mirrored : bool
+        Whether matchings of extremities that mirror the surface are followed up even if there are others.
 
     Yields
     ------
@@ -150,16 +159,26 @@ def map_hypotheses_steps(
     size = min(len(x.spectrum), len(y.spectrum))
     a, b = MapDomain(x, size), MapDomain(y, size)
     yield Progress(0.05, "Comparing maps")
-    leads = (yield from within(rough_maps_steps(a, b), 0.05, 0.4)) if search else []
+    leads: list[MapLead] = []
+    if search:
+        steps = rough_maps_steps(a, b) if mirrored else _keeping_leads_steps(a, b)
+        leads = yield from within(steps, 0.05, 0.4)
     refined: list[MapLead] = []
     candidates = [(_on_fine_samples(a, b, lead.points), lead.origin) for lead in leads]
     candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
     for number, (points, origin) in enumerate(candidates):
         begin, end = (0.4 + 0.6 * (number + i) / len(candidates) for i in (0, 1))
-        steps = refine_bijective_steps(a.fine_basis, b.fine_basis, points, _FINE_SIZES)
-        refined.append(_assessed(a, b, (yield from within(steps, begin, end)), origin))
+        finer = refine_bijective_steps(a.fine_basis, b.fine_basis, points, _FINE_SIZES)
+        refined.append(_assessed(a, b, (yield from within(finer, begin, end)), origin))
     kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
     return [MapHypothesis((a, b), lead.points, lead.score, lead.orientation, lead.terms, lead.origin) for lead in kept]
+
+
+def _keeping_leads_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:
+    """Propose maps between the coarse samples that keep the orientation, or any if there are none."""
+    leads = yield from within(rough_maps_steps(x, y, (1,)), 0.0, 0.9)
+    keeping = [lead for lead in leads if lead.orientation > 0]
+    return keeping or (yield from within(rough_maps_steps(x, y), 0.9, 1.0))
 
 
 def _on_fine_samples(x: MapDomain, y: MapDomain, points: PointMaps) -> PointMaps:
@@ -188,13 +207,13 @@ def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Map
     return MapLead(points, float(score), map_orientation(x, y, points, maps)[0], terms, origin)
 
 
-def _between_all_vertices(x: MapDomain, y: MapDomain, points: PointMaps) -> PointMaps:
+def _between_all_vertices_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:
     """Extend maps between the fine samples to all vertices."""
-    points = run(refine_bijective_steps(x.fine_basis, y.fine_basis, points, _DENSE_SIZES))
+    points = yield from within(refine_bijective_steps(x.fine_basis, y.fine_basis, points, _DENSE_SIZES), 0.0, 0.3)
     maps = fit_functional_maps(
         x.fine_basis, y.fine_basis, points, min(_DENSE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
     )
-    return points_from_functions(maps, x.functions, y.functions)
+    return (yield from within(points_from_functions_steps(maps, x.functions, y.functions), 0.3, 1.0))
 
 
 def _check(start: LandmarkStart, x: Shape, y: Shape) -> None:

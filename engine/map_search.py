@@ -59,8 +59,15 @@ class MapLead:
     origin: str
 
 
-def rough_maps_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:
+def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1)) -> Steps[list[MapLead]]:
     """Propose maps between the coarse samples of two surfaces.
+
+    Parameters
+    ----------
+    x, y : MapDomain
+        The surfaces.
+    signs : tuple of int
+        Whether matchings are carried over with the orientation kept (1), with it mirrored (-1), or each both ways.
 
     Yields
     ------
@@ -73,9 +80,10 @@ def rough_maps_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:
         A few of each of the most credible groups of like maps, of either orientation.
     """
     leads: list[MapLead] = []
+    counts = {1: sum(keeping for *_, keeping, _ in _SEARCHES), -1: sum(mirroring for *_, mirroring in _SEARCHES)}
     most = max(max(search[:2]) for search in _SEARCHES)
     directions_x, directions_y = x.directions(min(most, x.coarse_count)), y.directions(min(most, y.coarse_count))
-    total, done = sum(keeping + mirroring for *_, keeping, mirroring in _SEARCHES), 0
+    total, done = sum(counts[sign] for sign in signs), 0
     for few, offered, keeping, mirroring in _SEARCHES:
         n = min(offered, y.coarse_count)
         m = min(few, x.coarse_count, n)
@@ -83,8 +91,8 @@ def rough_maps_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:
             x.shape.sample_distances[:m, :m], y.shape.sample_distances[:n, :n], _dissimilarity(x, y, m, n), kept=keeping
         )
         rows_x = _lifting_rows(x, np.arange(m), directions_x, 1)
-        for sign, count in ((1, keeping), (-1, mirroring)):
-            for images in matchings.images[:count]:
+        for sign in signs:
+            for images in matchings.images[: keeping if sign > 0 else mirroring]:
                 points = nearest_both_ways(rows_x, _lifting_rows(y, images, directions_y, sign))
                 leads.append((yield from within(_refined_steps(x, y, points), done / total, (done + 1) / total)))
                 done += 1

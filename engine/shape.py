@@ -29,6 +29,9 @@ __all__ = ["Shape"]
 
 _CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fingers wide
 
+_TAKEN_TOGETHER = 100
+"""Samples that are taken in one step."""
+
 
 class Shape:
     """A surface with its samples and the distances between them.
@@ -113,7 +116,9 @@ class Shape:
         missing = count - self.sample_count
         if missing <= 0:
             return
-        self._sampler.extend(count)
+        for taken in range(self.sample_count, count, _TAKEN_TOGETHER):
+            self._sampler.extend(min(taken + _TAKEN_TOGETHER, count))
+            yield Progress(0.0, "Measuring distances")
         new = np.array(self._sampler.samples[self.sample_count :])
         # float32 keeps a hundred thousand vertices in reach of an ordinary machine; its error, 1e-7 of the distance,
         # is far below that of fast marching.

@@ -98,6 +98,22 @@ def test_a_mirrored_target_gives_maps_that_mirror(poses):
     assert error(rest, reversing[0].images_on_y) < 0.03
 
 
+def test_without_mirrored_maps_the_others_are_the_same(poses, proposed):
+    found = hypotheses(*poses[:2], mirrored=False)
+    assert all(h.orientation > 0 for h in found)
+    assert error(poses[2], found[0].images_on_y) < 0.02
+    assert found[0].score == pytest.approx(proposed[0].score, abs=0.2)
+
+
+def test_the_map_to_all_vertices_is_the_same_in_steps(poses):
+    x, y, _ = poses
+    first, second = (hypotheses(x, y)[0] for _ in range(2))
+    steps = run(first.images_steps())
+    assert (steps.on_y == second.images_on_y).all()
+    assert (steps.on_x == second.images_on_x).all()
+    assert run(first.images_steps()) is first.images
+
+
 def test_a_shape_is_mapped_to_itself_by_the_identity(poses):
     x, _, rest = poses
     best = hypotheses(x, x)[0]
