@@ -61,12 +61,19 @@ class RelaxedMatching:
     def _squares(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return np.square(self.problem.source_distances), np.square(self._target)
 
+    @cached_property
+    def _mixing(self) -> csr_array:
+        """Matrix (j, u) that is filled with one mixture after another: to make it takes as long as to use it."""
+        (j, k), (used, column) = self.candidates.shape, self._used
+        return csr_array((np.zeros(j * k), column.ravel(), np.arange(0, j * k + 1, k)), shape=(j, len(used)))
+
     def value_and_gradient(self, mixture: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
         """Distortion of a mixture (j, K), and its derivative by each entry (j, K)."""
-        (j, k), (used, column) = self.candidates.shape, self._used
+        used, column = self._used
         source_squared, target_squared = self._squares
         weight = self.problem.quadratic_weight
-        rows = csr_array((mixture.ravel(), column.ravel(), np.arange(0, j * k + 1, k)), shape=(j, len(used)))
+        rows = self._mixing
+        rows.data[:] = mixture.ravel()
         mass: NDArray[Any] = np.bincount(column.ravel(), mixture.ravel(), len(used))
         cross = np.take_along_axis(product(self.problem.source_distances, rows @ self._target), column, axis=1)
         row_sums = mixture.sum(axis=1)
