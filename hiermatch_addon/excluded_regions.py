@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Regions of a mesh that a match leaves out, as artists mark them: vertex groups, attributes and materials."""
+"""Regions of a mesh that a match leaves out, as artists mark them: groups, attributes, materials and face sets."""
 
 from __future__ import annotations
 
@@ -24,6 +24,9 @@ __all__ = ["excluded_vertices", "region_names"]
 _SHADING = "sharp_face"
 """The attribute of Blender's own that is no region: which faces are shaded flat."""
 
+_FACE_SETS, _FACE_SET = ".sculpt_face_set", "Face Set "
+"""The attribute with the number of each face's face set, and what the names of these start with here."""
+
 _HALF = 0.5
 """From which weight on a vertex belongs to a region."""
 
@@ -42,7 +45,8 @@ def region_names(obj: bpy.types.Object) -> list[str]:
         and not attribute.name.startswith(".")
     ]
     materials = [slot.material.name for slot in obj.material_slots if slot.material is not None]
-    return list(dict.fromkeys([*groups, *marked, *materials]))
+    sets = [f"{_FACE_SET}{number}" for number in np.unique(_face_sets(mesh_of(obj))).tolist()]
+    return list(dict.fromkeys([*groups, *marked, *materials, *sets]))
 
 
 def excluded_vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_] | None:
@@ -54,8 +58,8 @@ def excluded_vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_] | N
         A mesh object, in Object Mode.
     name : str
         Name of a vertex group, whose vertices of at least half the full weight are meant; or else of a boolean
-        attribute of vertices or of faces; or else of a material.  Of faces, those vertices are meant that have no
-        others.  If empty, there is no region.
+        attribute of vertices or of faces; or else of a material; or else of a face set, such as "Face Set 2".  Of
+        faces, those vertices are meant that have no others.  If empty, there is no region.
 
     Returns
     -------
@@ -97,10 +101,22 @@ def _vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_]:
     chosen = [number for number, material in enumerate(materials) if material is not None and material.name == name]
     if chosen:
         return _of_faces(mesh, np.isin(slots, chosen))
+    sets = _face_sets(mesh)
+    meant = [number for number in np.unique(sets).tolist() if f"{_FACE_SET}{number}" == name]
+    if meant:
+        return _of_faces(mesh, np.isin(sets, meant))
     raise ObjectError(
-        f'"{obj.name}" has no vertex group, boolean attribute or material called "{name}", which is to be left out. '
-        "Choose another one, or empty the field."
+        f'"{obj.name}" has no vertex group, boolean attribute, material or face set called "{name}", which is to be '
+        "left out. Choose another one, or empty the field."
     )
+
+
+def _face_sets(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Read the number of each face's face set, (f,); empty if there are none."""
+    attribute = mesh.attributes.get(_FACE_SETS)
+    if attribute is None or (attribute.data_type, attribute.domain) != ("INT", "FACE"):
+        return np.empty(0, np.int32)
+    return read_attribute(mesh, _FACE_SETS)
 
 
 def _of_faces(mesh: bpy.types.Mesh, faces: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -100,14 +100,14 @@ _OPTIONS: dict[str, Any] = {
     ),
     "exclude_source": _props.StringProperty(
         name="Leave Out of Source",
-        description="Vertex group, boolean attribute or material of the source whose vertices are not matched. In the "
-        "dense map they follow what is around them",
+        description="Vertex group, boolean attribute, material or face set of the source whose vertices are not "
+        "matched. In the dense map they follow what is around them",
         search=_search_regions("source"),
     ),
     "exclude_target": _props.StringProperty(
         name="Leave Out of Target",
-        description="Vertex group, boolean attribute or material of the target whose vertices are not matched. In the "
-        "dense map they follow what is around them",
+        description="Vertex group, boolean attribute, material or face set of the target whose vertices are not "
+        "matched. In the dense map they follow what is around them",
         search=_search_regions("target"),
     ),
     "prefix": _props.StringProperty(

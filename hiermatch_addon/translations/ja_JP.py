@@ -204,14 +204,20 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Leave Out of Source": "ソースから除外",
     (
-        "Vertex group, boolean attribute or material of the source whose vertices are not matched. In the dense "
-        "map they follow what is around them"
-    ): "頂点をマッチングしない、ソースの頂点グループ、ブール属性、またはマテリアル。密なマップでは周囲に従います",
+        "Vertex group, boolean attribute, material or face set of the source whose vertices are not matched. In the "
+        "dense map they follow what is around them"
+    ): (
+        "頂点をマッチングしない、ソースの頂点グループ、ブール属性、マテリアル、またはフェイスセット。"
+        "密なマップでは周囲に従います"
+    ),
     "Leave Out of Target": "ターゲットから除外",
     (
-        "Vertex group, boolean attribute or material of the target whose vertices are not matched. In the dense "
-        "map they follow what is around them"
-    ): "頂点をマッチングしない、ターゲットの頂点グループ、ブール属性、またはマテリアル。密なマップでは周囲に従います",
+        "Vertex group, boolean attribute, material or face set of the target whose vertices are not matched. In the "
+        "dense map they follow what is around them"
+    ): (
+        "頂点をマッチングしない、ターゲットの頂点グループ、ブール属性、マテリアル、またはフェイスセット。"
+        "密なマップでは周囲に従います"
+    ),
     "What the names of everything that is written start with. Another prefix keeps the results of other matches": (
         "書き込むすべてのものの名前の先頭に付く文字列。接頭辞を変えると、ほかのマッチングの結果が残ります"
     ),

@@ -171,14 +171,14 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Leave Out of Source": "从源中排除",
     (
-        "Vertex group, boolean attribute or material of the source whose vertices are not matched. In the dense "
-        "map they follow what is around them"
-    ): "源的顶点组、布尔属性或材质，其顶点不参与匹配。在稠密映射中它们跟随周围的顶点",
+        "Vertex group, boolean attribute, material or face set of the source whose vertices are not matched. In the "
+        "dense map they follow what is around them"
+    ): "源的顶点组、布尔属性、材质或面组，其顶点不参与匹配。在稠密映射中它们跟随周围的顶点",
     "Leave Out of Target": "从目标中排除",
     (
-        "Vertex group, boolean attribute or material of the target whose vertices are not matched. In the dense "
-        "map they follow what is around them"
-    ): "目标的顶点组、布尔属性或材质，其顶点不参与匹配。在稠密映射中它们跟随周围的顶点",
+        "Vertex group, boolean attribute, material or face set of the target whose vertices are not matched. In the "
+        "dense map they follow what is around them"
+    ): "目标的顶点组、布尔属性、材质或面组，其顶点不参与匹配。在稠密映射中它们跟随周围的顶点",
     "What the names of everything that is written start with. Another prefix keeps the results of other matches": (
         "所有写入内容的名称开头。换用另一个前缀可保留其他匹配的结果"
     ),

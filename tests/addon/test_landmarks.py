@@ -293,6 +293,17 @@ class TestRegions:
         assert np.flatnonzero(excluded_vertices(source, "Eye")).tolist() == [0]
         assert region_names(source) == ["Marked", "Skin", "Eye"]
 
+    def test_face_sets(self, pair):
+        source = pair[0]
+        ring = [face.index for face in source.data.polygons if 0 in face.vertices]
+        sets = source.data.attributes.new(".sculpt_face_set", "INT", "FACE")
+        for face in source.data.polygons:
+            sets.data[face.index].value = 7 if face.index in ring else 1
+        assert region_names(source) == ["Face Set 1", "Face Set 7"]
+        assert np.flatnonzero(excluded_vertices(source, "Face Set 7")).tolist() == [0]
+        with pytest.raises(ObjectError, match="face set called"):
+            excluded_vertices(source, "Face Set 2")
+
     def test_nothing_is_left_out_without_a_name(self, pair):
         assert excluded_vertices(pair[0], "") is None
 
