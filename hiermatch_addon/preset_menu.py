@@ -77,10 +77,11 @@ class HIERMATCH_OT_add_preset(AddPresetBase, bpy.types.Operator):  # type: ignor
     bl_description = "Save the options of Match and Retarget as a preset, or remove one that was saved"
     preset_menu = "HIERMATCH_PT_presets"
     preset_subdir = _SUBFOLDER
-    preset_defines: Final = ["match = bpy.context.scene.hiermatch", "retarget = bpy.context.scene.hiermatch_retarget"]
+    # Whole paths: where Blender runs on a newer Python than it was made for, it cannot see names that it defines.
+    preset_defines: Final[list[str]] = []
     preset_values: Final = [
-        *(f"match.{name}" for name in MATCH_NAMES),
-        *(f"retarget.{name}" for name in RETARGET_NAMES),
+        *(f"bpy.context.scene.hiermatch.{name}" for name in MATCH_NAMES),
+        *(f"bpy.context.scene.hiermatch_retarget.{name}" for name in RETARGET_NAMES),
     ]
 
     name: _props.StringProperty(

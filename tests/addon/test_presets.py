@@ -148,7 +148,8 @@ def test_saved_ones_can_be_removed_and_built_in_ones_not_overwritten(folder):
 
 
 def test_the_operator_writes_all_options():
-    owners = {"match": MATCH_NAMES, "retarget": RETARGET_NAMES}
+    scene = "bpy.context.scene"
+    owners = {f"{scene}.hiermatch": MATCH_NAMES, f"{scene}.hiermatch_retarget": RETARGET_NAMES}
     expected = [f"{owner}.{option}" for owner, names in owners.items() for option in names]
     assert list(HIERMATCH_OT_add_preset.preset_values) == expected
 
