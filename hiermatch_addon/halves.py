@@ -95,8 +95,9 @@ def find_half(obj: bpy.types.Object, prefix: str = "") -> Half:
     candidates = [Half(obj, name, writing.kept(obj, name)) for name in _prefixes(obj) if prefix in ("", name)]
     found = [half for half in candidates if half.kept]
     if not found:
-        of_prefix = f' with the Prefix "{prefix}"' if prefix else ""
-        raise ObjectError(f'"{obj.name}" carries no match{of_prefix}. Match it first.')
+        if prefix:
+            raise ObjectError(f'"{obj.name}" carries no match with the Prefix "{prefix}". Match it first.')
+        raise ObjectError(f'"{obj.name}" carries no match. Match it first.')
     if len(found) > 1:
         prefixes = ", ".join(f'"{half.prefix}"' for half in found)
         raise ObjectError(f'"{obj.name}" carries several matches. Name the Prefix of one of them: {prefixes}.')

@@ -11,6 +11,7 @@ import bpy
 from ..engine import HierMatchError
 from .access import progress_of, view_layer_of, window_manager_of
 from .redraw import redraw_sidebars
+from .translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -92,7 +93,7 @@ class JobOperator(_Operator):
             finally:
                 job.close()
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         finally:
             manager.progress_end()
@@ -102,7 +103,7 @@ class JobOperator(_Operator):
         try:
             self._job = self._start(context)
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         progress = progress_of(context)
         progress.cancel, progress.fraction, progress.label = False, 0.0, self._job.progress.label
@@ -115,7 +116,7 @@ class JobOperator(_Operator):
         """Do one slice of work at each of the timer's events."""
         if event.type == "ESC" or progress_of(context).cancel:
             self.cancel(context)
-            self.report({"INFO"}, self.cancelled)
+            self.report({"INFO"}, translated(self.cancelled))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
@@ -128,7 +129,7 @@ class JobOperator(_Operator):
             finished = self._finish(context, self._job)
         except HierMatchError as error:
             self.cancel(context)
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         except BaseException:
             self.cancel(context)
@@ -154,5 +155,6 @@ class JobOperator(_Operator):
         self._drawn = time.perf_counter()
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
-            workspace.status_text_set(f"{self.doing}: {now.label}, {now.fraction:.0%}    Esc: cancel")
+            said = f"{self.doing}: {now.label}, {now.fraction:.0%}    Esc: cancel"
+            workspace.status_text_set(translated(said))
         redraw_sidebars(window_manager_of(context))

@@ -14,6 +14,7 @@ from .errors import ObjectError
 from .pair import check_writable, find_pair
 from .running import is_running
 from .steering_lists import sync_lists
+from .translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -90,10 +91,10 @@ class LandmarkOperator(_Operator):
         """Allow it in Object and in Edit Mode, when nothing else is running."""
         operator = cast("type[bpy.types.Operator]", cls)
         if is_running(window_manager_of(context)):
-            operator.poll_message_set("HierMatch is at work. Wait for it, or cancel it")
+            operator.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
             return False
         if context.mode not in ("OBJECT", "EDIT_MESH"):
-            operator.poll_message_set("Switch to Object Mode or to Edit Mode first")
+            operator.poll_message_set(translated("Switch to Object Mode or to Edit Mode first"))
             return False
         return True
 
@@ -103,10 +104,10 @@ class LandmarkOperator(_Operator):
             source, target = steerable_pair(context, (self.source, self.target))
             done = self._do(context, source, target)
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         pick_pair(context, source, target)
         sync_lists(cast("bpy.types.Scene", context.scene))
         if done:
-            self.report({"INFO"}, done)
+            self.report({"INFO"}, translated(done))
         return {"FINISHED"}

@@ -20,7 +20,7 @@ from gpu_extras.batch import batch_for_shader
 from .hover_data import hovered, pointed_at
 from .overlay_data import Drawing, project
 from .overlay_io import read_drawing, signature
-from .panel_text import translated
+from .translated_text import translated
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

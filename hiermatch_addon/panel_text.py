@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import textwrap
-from typing import Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 from unicodedata import east_asian_width
 
-import bpy
+from .translated_text import translated
 
-__all__ = ["draw_text", "translated", "wrap_text"]
+if TYPE_CHECKING:
+    import bpy
+
+__all__ = ["draw_text", "wrap_text"]
 
 _PIXELS_PER_LETTER = 7
 """Rough width of a letter at normal interface scale, to wrap sentences."""
@@ -26,12 +29,6 @@ def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str,
     column.scale_y = 0.8
     for number, line in enumerate(wrap_text(translated(text), max(16, int(width) - 6))):
         column.label(text=line, icon="BLANK1" if number else icon, translate=False)
-
-
-def translated(text: str) -> str:
-    """Return a text in the language of the interface; for labels as they stand in the code, Blender does it itself."""
-    translations: Any = bpy.app.translations  # whose functions Blender's stubs declare to return nothing
-    return translations.pgettext_iface(text)
 
 
 def wrap_text(text: str, width: int) -> list[str]:

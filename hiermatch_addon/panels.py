@@ -9,12 +9,13 @@ import bpy
 
 from .access import layout_of, state_of
 from .pair import selected_meshes
-from .panel_text import draw_text, translated
+from .panel_text import draw_text
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress
 from .properties import copy_options
 from .setting_groups import APART, shown_groups
 from .setups import current_setup
+from .translated_text import translated
 
 if TYPE_CHECKING:
     from .properties import HIERMATCH_PG_scene, HIERMATCH_PG_summary

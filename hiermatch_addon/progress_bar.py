@@ -6,8 +6,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from .access import progress_of, window_manager_of
-from .panel_text import draw_text, translated
+from .panel_text import draw_text
 from .running import running_panel
+from .translated_text import translated
 
 if TYPE_CHECKING:
     import bpy

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from .access import window_manager_of
+from .translated_text import translated
 
 if TYPE_CHECKING:
     import bpy
@@ -33,9 +34,9 @@ def running_panel(window_manager: bpy.types.WindowManager) -> str:
 def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """Tell, and say on the disabled button, whether an operator that writes on objects may start."""
     if is_running(window_manager_of(context)):
-        cls.poll_message_set("HierMatch is at work. Wait for it, or cancel it")
+        cls.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
         return False
     if context.mode != "OBJECT":
-        cls.poll_message_set("Switch to Object Mode first")
+        cls.poll_message_set(translated("Switch to Object Mode first"))
         return False
     return True

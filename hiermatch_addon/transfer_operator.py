@@ -18,6 +18,7 @@ from .retarget_properties import remember_transfer
 from .running import can_start
 from .summary import remember
 from .transfer_job import TransferJob, TransferOptions
+from .translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -86,7 +87,7 @@ class TransferOperator(JobOperator):
         if not can_start(operator, context):
             return False
         if sum(obj.type == "MESH" for obj in view_layer_of(context).objects) < 2:
-            operator.poll_message_set("Two mesh objects are needed")
+            operator.poll_message_set(translated("Two mesh objects are needed"))
             return False
         return True
 
@@ -123,10 +124,10 @@ class TransferOperator(JobOperator):
         for one in carried:
             for report in one.reports:
                 for note in report.notes:
-                    self.report({"WARNING"}, note)
+                    self.report({"WARNING"}, translated(note))
             done = [report.done for report in one.reports if report.done]
             said = ", ".join(done) if done else "nothing"
-            self.report({"INFO"}, f'Carried to "{one.target}" in {one.seconds:.1f} s: {said}')
+            self.report({"INFO"}, translated(f'Carried to "{one.target}" in {one.seconds:.1f} s: {said}'))
 
     def _pick(self, context: bpy.types.Context) -> tuple[bpy.types.Object, list[bpy.types.Object]]:
         """Find the source and the targets: by name, else as picked in the panel, else as selected.

@@ -9,6 +9,7 @@ import bpy
 
 from ..access import progress_of, window_manager_of
 from ..running import is_running
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -28,7 +29,7 @@ class HIERMATCH_OT_cancel(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it while something runs."""
         if not is_running(window_manager_of(context)):
-            cls.poll_message_set("Nothing is running")
+            cls.poll_message_set(translated("Nothing is running"))
             return False
         return True
 

@@ -13,6 +13,7 @@ from ..access import mesh_of, state_of, view_layer_of
 from ..pair import check_writable, named_object, selected_meshes
 from ..running import can_start
 from ..steering_lists import sync_lists
+from ..translated_text import translated
 from ..writing import clear, is_marked, kept, prefixes
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
         if not can_start(cls, context):
             return False
         if not any(obj.type == "MESH" and is_marked(mesh_of(obj)) for obj in view_layer_of(context).objects):
-            cls.poll_message_set("There is nothing here that HierMatch has written")
+            cls.poll_message_set(translated("There is nothing here that HierMatch has written"))
             return False
         return True
 
@@ -54,10 +55,10 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
             for obj in objects:
                 check_writable(obj)
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         if not objects:
-            self.report({"WARNING"}, "None of these objects carries anything that HierMatch has written.")
+            self.report({"WARNING"}, translated("None of these objects carries anything that HierMatch has written."))
             return {"CANCELLED"}
         summary, cleared = state_of(context).summary, set()
         for obj in objects:
@@ -68,7 +69,7 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
         if (summary.prefix, summary.key) in cleared:
             state_of(context).property_unset("summary")
         sync_lists(cast("bpy.types.Scene", context.scene))
-        self.report({"INFO"}, f"Cleared {', '.join(names)}")
+        self.report({"INFO"}, translated(f"Cleared {', '.join(names)}"))
         return {"FINISHED"}
 
     def _objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:

@@ -15,6 +15,7 @@ from ..access import state_of
 from ..match_exchange import collect_match
 from ..match_file import save_match
 from ..pair import find_pair
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -63,7 +64,7 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
             source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
             save_match(collect_match(source, target, self.prefix), path)
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
-        self.report({"INFO"}, f'Exported the match of "{source.name}" and "{target.name}" to "{path.name}"')
+        self.report({"INFO"}, translated(f'Exported the match of "{source.name}" and "{target.name}" to "{path.name}"'))
         return {"FINISHED"}

@@ -17,6 +17,7 @@ from ..job_operator import JobOperator
 from ..pair import named_object
 from ..running import can_start
 from ..summary import remember
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -65,8 +66,12 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         same = (summary.prefix, summary.key) == (job.prefix, job.key)
         remember(summary, stored, job.names, job.prefix, summary.seconds if same else 0.0)
         refresh(cast("bpy.types.Scene", context.scene))
-        which = "mirrored" if stored.mirrored else "direct"
-        self.report({"INFO"}, f'Wrote the {which} match of "{job.names[0]}" and "{job.names[1]}"')
+        source, target = job.names
+        if stored.mirrored:
+            said = translated(f'Wrote the mirrored match of "{source}" and "{target}"')
+        else:
+            said = translated(f'Wrote the direct match of "{source}" and "{target}"')
+        self.report({"INFO"}, said)
         return {"FINISHED"}
 
     def _half(self, context: bpy.types.Context) -> Half:

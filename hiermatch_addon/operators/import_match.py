@@ -18,6 +18,7 @@ from ..match_file import load_match
 from ..pair import find_pair
 from ..running import can_start
 from ..summary import remember
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -71,9 +72,11 @@ class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: igno
             source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
             stored = apply_match(context, source, target, load_match(path), self.prefix)
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         remember(state.summary, stored, stored.names, self.prefix, 0.0)
         refresh(cast("bpy.types.Scene", context.scene))
-        self.report({"INFO"}, f'Imported the match of "{source.name}" and "{target.name}" from "{path.name}"')
+        self.report(
+            {"INFO"}, translated(f'Imported the match of "{source.name}" and "{target.name}" from "{path.name}"')
+        )
         return {"FINISHED"}

@@ -15,6 +15,7 @@ from ..landmark_files import landmarks_from_text, landmarks_to_text
 from ..landmark_operator import LandmarkOperator
 from ..landmarks import add_landmarks, clear_landmarks, find_landmarks, switch_landmark
 from ..running import can_start
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -112,5 +113,5 @@ class HIERMATCH_OT_load_landmarks(_FileOperator, bpy.types.Operator):
             if not read.use:
                 switch_landmark(source, target, added.number, use=False)
         for note in notes:
-            self.report({"WARNING"}, note)
+            self.report({"WARNING"}, translated(note))
         return f'Loaded {len(landmarks)} landmarks from "{path.name}"'

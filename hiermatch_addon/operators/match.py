@@ -17,6 +17,7 @@ from ..properties import OUTPUT_NAMES, MatchOptions
 from ..running import can_start
 from ..setting_groups import APART, shown_groups
 from ..summary import remember
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -56,7 +57,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         if not can_start(cls, context):
             return False
         if sum(obj.type == "MESH" for obj in view_layer_of(context).objects) < 2:
-            cls.poll_message_set("Two mesh objects are needed")
+            cls.poll_message_set(translated("Two mesh objects are needed"))
             return False
         return True
 
@@ -85,9 +86,13 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         )
         refresh(cast("bpy.types.Scene", context.scene))
         for note in outcome.stored.notes:
-            self.report({"WARNING"}, note)
+            self.report({"WARNING"}, translated(note))
         points, seconds = len(outcome.result.source_points), outcome.seconds
         pair = f'"{outcome.source}" and "{outcome.target}"'
-        said = [f"Matched {points} points of {pair} in {seconds:.1f} s", state_of(context).summary.verdict]
-        self.report({"INFO"}, ". ".join(filter(None, said)))
+        verdict = state_of(context).summary.verdict
+        if verdict:
+            said = translated(f"Matched {points} points of {pair} in {seconds:.1f} s. {verdict}")
+        else:
+            said = translated(f"Matched {points} points of {pair} in {seconds:.1f} s")
+        self.report({"INFO"}, said)
         return {"FINISHED"}

@@ -13,6 +13,7 @@ from ..landmark_mirroring import MirrorJob
 from ..landmark_operator import pick_pair, steerable_pair
 from ..running import can_start
 from ..steering_lists import sync_lists
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -50,5 +51,5 @@ class HIERMATCH_OT_mirror_landmarks(JobOperator, bpy.types.Operator):
         """Add the landmarks and report."""
         added = job.finish(view_layer_of(context))
         sync_lists(cast("bpy.types.Scene", context.scene))
-        self.report({"INFO"}, f"Added {len(added)} landmarks on the other side")
+        self.report({"INFO"}, translated(f"Added {len(added)} landmarks on the other side"))
         return {"FINISHED"}

@@ -19,6 +19,7 @@ from ..redraw import redraw_views
 from ..running import can_start
 from ..steering_lists import sync_lists
 from ..steering_properties import steering_of
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -51,7 +52,9 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
 
     def execute(self, _context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Say what scripts are to use."""
-        self.report({"ERROR"}, "There is nothing to click on. Use hiermatch.add_landmark with two vertices.")
+        self.report(
+            {"ERROR"}, translated("There is nothing to click on. Use hiermatch.add_landmark with two vertices.")
+        )
         return {"CANCELLED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[OperatorReturnItems]:
@@ -59,7 +62,7 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
         try:
             source, target = steerable_pair(context)
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         pick_pair(context, source, target)
         self._names, self._pending, self._added = (source.name, target.name), None, 0
@@ -86,7 +89,7 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
         try:
             self._take(context, self._hit(context, *viewport, event))
         except HierMatchError as error:
-            self.report({"WARNING"}, str(error))
+            self.report({"WARNING"}, translated(str(error)))
         self._show_status(context)
         return {"RUNNING_MODAL"}
 
@@ -142,7 +145,8 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
             else:
                 (other,) = (name for name in self._names if name != self._pending[0])
                 what = f'Click on the corresponding place of "{other}"'
-            workspace.status_text_set(f"{what}    {self._added} landmarks added    Enter: done    Esc: back")
+            said = f"{what}    {self._added} landmarks added    Enter: done    Esc: back"
+            workspace.status_text_set(translated(said))
         redraw_views(window_manager_of(context))
 
 

@@ -15,6 +15,7 @@ from ..refining import RefineJob
 from ..running import can_start
 from ..steering_lists import common_match
 from ..summary import remember
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -59,7 +60,10 @@ class HIERMATCH_OT_refine(JobOperator, bpy.types.Operator):
         refresh(cast("bpy.types.Scene", context.scene))
         if job.moved > _FAR:
             self.report(
-                {"WARNING"}, "A landmark is far from where the map had taken it. If the result is wrong, match again."
+                {"WARNING"},
+                translated("A landmark is far from where the map had taken it. If the result is wrong, match again."),
             )
-        self.report({"INFO"}, f"Refined the match in {job.seconds:.1f} s. {state_of(context).summary.verdict}")
+        self.report(
+            {"INFO"}, translated(f"Refined the match in {job.seconds:.1f} s. {state_of(context).summary.verdict}")
+        )
         return {"FINISHED"}

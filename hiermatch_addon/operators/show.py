@@ -17,6 +17,7 @@ from ..redraw import redraw_views
 from ..running import can_start
 from ..steering_lists import common_match, steered_pair
 from ..steering_properties import steering_of
+from ..translated_text import translated
 from ..views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ class HIERMATCH_OT_show(bpy.types.Operator):
             else:
                 _show(context, _match_of(context), self.view)
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         redraw_views(window_manager_of(context))
         return {"FINISHED"}
@@ -98,9 +99,9 @@ class HIERMATCH_OT_write_regions(bpy.types.Operator):
         try:
             count = region_groups(context, _match_of(context))
         except HierMatchError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {count} regions on both meshes as vertex groups")
+        self.report({"INFO"}, translated(f"Wrote {count} regions on both meshes as vertex groups"))
         return {"FINISHED"}
 
 

@@ -9,6 +9,7 @@ import bpy
 
 from ..access import mesh_of, state_of
 from ..halves import find_common
+from ..translated_text import translated
 from ..writing import change_kept
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ class HIERMATCH_OT_swap(bpy.types.Operator):
         """Allow it when there is something to exchange."""
         state = state_of(context)
         if state.source is None and state.target is None:
-            cls.poll_message_set("Pick a Source or a Target first")
+            cls.poll_message_set(translated("Pick a Source or a Target first"))
             return False
         return True
 

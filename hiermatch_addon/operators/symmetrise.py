@@ -15,6 +15,7 @@ from ..pair import named_object
 from ..running import can_start
 from ..transfers.symmetrise import SymmetriseJob
 from ..transfers.symmetrise_options import SymmetriseOptions, symmetrise_settings
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -58,5 +59,5 @@ class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator
     def _finish(self, context: bpy.types.Context, job: SymmetriseJob) -> set[OperatorReturnItems]:
         """Write and report."""
         report = job.finish(context)
-        self.report({"INFO"}, f'Made "{self.object}" symmetric in {job.seconds:.1f} s: {report.done}')
+        self.report({"INFO"}, translated(f'Made "{self.object}" symmetric in {job.seconds:.1f} s: {report.done}'))
         return {"FINISHED"}

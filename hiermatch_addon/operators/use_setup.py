@@ -10,6 +10,7 @@ import bpy
 
 from ..access import state_of
 from ..setups import SETUP_ITEMS, use_setup
+from ..translated_text import translated
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -31,5 +32,5 @@ class HIERMATCH_OT_use_setup(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Set the panel's options."""
-        self.report({"INFO"}, f"Setup: {use_setup(state_of(context), self.setup)}")
+        self.report({"INFO"}, translated(f"Setup: {use_setup(state_of(context), self.setup)}"))
         return {"FINISHED"}

@@ -1138,5 +1138,483 @@ MESSAGES: Final[dict[str, str]] = {
     "Two-Legged Characters": "二足キャラクター",
     "Creatures": "クリーチャー",
     "Scans": "スキャン",
+    "{0}: {1}, {2}    Esc: cancel": "{0}：{1}、{2}    Esc：キャンセル",
+    "Matching": "マッチング中",
+    "Refining": "改良中",
+    "Retargeting": "リターゲット中",
+    "Symmetrising": "対称化中",
+    "Carrying over": "引き継ぎ中",
+    "Mirroring landmarks": "ランドマークを反転中",
+    "Writing the other answer": "もう一方の解を書き込み中",
+    "Exact search, {0} nodes": "厳密探索、{0}ノード",
+    "Matching {0} points": "{0}個のポイントをマッチング中",
+    "Moving {0} points over the surface": "{0}個のポイントを表面上で移動中",
+    "{0}    {1} landmarks added    Enter: done    Esc: back": (
+        "{0}    追加したランドマーク：{1}    Enter：完了    Esc：戻る"
+    ),
+    'Click on a place of "{0}" or "{1}"': "「{0}」か「{1}」の場所をクリック",
+    'Click on the corresponding place of "{0}"': "「{0}」の対応する場所をクリック",
+    "Only {0} of the target is reached: parts of one shape seem to be missing on the other.": (
+        "ターゲットの{0}にしか届いていません。一方の形状の一部がもう一方にないようです。"
+    ),
+    "Matched {0} points of {1} in {2} s": "{1}の{0}個のポイントを{2}秒でマッチングしました",
+    "Matched {0} points of {1} in {2} s. {3}": "{1}の{0}個のポイントを{2}秒でマッチングしました。{3}",
+    '"{0}" and "{1}"': "「{0}」と「{1}」",
+    "Refined the match in {0} s. {1}": "マッチングを{0}秒で改良しました。{1}",
+    'Wrote the direct match of "{0}" and "{1}"': "「{0}」と「{1}」の直接のマッチングを書き込みました",
+    'Wrote the mirrored match of "{0}" and "{1}"': "「{0}」と「{1}」のミラーマッチングを書き込みました",
+    "Wrote {0} regions on both meshes as vertex groups": "両メッシュに{0}個の領域を頂点グループとして書き込みました",
+    'Exported the match of "{0}" and "{1}" to "{2}"': "「{0}」と「{1}」の対応を「{2}」に書き出しました",
+    'Imported the match of "{0}" and "{1}" from "{2}"': "「{0}」と「{1}」の対応を「{2}」から読み込みました",
+    "Added {0} landmarks on the other side": "反対側に{0}個のランドマークを追加しました",
+    "Cleared {0}": "{0}をクリアしました",
+    "Setup: {0}": "設定：{0}",
+    'Made "{0}" symmetric in {1} s: {2}': "「{0}」を{1}秒で対称にしました：{2}",
+    'Carried to "{0}" in {1} s: {2}': "「{0}」に{1}秒で引き継ぎました：{2}",
+    'There is no object called "{0}".': "「{0}」という名前のオブジェクトはありません。",
+    (
+        "It is open which mesh is the {0}: {1}. Select exactly two meshes (the active one is the Source), or "
+        "pick Source and Target in the panel."
+    ): (
+        "どのメッシュが{0}か決まりません（{1}）。メッシュをちょうど二つ選択するか（アクティブな方がソース）、"
+        "パネルでソースとターゲットを選んでください。"
+    ),
+    "no other mesh is selected": "ほかのメッシュが選択されていません",
+    "{0} other meshes are selected": "ほかに{0}個のメッシュが選択されています",
+    'Source and Target are both "{0}". Choose two different objects.': (
+        "ソースとターゲットがどちらも「{0}」です。別々のオブジェクトを選んでください。"
+    ),
+    (
+        '"{0}" and "{1}" share the same mesh data. Give one of them its own first (Object > Relations > Make '
+        "Single User > Object & Data)."
+    ): (
+        "「{0}」と「{1}」は同じメッシュデータを共有しています。先に一方を独立させてください（オブジェクト > "
+        "関係 > シングルユーザー化 > オブジェクトとデータ）。"
+    ),
+    '"{0}" is not a mesh but of type {1}. Choose a mesh object, or convert it (Object > Convert > Mesh).': (
+        "「{0}」はメッシュではなく{1}タイプです。メッシュオブジェクトを選ぶか、変換してください（オブジェクト"
+        " > 変換 > メッシュ）。"
+    ),
+    '"{0}" is not in the view layer "{1}". Link it to the scene, or enable its collection in the Outliner.': (
+        "「{0}」はビューレイヤー「{1}」にありません。シーンにリンクするか、アウトライナーでコレクションを有効"
+        "にしてください。"
+    ),
+    '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
+        "「{0}」は非表示です。先に表示してください（オブジェクト > 表示/隠す、またはアウトライナーの目のアイコン）。"
+    ),
+    '"{0}" is in {1} Mode. Switch to Object Mode first.': (
+        "「{0}」は{1}モードです。先にオブジェクトモードに切り替えてください。"
+    ),
+    '"{0}" has no faces. A surface is needed, not only vertices or edges.': (
+        "「{0}」には面がありません。頂点や辺だけでなく、面が必要です。"
+    ),
+    '"{0}" has a scale of zero on {1}. Set its scale to 1 (Alt+S).': (
+        "「{0}」の{1}のスケールが0です。スケールを1にしてください（Alt+S）。"
+    ),
+    (
+        '"{0}" is linked from "{1}" and cannot be written to. Make object and data local first (Object > '
+        "Relations > Make Local)."
+    ): (
+        "「{0}」は「{1}」からリンクされており、書き込めません。先にオブジェクトとデータをローカル化してくださ"
+        "い（オブジェクト > 関係 > ローカル化）。"
+    ),
+    (
+        '"{0}" is a library override and cannot be written to. Make object and data local first (Object > '
+        "Relations > Make Local)."
+    ): (
+        "「{0}」はライブラリオーバーライドで、書き込めません。先にオブジェクトとデータをローカル化してくださ"
+        "い（オブジェクト > 関係 > ローカル化）。"
+    ),
+    (
+        '"{0}" has no surface: each of its faces uses a vertex twice. Repair the mesh (in Edit Mode: Mesh > '
+        "Clean Up > Degenerate Dissolve)."
+    ): (
+        "「{0}」には表面がありません。どの面も同じ頂点を二度使っています。メッシュを修復してください（編集モ"
+        "ード：メッシュ > クリーンアップ > 縮退の溶解）。"
+    ),
+    (
+        'The modifiers of "{0}" change its vertices from {1} to {2} ({3}). Apply or disable these modifiers, or '
+        "turn Use Modifiers off."
+    ): (
+        "「{0}」のモディファイアーが頂点数を{1}から{2}に変えています（{3}）。これらを適用または無効にするか、"
+        "モディファイアーの使用をオフにしてください。"
+    ),
+    (
+        "{0} of {1} vertices have a position that is not a finite number, vertex {2} first. Delete these "
+        "vertices or repair them."
+    ): (
+        "{1}個の頂点のうち{0}個の位置が有限の数ではありません（最初は頂点{2}）。これらの頂点を削除または修復"
+        "してください。"
+    ),
+    '"{0}" has {1} vertices, too few for {2} Points. Set Points to {3} or fewer, or subdivide the mesh.': (
+        "「{0}」の頂点は{1}個で、ポイント{2}個には足りません。ポイントを{3}以下にするか、メッシュを細分化してください。"
+    ),
+    'The faces of "{0}" changed while it was being matched. Nothing was written.': (
+        "マッチング中に「{0}」の面が変わりました。何も書き込んでいません。"
+    ),
+    '"{0}" was deleted while it was being matched. Nothing was written.': (
+        "マッチング中に「{0}」が削除されました。何も書き込んでいません。"
+    ),
+    "The match was ended, because the objects changed: {0}": (
+        "オブジェクトが変わったため、マッチングを終了しました：{0}"
+    ),
+    '"{0}" got another number of vertices while it was being matched. Nothing was written.': (
+        "マッチング中に「{0}」の頂点数が変わりました。何も書き込んでいません。"
+    ),
+    'The match is out of date: "{0}" was edited since ({1}). Match again.': (
+        "マッチングが古くなっています。「{0}」がその後編集されました（{1}）。もう一度マッチングしてください。"
+    ),
+    "it has other vertices or faces": "頂点か面が異なります",
+    "its vertices were moved": "頂点が動かされました",
+    'The match is out of date: "{0}" was deleted, cleared or matched anew. Match again.': (
+        "マッチングが古くなっています。「{0}」が削除、クリア、または再マッチングされました。もう一度マッチン"
+        "グしてください。"
+    ),
+    '"{0}" carries no match. Match it first.': "「{0}」にはマッチングがありません。先にマッチングしてください。",
+    '"{0}" carries no match with the Prefix "{1}". Match it first.': (
+        "「{0}」には接頭辞「{1}」のマッチングがありません。先にマッチングしてください。"
+    ),
+    '"{0}" carries several matches. Name the Prefix of one of them: {1}.': (
+        "「{0}」には複数のマッチングがあります。いずれかの接頭辞を指定してください：{1}。"
+    ),
+    'The {0} of this match, "{1}", was deleted or is not in the view layer "{2}". Bring it back, or match again.': (
+        "このマッチングの{0}「{1}」は削除されたか、ビューレイヤー「{2}」にありません。戻すか、もう一度マッチ"
+        "ングしてください。"
+    ),
+    "Several objects are copies of the {0} of this match: {1}. Match the two again.": (
+        "このマッチングの{0}のコピーが複数あります：{1}。二つをもう一度マッチングしてください。"
+    ),
+    '"{0}" does not carry this match any more, because it was cleared or matched anew. Match the two again.': (
+        "「{0}」はクリアまたは再マッチングされたため、このマッチングを持っていません。二つをもう一度マッチン"
+        "グしてください。"
+    ),
+    '"{0}" was deleted, cleared or matched anew meanwhile. Nothing was written.': (
+        "その間に「{0}」が削除、クリア、または再マッチングされました。何も書き込んでいません。"
+    ),
+    '"{0}" was edited meanwhile. Nothing was written.': "その間に「{0}」が編集されました。何も書き込んでいません。",
+    '"{0}" was deleted meanwhile. Nothing was written.': "その間に「{0}」が削除されました。何も書き込んでいません。",
+    "source": "ソース",
+    "target": "ターゲット",
+    (
+        '"{0}" has other vertices or faces than when it was matched, so the stored match does not fit it any '
+        "more. Match again."
+    ): (
+        "「{0}」の頂点か面がマッチング時と異なるため、保存されたマッチングは合いません。もう一度マッチングし"
+        "てください。"
+    ),
+    'The match of "{0}" and "{1}" has no mirrored answer: the meshes are not symmetric enough for one.': (
+        "「{0}」と「{1}」のマッチングにはミラー解がありません。メッシュが十分に対称ではないためです。"
+    ),
+    "{0} have no landmarks that are on. Add some where the match is wrong, and lock points where it is right.": (
+        "{0}にはオンのランドマークがありません。マッチングが誤っている所に追加し、正しい所のポイントをロック"
+        "してください。"
+    ),
+    "The match of {0} has no dense map to refine. Match them again with Dense Map on.": (
+        "{0}のマッチングには改良する密なマップがありません。密なマップをオンにしてもう一度マッチングしてください。"
+    ),
+    'The match of "{0}" and "{1}" has no dense map that could carry checks. Match them again with Dense Map on.': (
+        "「{0}」と「{1}」のマッチングには市松模様を運ぶ密なマップがありません。密なマップをオンにしてもう一度"
+        "マッチングしてください。"
+    ),
+    (
+        '"{0}" carries no colors called "{1}". Match again with {2} on under Output, and for confidence with '
+        "Dense Map on."
+    ): (
+        "「{0}」には「{1}」というカラーがありません。出力で{2}をオンにし、信頼度には密なマップもオンにして、"
+        "もう一度マッチングしてください。"
+    ),
+    '"{0}" already has {1} called "{2}" that HierMatch did not write. Rename it, or choose another Prefix.': (
+        "「{0}」には、HierMatchが書き込んだものではない{1}「{2}」があります。名前を変えるか、別の接頭辞を選ん"
+        "でください。"
+    ),
+    (
+        '"{0}" already has {1} called "{2}", which belongs to the match with the Prefix "{3}". Choose another '
+        "Prefix, or clear that match."
+    ): (
+        "「{0}」の{1}「{2}」は接頭辞「{3}」のマッチングのものです。別の接頭辞を選ぶか、そのマッチングをクリア"
+        "してください。"
+    ),
+    "a vertex group": "頂点グループ",
+    "an attribute": "属性",
+    (
+        '"{0}" has no vertex group, boolean attribute or material called "{1}", which is to be left out. Choose '
+        "another one, or empty the field."
+    ): (
+        "「{0}」には、除外する「{1}」という頂点グループ、ブーリアン属性、マテリアルがありません。別のものを選"
+        "ぶか、欄を空にしてください。"
+    ),
+    'No vertex of "{0}" is in "{1}", which is to be left out. Assign vertices to it, or empty the field.': (
+        "除外する「{1}」に「{0}」の頂点がありません。頂点を割り当てるか、欄を空にしてください。"
+    ),
+    'All of "{0}" is in "{1}", which is to be left out, so nothing remains to match. Choose a smaller region.': (
+        "「{0}」のすべてが除外する「{1}」に入っており、マッチングするものが残りません。もっと小さい領域を選ん"
+        "でください。"
+    ),
+    "Nothing of the {0} is left to match: all of its faces are left out.": (
+        "{0}にマッチングするものが残っていません。すべての面が除外されています。"
+    ),
+    '"{0}" and "{1}" have no landmarks in common that are on. Add some first.': (
+        "「{0}」と「{1}」には共通のオンのランドマークがありません。先に追加してください。"
+    ),
+    '"{0}" and "{1}" have no landmarks in common. Add some first.': (
+        "「{0}」と「{1}」には共通のランドマークがありません。先に追加してください。"
+    ),
+    '"{0}" and "{1}" have no landmark {2} in common.': "「{0}」と「{1}」には共通のランドマーク{2}がありません。",
+    '"{0}" was deleted or edited meanwhile. No landmark was added.': (
+        "その間に「{0}」が削除または編集されました。ランドマークは追加していません。"
+    ),
+    'Source and Target are both "{0}", or share the same mesh data. Choose two meshes of their own.': (
+        "ソースとターゲットがどちらも「{0}」か、同じメッシュデータを共有しています。別々のメッシュを選んでください。"
+    ),
+    '"{0}" is not a mesh. Pick two mesh objects as Source and Target.': (
+        "「{0}」はメッシュではありません。ソースとターゲットにメッシュオブジェクトを選んでください。"
+    ),
+    '"{0}" is in {1} Mode. Leave it first.': "「{0}」は{1}モードです。先にモードを抜けてください。",
+    (
+        'The modifiers of "{0}" show it far away from its own vertices. Disable them in the viewport, or select '
+        "a vertex on each mesh in Edit Mode."
+    ): (
+        "「{0}」はモディファイアーにより自身の頂点から離れて表示されています。ビューポートで無効にするか、編"
+        "集モードで各メッシュの頂点を選択してください。"
+    ),
+    '"{0}" is not in Edit Mode. Select both meshes, enter Edit Mode, and select one vertex on each.': (
+        "「{0}」は編集モードではありません。両方のメッシュを選択して編集モードに入り、それぞれ頂点を一つ選択"
+        "してください。"
+    ),
+    '{0} vertices of "{1}" are selected. Select exactly one vertex on each of the two meshes.': (
+        "「{1}」の{0}個の頂点が選択されています。二つのメッシュでそれぞれちょうど一つの頂点を選択してください。"
+    ),
+    "A mesh can have {0} landmarks. Remove some first.": (
+        "メッシュに置けるランドマークは{0}個までです。先にいくつか削除してください。"
+    ),
+    '"{0}" has no vertex {1}: its vertices are numbered from 0 to {2}.': (
+        "「{0}」に頂点{1}はありません。頂点の番号は0から{2}です。"
+    ),
+    '"{0}" and "{1}" carry no match with one another.': "「{0}」と「{1}」の間にマッチングはありません。",
+    'Click on "{0}" or on "{1}".': "「{0}」か「{1}」をクリックしてください。",
+    'Landmark {0}: vertex {1} of "{2}" is vertex {3} of "{4}"': (
+        "ランドマーク{0}：「{2}」の頂点{1}は「{4}」の頂点{3}です"
+    ),
+    "Removed landmark {0}": "ランドマーク{0}を削除しました",
+    "Removed {0} landmarks": "{0}個のランドマークを削除しました",
+    "Locked {0} as landmark {1}": "{0}をランドマーク{1}としてロックしました",
+    'Saved {0} landmarks to "{1}"': "{0}個のランドマークを「{1}」に保存しました",
+    'Loaded {0} landmarks from "{1}"': "{0}個のランドマークを「{1}」から読み込みました",
+    (
+        '"{0}" has other vertices or faces than when the landmarks were saved. They were put on the vertices '
+        "where they had been."
+    ): "「{0}」の頂点か面がランドマークの保存時と異なります。ランドマークは元の位置の頂点に置きました。",
+    (
+        '"{0}" has no vertex of its own where landmark {1} of the file was. The file was saved for another mesh. '
+        "Choose the right Source and Target."
+    ): (
+        "「{0}」には、ファイルのランドマーク{1}の位置に固有の頂点がありません。別のメッシュ用のファイルです。"
+        "正しいソースとターゲットを選んでください。"
+    ),
+    "{0} landmarks are more than the {1} points that are matched. Use more points or fewer landmarks.": (
+        "ランドマーク{0}個は、マッチングする{1}個のポイントより多すぎます。ポイントを増やすか、ランドマークを"
+        "減らしてください。"
+    ),
+    "Landmarks {0} and {1} are both at vertex {2} of the {3}. Use a vertex for one landmark only.": (
+        "ランドマーク{0}と{1}が{3}の同じ頂点{2}にあります。一つの頂点にはランドマークを一つだけ置いてください。"
+    ),
+    (
+        "Landmark {0} is at vertex {1} of the {2}, which is not on its largest part that is not left out. Choose "
+        "a vertex on that part, which is the one that is matched."
+    ): (
+        "ランドマーク{0}は{2}の頂点{1}にあり、マッチングされる最大の部分の上にありません。その部分の頂点を選"
+        "んでください。"
+    ),
+    "Landmarks {0} and {1} are at the same place of the {2}, at its vertices {3} and {4}. Remove one of them.": (
+        "ランドマーク{0}と{1}は{2}の同じ場所（頂点{3}と{4}）にあります。一方を削除してください。"
+    ),
+    "{0} Coarse Points need at least as many Coarse Candidates, not {1}.": (
+        "粗いポイント{0}個には、候補も同数以上必要です（現在{1}）。"
+    ),
+    "{0} points cannot be matched: the {1} has only {2} vertices. Use fewer points or subdivide the mesh.": (
+        "{0}個のポイントはマッチングできません。{1}の頂点は{2}個だけです。ポイントを減らすか、メッシュを細分"
+        "化してください。"
+    ),
+    "{0} points cannot be matched: the {1} has only {2} vertices{3}. Use fewer points or subdivide the mesh.": (
+        "{0}個のポイントはマッチングできません。{1}の頂点は{2}個だけです{3}。ポイントを減らすか、メッシュを細"
+        "分化してください。"
+    ),
+    "{0} samples were asked of a surface with {1} vertices: use fewer points or a finer mesh.": (
+        "{1}個の頂点の表面に{0}個のサンプルが求められました。ポイントを減らすか、細かいメッシュを使ってください。"
+    ),
+    '"{0}" cannot be written: {1}. Choose another place.': "「{0}」に書き込めません：{1}。別の場所を選んでください。",
+    '"{0}" cannot be read: {1}. Choose another file.': "「{0}」を読み込めません：{1}。別のファイルを選んでください。",
+    '"{0}" cannot be read: {1}.': "「{0}」を読み込めません：{1}。",
+    '"{0}" is no text. Choose a file that Save Landmarks has written.': (
+        "「{0}」はテキストではありません。ランドマークの保存で書き出したファイルを選んでください。"
+    ),
+    '"{0}" is no name for a match file. Let it end with .npz or .json.': (
+        "「{0}」は対応ファイルの名前ではありません。末尾を.npzか.jsonにしてください。"
+    ),
+    '"{0}" is no match that HierMatch has exported. Choose another file.': (
+        "「{0}」はHierMatchが書き出した対応ではありません。別のファイルを選んでください。"
+    ),
+    '"{0}" was exported by a later version of HierMatch. Update the add-on.': (
+        "「{0}」は新しいバージョンのHierMatchで書き出されています。アドオンを更新してください。"
+    ),
+    '"{0}" is damaged or no match file: {1}. Export the match again.': (
+        "「{0}」は壊れているか、対応ファイルではありません：{1}。もう一度書き出してください。"
+    ),
+    'The match fits the other way round: "{0}" is its source and "{1}" its target. Exchange the two.': (
+        "このマッチングは逆向きです。「{0}」がソース、「{1}」がターゲットです。二つを入れ替えてください。"
+    ),
+    (
+        'The match does not fit "{0}": it was exported from a mesh with {1} vertices, and this one has {2}. '
+        "Choose the mesh it was made for, or match again."
+    ): (
+        "マッチングが「{0}」に合いません。{1}頂点のメッシュから書き出されていますが、これは{2}頂点です。元の"
+        "メッシュを選ぶか、もう一度マッチングしてください。"
+    ),
+    (
+        'The match does not fit "{0}": its vertices or faces are numbered otherwise than on the mesh the match '
+        "was exported from. Choose that mesh, or match again."
+    ): (
+        "マッチングが「{0}」に合いません。頂点か面の番号が書き出し元のメッシュと異なります。元のメッシュを選"
+        "ぶか、もう一度マッチングしてください。"
+    ),
+    "{0} carry no such match with one another. Match them first.": (
+        "{0}の間にそのようなマッチングはありません。先にマッチングしてください。"
+    ),
+    "{0} carry several matches. Name the Prefix of one of them: {1}.": (
+        "{0}には複数のマッチングがあります。いずれかの接頭辞を指定してください：{1}。"
+    ),
+    "{0} carry no match with one another{1}. Match them first.": (
+        "{0}の間に{1}マッチングはありません。先にマッチングしてください。"
+    ),
+    "The match of {0} has no dense map. Match them again with Dense Map on.": (
+        "{0}のマッチングには密なマップがありません。密なマップをオンにしてもう一度マッチングしてください。"
+    ),
+    'The match of "{0}" and "{1}" has no dense map. Match them with Dense Map on.': (
+        "「{0}」と「{1}」のマッチングには密なマップがありません。密なマップをオンにしてマッチングしてください。"
+    ),
+    "The dense map of {0} was removed from the attributes of a mesh. Match them again.": (
+        "{0}の密なマップがメッシュの属性から削除されています。もう一度マッチングしてください。"
+    ),
+    (
+        '"{0}" shares its mesh with other objects, whose weights would change with its own. Give it its own mesh '
+        "first (Object > Relations > Make Single User > Object & Data)."
+    ): (
+        "「{0}」はほかのオブジェクトとメッシュを共有しており、それらのウェイトも変わってしまいます。先に独立"
+        "させてください（オブジェクト > 関係 > シングルユーザー化 > オブジェクトとデータ）。"
+    ),
+    '"{0}" is in Edit Mode. Switch to Object Mode first.': (
+        "「{0}」は編集モードです。先にオブジェクトモードに切り替えてください。"
+    ),
+    (
+        '"{0}" has no armature, so there is no rig to fit. Give it an Armature modifier with its armature, or '
+        "pick another Source."
+    ): (
+        "「{0}」にはアーマチュアがなく、合わせるリグがありません。アーマチュアモディファイアーを付けるか、別"
+        "のソースを選んでください。"
+    ),
+    (
+        'No vertex of "{0}" is in a vertex group of a deforming bone of "{1}", so it is open what the bones '
+        "belong to. Bind the Source to its armature with weights first."
+    ): (
+        "「{0}」のどの頂点も「{1}」の変形ボーンの頂点グループに入っておらず、ボーンの対応が決まりません。先に"
+        "ソースをウェイトでアーマチュアに関連付けてください。"
+    ),
+    'The armature "{0}" has a scale of zero. Set its scale first.': (
+        "アーマチュア「{0}」のスケールが0です。先にスケールを設定してください。"
+    ),
+    'The armature "{0}" is in Edit Mode. Switch to Object Mode first.': (
+        "アーマチュア「{0}」は編集モードです。先にオブジェクトモードに切り替えてください。"
+    ),
+    '"{0}" has no vertex groups, so there are no weights to carry over. Choose a weighted mesh as the Source.': (
+        "「{0}」には頂点グループがなく、引き継ぐウェイトがありません。ウェイトのあるメッシュをソースに選んでください。"
+    ),
+    (
+        '"{0}" has no armature whose bones could tell which vertex groups to carry. Carry All of them, or add an '
+        "Armature modifier."
+    ): (
+        "「{0}」には、引き継ぐ頂点グループを決めるボーンを持つアーマチュアがありません。すべてを引き継ぐか、"
+        "アーマチュアモディファイアーを追加してください。"
+    ),
+    'The active vertex group of "{0}" is one of a match. Select another one in its list of vertex groups.': (
+        "「{0}」のアクティブな頂点グループはマッチングのものです。頂点グループのリストで別のものを選んでください。"
+    ),
+    'All vertex groups to carry are locked on "{0}". Unlock some of them, or carry others.': (
+        "引き継ぐ頂点グループは「{0}」ですべてロックされています。ロックを外すか、別のものを引き継いでください。"
+    ),
+    '"{0}" already has something else called "{1}". Rename it, or turn Mark Rejected off.': (
+        "「{0}」には別の「{1}」がすでにあります。名前を変えるか、除外の印をオフにしてください。"
+    ),
+    'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
+        "「{1}」の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。"
+    ),
+    'Locked vertex groups of "{0}" were left alone: {1}.': (
+        "「{0}」のロックされた頂点グループはそのままにしました：{1}。"
+    ),
+    '"{0}" has no weights for the bones of "{1}" yet. Transfer the weights as well.': (
+        "「{0}」にはまだ「{1}」のボーンのウェイトがありません。ウェイトも転送してください。"
+    ),
+    'Constraints or drivers of "{0}" still point to {1}.': (
+        "「{0}」のコンストレイントかドライバーはまだ{1}を指しています。"
+    ),
+    '"{0}" has no shape keys beside the basis, so there are none to carry over.': (
+        "「{0}」にはベース以外のシェイプキーがなく、引き継ぐものがありません。"
+    ),
+    '"{0}" already has {1}, which was skipped.': "「{0}」にはすでに{1}があるため、飛ばしました。",
+    '"{0}" has no UV map to carry over. Unwrap it, or choose another Source.': (
+        "「{0}」には引き継ぐUVマップがありません。展開するか、別のソースを選んでください。"
+    ),
+    (
+        '"{0}" has nothing of what is to be carried over: no such attributes, materials, marked edges or custom '
+        "normals. Choose other options, or another Source."
+    ): (
+        "「{0}」には引き継ぐ属性、マテリアル、マークされた辺、カスタム法線がありません。別のオプションか、別"
+        "のソースを選んでください。"
+    ),
+    (
+        '"{0}" carries nothing of what is to be made symmetric: no vertex groups, shape keys or color '
+        "attributes. Choose another object, or turn more of them on."
+    ): (
+        "「{0}」には対称にするものがありません（頂点グループ、シェイプキー、カラー属性）。別のオブジェクトを"
+        "選ぶか、対象を増やしてください。"
+    ),
+    "{0} left out: {1}": "{0}は除外：{1}",
+    'the rig "{0}" with {1} bones': "リグ「{0}」（ボーン{1}本）",
+    "{0} vertex groups": "{0}個の頂点グループ",
+    "{0} shape keys": "{0}個のシェイプキー",
+    "{0} color attributes": "{0}個のカラー属性",
+    "{0} UV maps": "{0}個のUVマップ",
+    "1 vertex group": "1個の頂点グループ",
+    "1 UV map": "1個のUVマップ",
+    '"{0}" has no attribute "{1}". Check the Names.': "「{0}」に属性「{1}」はありません。名前を確認してください。",
+    (
+        'The mesh "{0}" of "{1}" is shared with other objects, which would get the shape keys as well. Make it a '
+        "single user first (Object > Relations > Make Single User > Object & Data)."
+    ): (
+        "「{1}」のメッシュ「{0}」はほかのオブジェクトと共有されており、それらにもシェイプキーが付いてしまいま"
+        "す。先にシングルユーザー化してください（オブジェクト > 関係 > シングルユーザー化 > オブジェクトとデ"
+        "ータ）。"
+    ),
+    'The shape keys of "{0}" are absolute. Turn Relative on in its Shape Keys panel, or remove them.': (
+        "「{0}」のシェイプキーは絶対値です。シェイプキーパネルで相対をオンにするか、削除してください。"
+    ),
+    (
+        '"{0}" is the basis of the shape keys of "{1}", but a shape key of the source has the same name. Rename '
+        "one of them."
+    ): (
+        "「{0}」は「{1}」のシェイプキーのベースですが、ソースに同じ名前のシェイプキーがあります。一方の名前を"
+        "変えてください。"
+    ),
+    'The shape keys of "{0}" do not have the vertices of its mesh. Remove them first.': (
+        "「{0}」のシェイプキーの頂点がメッシュと一致しません。先に削除してください。"
+    ),
+    'The active shape key of "{0}" is its basis. Select another one in its Shape Keys panel.': (
+        "「{0}」のアクティブなシェイプキーはベースです。シェイプキーパネルで別のものを選択してください。"
+    ),
+    '"{0}" has no shape key {1}. Check the Names.': "「{0}」にシェイプキー{1}はありません。名前を確認してください。",
+    '"{0}" would have {1} UV maps, but Blender allows {2}. Remove some of them first, or carry fewer over.': (
+        "「{0}」のUVマップが{1}個になりますが、Blenderでは{2}個までです。先にいくつか削除するか、引き継ぐ数を"
+        "減らしてください。"
+    ),
+    '"{0}" has no UV map "{1}". Check the Names.': "「{0}」にUVマップ「{1}」はありません。名前を確認してください。",
 }
 """The translation of each English text."""

@@ -948,5 +948,352 @@ MESSAGES: Final[dict[str, str]] = {
     "Two-Legged Characters": "双足角色",
     "Creatures": "生物",
     "Scans": "扫描",
+    "{0}: {1}, {2}    Esc: cancel": "{0}：{1}，{2}    Esc：取消",
+    "Matching": "正在匹配",
+    "Refining": "正在改进",
+    "Retargeting": "正在重定向",
+    "Symmetrising": "正在对称化",
+    "Carrying over": "正在传递",
+    "Mirroring landmarks": "正在镜像地标",
+    "Writing the other answer": "正在写入另一个解",
+    "Exact search, {0} nodes": "精确搜索，{0} 个节点",
+    "Matching {0} points": "正在匹配 {0} 个点",
+    "Moving {0} points over the surface": "正在表面上移动 {0} 个点",
+    "{0}    {1} landmarks added    Enter: done    Esc: back": "{0}    已添加 {1} 个地标    Enter：完成    Esc：返回",
+    'Click on a place of "{0}" or "{1}"': "点击“{0}”或“{1}”上的一处",
+    'Click on the corresponding place of "{0}"': "点击“{0}”上的对应位置",
+    "Only {0} of the target is reached: parts of one shape seem to be missing on the other.": (
+        "只覆盖了目标的 {0}：一个形状的某些部分似乎在另一个上不存在。"
+    ),
+    "Matched {0} points of {1} in {2} s": "在 {2} 秒内匹配了 {1} 的 {0} 个点",
+    "Matched {0} points of {1} in {2} s. {3}": "在 {2} 秒内匹配了 {1} 的 {0} 个点。{3}",
+    '"{0}" and "{1}"': "“{0}”和“{1}”",
+    "Refined the match in {0} s. {1}": "在 {0} 秒内改进了匹配。{1}",
+    'Wrote the direct match of "{0}" and "{1}"': "已写入“{0}”和“{1}”的直接匹配",
+    'Wrote the mirrored match of "{0}" and "{1}"': "已写入“{0}”和“{1}”的镜像匹配",
+    "Wrote {0} regions on both meshes as vertex groups": "已在两个网格上把 {0} 个区域写为顶点组",
+    'Exported the match of "{0}" and "{1}" to "{2}"': "已将“{0}”和“{1}”的匹配导出到“{2}”",
+    'Imported the match of "{0}" and "{1}" from "{2}"': "已从“{2}”导入“{0}”和“{1}”的匹配",
+    "Added {0} landmarks on the other side": "已在另一侧添加 {0} 个地标",
+    "Cleared {0}": "已清除 {0}",
+    "Setup: {0}": "设置：{0}",
+    'Made "{0}" symmetric in {1} s: {2}': "在 {1} 秒内使“{0}”对称：{2}",
+    'Carried to "{0}" in {1} s: {2}': "在 {1} 秒内传递到“{0}”：{2}",
+    'There is no object called "{0}".': "没有名为“{0}”的物体。",
+    (
+        "It is open which mesh is the {0}: {1}. Select exactly two meshes (the active one is the Source), or "
+        "pick Source and Target in the panel."
+    ): "无法确定哪个网格是{0}（{1}）。请正好选择两个网格（活动的是源），或在面板中选取源和目标。",
+    "no other mesh is selected": "没有选中其他网格",
+    "{0} other meshes are selected": "选中了另外 {0} 个网格",
+    'Source and Target are both "{0}". Choose two different objects.': "源和目标都是“{0}”。请选择两个不同的物体。",
+    (
+        '"{0}" and "{1}" share the same mesh data. Give one of them its own first (Object > Relations > Make '
+        "Single User > Object & Data)."
+    ): "“{0}”和“{1}”共用同一网格数据。请先让其中一个使用自己的数据（物体 > 关系 > 使其独立化 > 物体和数据）。",
+    '"{0}" is not a mesh but of type {1}. Choose a mesh object, or convert it (Object > Convert > Mesh).': (
+        "“{0}”不是网格，而是 {1} 类型。请选择网格物体，或将其转换（物体 > 转换 > 网格）。"
+    ),
+    '"{0}" is not in the view layer "{1}". Link it to the scene, or enable its collection in the Outliner.': (
+        "“{0}”不在视图层“{1}”中。请将其链接到场景，或在大纲视图中启用它的集合。"
+    ),
+    '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
+        "“{0}”已隐藏。请先显示它（物体 > 显示/隐藏，或大纲视图中的眼睛图标）。"
+    ),
+    '"{0}" is in {1} Mode. Switch to Object Mode first.': "“{0}”处于 {1} 模式。请先切换到物体模式。",
+    '"{0}" has no faces. A surface is needed, not only vertices or edges.': "“{0}”没有面。需要表面，而不只是顶点或边。",
+    '"{0}" has a scale of zero on {1}. Set its scale to 1 (Alt+S).': (
+        "“{0}”在 {1} 上的缩放为零。请将缩放设为 1（Alt+S）。"
+    ),
+    (
+        '"{0}" is linked from "{1}" and cannot be written to. Make object and data local first (Object > '
+        "Relations > Make Local)."
+    ): "“{0}”链接自“{1}”，无法写入。请先将物体和数据本地化（物体 > 关系 > 本地化）。",
+    (
+        '"{0}" is a library override and cannot be written to. Make object and data local first (Object > '
+        "Relations > Make Local)."
+    ): "“{0}”是库重写，无法写入。请先将物体和数据本地化（物体 > 关系 > 本地化）。",
+    (
+        '"{0}" has no surface: each of its faces uses a vertex twice. Repair the mesh (in Edit Mode: Mesh > '
+        "Clean Up > Degenerate Dissolve)."
+    ): "“{0}”没有表面：每个面都重复使用了同一顶点。请修复网格（编辑模式：网格 > 清理 > 简并融并）。",
+    (
+        'The modifiers of "{0}" change its vertices from {1} to {2} ({3}). Apply or disable these modifiers, or '
+        "turn Use Modifiers off."
+    ): "“{0}”的修改器使顶点数从 {1} 变为 {2}（{3}）。请应用或禁用这些修改器，或关闭使用修改器。",
+    (
+        "{0} of {1} vertices have a position that is not a finite number, vertex {2} first. Delete these "
+        "vertices or repair them."
+    ): "{1} 个顶点中有 {0} 个的位置不是有限数（首先是顶点 {2}）。请删除或修复这些顶点。",
+    '"{0}" has {1} vertices, too few for {2} Points. Set Points to {3} or fewer, or subdivide the mesh.': (
+        "“{0}”只有 {1} 个顶点，不够 {2} 个点。请将点数设为 {3} 或更少，或细分网格。"
+    ),
+    'The faces of "{0}" changed while it was being matched. Nothing was written.': (
+        "匹配期间“{0}”的面发生了变化。没有写入任何内容。"
+    ),
+    '"{0}" was deleted while it was being matched. Nothing was written.': "匹配期间“{0}”被删除。没有写入任何内容。",
+    "The match was ended, because the objects changed: {0}": "因为物体发生了变化，匹配已结束：{0}",
+    '"{0}" got another number of vertices while it was being matched. Nothing was written.': (
+        "匹配期间“{0}”的顶点数发生了变化。没有写入任何内容。"
+    ),
+    'The match is out of date: "{0}" was edited since ({1}). Match again.': (
+        "匹配已过期：“{0}”之后被编辑过（{1}）。请重新匹配。"
+    ),
+    "it has other vertices or faces": "顶点或面不同",
+    "its vertices were moved": "顶点被移动",
+    'The match is out of date: "{0}" was deleted, cleared or matched anew. Match again.': (
+        "匹配已过期：“{0}”已被删除、清除或重新匹配。请重新匹配。"
+    ),
+    '"{0}" carries no match. Match it first.': "“{0}”没有匹配。请先匹配。",
+    '"{0}" carries no match with the Prefix "{1}". Match it first.': "“{0}”没有前缀为“{1}”的匹配。请先匹配。",
+    '"{0}" carries several matches. Name the Prefix of one of them: {1}.': (
+        "“{0}”有多个匹配。请指定其中一个的前缀：{1}。"
+    ),
+    'The {0} of this match, "{1}", was deleted or is not in the view layer "{2}". Bring it back, or match again.': (
+        "此匹配的{0}“{1}”已被删除或不在视图层“{2}”中。请将其恢复，或重新匹配。"
+    ),
+    "Several objects are copies of the {0} of this match: {1}. Match the two again.": (
+        "多个物体是此匹配的{0}的副本：{1}。请重新匹配两者。"
+    ),
+    '"{0}" does not carry this match any more, because it was cleared or matched anew. Match the two again.': (
+        "“{0}”已被清除或重新匹配，不再带有此匹配。请重新匹配两者。"
+    ),
+    '"{0}" was deleted, cleared or matched anew meanwhile. Nothing was written.': (
+        "在此期间“{0}”被删除、清除或重新匹配。没有写入任何内容。"
+    ),
+    '"{0}" was edited meanwhile. Nothing was written.': "在此期间“{0}”被编辑。没有写入任何内容。",
+    '"{0}" was deleted meanwhile. Nothing was written.': "在此期间“{0}”被删除。没有写入任何内容。",
+    "source": "源",
+    "target": "目标",
+    (
+        '"{0}" has other vertices or faces than when it was matched, so the stored match does not fit it any '
+        "more. Match again."
+    ): "“{0}”的顶点或面与匹配时不同，保存的匹配不再适用。请重新匹配。",
+    'The match of "{0}" and "{1}" has no mirrored answer: the meshes are not symmetric enough for one.': (
+        "“{0}”和“{1}”的匹配没有镜像解：网格不够对称。"
+    ),
+    "{0} have no landmarks that are on. Add some where the match is wrong, and lock points where it is right.": (
+        "{0} 没有启用的地标。请在匹配错误处添加一些，并在正确处锁定点。"
+    ),
+    "The match of {0} has no dense map to refine. Match them again with Dense Map on.": (
+        "{0} 的匹配没有可改进的稠密映射。请启用稠密映射重新匹配。"
+    ),
+    'The match of "{0}" and "{1}" has no dense map that could carry checks. Match them again with Dense Map on.': (
+        "“{0}”和“{1}”的匹配没有可传递棋盘格的稠密映射。请启用稠密映射重新匹配。"
+    ),
+    (
+        '"{0}" carries no colors called "{1}". Match again with {2} on under Output, and for confidence with '
+        "Dense Map on."
+    ): "“{0}”没有名为“{1}”的颜色。请在输出下启用{2}（置信度还需启用稠密映射）后重新匹配。",
+    '"{0}" already has {1} called "{2}" that HierMatch did not write. Rename it, or choose another Prefix.': (
+        "“{0}”已有并非由 HierMatch 写入的{1}“{2}”。请将其重命名，或选择另一个前缀。"
+    ),
+    (
+        '"{0}" already has {1} called "{2}", which belongs to the match with the Prefix "{3}". Choose another '
+        "Prefix, or clear that match."
+    ): "“{0}”的{1}“{2}”属于前缀为“{3}”的匹配。请选择另一个前缀，或清除那个匹配。",
+    "a vertex group": "顶点组",
+    "an attribute": "属性",
+    (
+        '"{0}" has no vertex group, boolean attribute or material called "{1}", which is to be left out. Choose '
+        "another one, or empty the field."
+    ): "“{0}”没有名为“{1}”的顶点组、布尔属性或材质可供排除。请另选一个，或清空该栏。",
+    'No vertex of "{0}" is in "{1}", which is to be left out. Assign vertices to it, or empty the field.': (
+        "“{0}”没有顶点在要排除的“{1}”中。请为其指定顶点，或清空该栏。"
+    ),
+    'All of "{0}" is in "{1}", which is to be left out, so nothing remains to match. Choose a smaller region.': (
+        "“{0}”全部在要排除的“{1}”中，没有可匹配的部分。请选择更小的区域。"
+    ),
+    "Nothing of the {0} is left to match: all of its faces are left out.": "{0}没有可匹配的部分：所有面都被排除了。",
+    '"{0}" and "{1}" have no landmarks in common that are on. Add some first.': (
+        "“{0}”和“{1}”没有共同的已启用地标。请先添加。"
+    ),
+    '"{0}" and "{1}" have no landmarks in common. Add some first.': "“{0}”和“{1}”没有共同的地标。请先添加。",
+    '"{0}" and "{1}" have no landmark {2} in common.': "“{0}”和“{1}”没有共同的地标 {2}。",
+    '"{0}" was deleted or edited meanwhile. No landmark was added.': "在此期间“{0}”被删除或编辑。没有添加地标。",
+    'Source and Target are both "{0}", or share the same mesh data. Choose two meshes of their own.': (
+        "源和目标都是“{0}”，或共用同一网格数据。请选择两个独立的网格。"
+    ),
+    '"{0}" is not a mesh. Pick two mesh objects as Source and Target.': (
+        "“{0}”不是网格。请选取两个网格物体作为源和目标。"
+    ),
+    '"{0}" is in {1} Mode. Leave it first.': "“{0}”处于 {1} 模式。请先退出。",
+    (
+        'The modifiers of "{0}" show it far away from its own vertices. Disable them in the viewport, or select '
+        "a vertex on each mesh in Edit Mode."
+    ): "“{0}”的修改器使其显示在远离自身顶点的位置。请在视图中禁用它们，或在编辑模式下在每个网格上选择一个顶点。",
+    '"{0}" is not in Edit Mode. Select both meshes, enter Edit Mode, and select one vertex on each.': (
+        "“{0}”不在编辑模式。请选择两个网格，进入编辑模式，并在每个上选择一个顶点。"
+    ),
+    '{0} vertices of "{1}" are selected. Select exactly one vertex on each of the two meshes.': (
+        "“{1}”选中了 {0} 个顶点。请在两个网格上各选择正好一个顶点。"
+    ),
+    "A mesh can have {0} landmarks. Remove some first.": "一个网格最多可有 {0} 个地标。请先移除一些。",
+    '"{0}" has no vertex {1}: its vertices are numbered from 0 to {2}.': "“{0}”没有顶点 {1}：顶点编号为 0 到 {2}。",
+    '"{0}" and "{1}" carry no match with one another.': "“{0}”和“{1}”之间没有匹配。",
+    'Click on "{0}" or on "{1}".': "请点击“{0}”或“{1}”。",
+    'Landmark {0}: vertex {1} of "{2}" is vertex {3} of "{4}"': "地标 {0}：“{2}”的顶点 {1} 对应“{4}”的顶点 {3}",
+    "Removed landmark {0}": "已移除地标 {0}",
+    "Removed {0} landmarks": "已移除 {0} 个地标",
+    "Locked {0} as landmark {1}": "已将 {0} 锁定为地标 {1}",
+    'Saved {0} landmarks to "{1}"': "已将 {0} 个地标保存到“{1}”",
+    'Loaded {0} landmarks from "{1}"': "已从“{1}”加载 {0} 个地标",
+    (
+        '"{0}" has other vertices or faces than when the landmarks were saved. They were put on the vertices '
+        "where they had been."
+    ): "“{0}”的顶点或面与保存地标时不同。地标已放在原位置的顶点上。",
+    (
+        '"{0}" has no vertex of its own where landmark {1} of the file was. The file was saved for another mesh. '
+        "Choose the right Source and Target."
+    ): "“{0}”在文件中地标 {1} 的位置没有单独的顶点。该文件是为另一个网格保存的。请选择正确的源和目标。",
+    "{0} landmarks are more than the {1} points that are matched. Use more points or fewer landmarks.": (
+        "{0} 个地标多于要匹配的 {1} 个点。请增加点数或减少地标。"
+    ),
+    "Landmarks {0} and {1} are both at vertex {2} of the {3}. Use a vertex for one landmark only.": (
+        "地标 {0} 和 {1} 都在{3}的顶点 {2} 上。一个顶点只能用于一个地标。"
+    ),
+    (
+        "Landmark {0} is at vertex {1} of the {2}, which is not on its largest part that is not left out. Choose "
+        "a vertex on that part, which is the one that is matched."
+    ): "地标 {0} 在{2}的顶点 {1} 上，不在要匹配的最大部分上。请选择该部分上的顶点。",
+    "Landmarks {0} and {1} are at the same place of the {2}, at its vertices {3} and {4}. Remove one of them.": (
+        "地标 {0} 和 {1} 在{2}的同一位置（顶点 {3} 和 {4}）。请移除其中一个。"
+    ),
+    "{0} Coarse Points need at least as many Coarse Candidates, not {1}.": (
+        "{0} 个粗匹配点至少需要同样多的粗匹配候选，而不是 {1} 个。"
+    ),
+    "{0} points cannot be matched: the {1} has only {2} vertices. Use fewer points or subdivide the mesh.": (
+        "无法匹配 {0} 个点：{1}只有 {2} 个顶点。请减少点数或细分网格。"
+    ),
+    "{0} points cannot be matched: the {1} has only {2} vertices{3}. Use fewer points or subdivide the mesh.": (
+        "无法匹配 {0} 个点：{1}只有 {2} 个顶点{3}。请减少点数或细分网格。"
+    ),
+    "{0} samples were asked of a surface with {1} vertices: use fewer points or a finer mesh.": (
+        "要求在只有 {1} 个顶点的表面上取 {0} 个样本：请减少点数或使用更细的网格。"
+    ),
+    '"{0}" cannot be written: {1}. Choose another place.': "无法写入“{0}”：{1}。请选择其他位置。",
+    '"{0}" cannot be read: {1}. Choose another file.': "无法读取“{0}”：{1}。请选择其他文件。",
+    '"{0}" cannot be read: {1}.': "无法读取“{0}”：{1}。",
+    '"{0}" is no text. Choose a file that Save Landmarks has written.': "“{0}”不是文本。请选择由保存地标写出的文件。",
+    '"{0}" is no name for a match file. Let it end with .npz or .json.': (
+        "“{0}”不是匹配文件的名称。请以 .npz 或 .json 结尾。"
+    ),
+    '"{0}" is no match that HierMatch has exported. Choose another file.': (
+        "“{0}”不是 HierMatch 导出的匹配。请选择其他文件。"
+    ),
+    '"{0}" was exported by a later version of HierMatch. Update the add-on.': (
+        "“{0}”由更新版本的 HierMatch 导出。请更新插件。"
+    ),
+    '"{0}" is damaged or no match file: {1}. Export the match again.': (
+        "“{0}”已损坏或不是匹配文件：{1}。请重新导出匹配。"
+    ),
+    'The match fits the other way round: "{0}" is its source and "{1}" its target. Exchange the two.': (
+        "匹配的方向相反：“{0}”是源，“{1}”是目标。请交换两者。"
+    ),
+    (
+        'The match does not fit "{0}": it was exported from a mesh with {1} vertices, and this one has {2}. '
+        "Choose the mesh it was made for, or match again."
+    ): "匹配不适用于“{0}”：它导出自 {1} 个顶点的网格，而这个有 {2} 个。请选择原来的网格，或重新匹配。",
+    (
+        'The match does not fit "{0}": its vertices or faces are numbered otherwise than on the mesh the match '
+        "was exported from. Choose that mesh, or match again."
+    ): "匹配不适用于“{0}”：其顶点或面的编号与导出匹配的网格不同。请选择那个网格，或重新匹配。",
+    "{0} carry no such match with one another. Match them first.": "{0} 之间没有这样的匹配。请先匹配。",
+    "{0} carry several matches. Name the Prefix of one of them: {1}.": "{0} 有多个匹配。请指定其中一个的前缀：{1}。",
+    "{0} carry no match with one another{1}. Match them first.": "{0} 之间没有{1}匹配。请先匹配。",
+    "The match of {0} has no dense map. Match them again with Dense Map on.": (
+        "{0} 的匹配没有稠密映射。请启用稠密映射重新匹配。"
+    ),
+    'The match of "{0}" and "{1}" has no dense map. Match them with Dense Map on.': (
+        "“{0}”和“{1}”的匹配没有稠密映射。请启用稠密映射进行匹配。"
+    ),
+    "The dense map of {0} was removed from the attributes of a mesh. Match them again.": (
+        "{0} 的稠密映射已从网格属性中移除。请重新匹配。"
+    ),
+    (
+        '"{0}" shares its mesh with other objects, whose weights would change with its own. Give it its own mesh '
+        "first (Object > Relations > Make Single User > Object & Data)."
+    ): "“{0}”与其他物体共用网格，它们的权重也会随之改变。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
+    '"{0}" is in Edit Mode. Switch to Object Mode first.': "“{0}”处于编辑模式。请先切换到物体模式。",
+    (
+        '"{0}" has no armature, so there is no rig to fit. Give it an Armature modifier with its armature, or '
+        "pick another Source."
+    ): "“{0}”没有骨架，因此没有可适配的绑定。请为其添加骨架修改器，或选择另一个源。",
+    (
+        'No vertex of "{0}" is in a vertex group of a deforming bone of "{1}", so it is open what the bones '
+        "belong to. Bind the Source to its armature with weights first."
+    ): "“{0}”没有顶点在“{1}”的变形骨骼的顶点组中，无法确定骨骼的归属。请先用权重将源绑定到骨架。",
+    'The armature "{0}" has a scale of zero. Set its scale first.': "骨架“{0}”的缩放为零。请先设置缩放。",
+    'The armature "{0}" is in Edit Mode. Switch to Object Mode first.': "骨架“{0}”处于编辑模式。请先切换到物体模式。",
+    '"{0}" has no vertex groups, so there are no weights to carry over. Choose a weighted mesh as the Source.': (
+        "“{0}”没有顶点组，因此没有可传递的权重。请选择带权重的网格作为源。"
+    ),
+    (
+        '"{0}" has no armature whose bones could tell which vertex groups to carry. Carry All of them, or add an '
+        "Armature modifier."
+    ): "“{0}”没有可用来确定要传递哪些顶点组的骨架。请传递全部，或添加骨架修改器。",
+    'The active vertex group of "{0}" is one of a match. Select another one in its list of vertex groups.': (
+        "“{0}”的活动顶点组属于匹配。请在其顶点组列表中另选一个。"
+    ),
+    'All vertex groups to carry are locked on "{0}". Unlock some of them, or carry others.': (
+        "要传递的顶点组在“{0}”上全部被锁定。请解锁一些，或传递其他的。"
+    ),
+    '"{0}" already has something else called "{1}". Rename it, or turn Mark Rejected off.': (
+        "“{0}”已有其他名为“{1}”的内容。请将其重命名，或关闭标记剔除。"
+    ),
+    'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
+        "“{1}”的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。"
+    ),
+    'Locked vertex groups of "{0}" were left alone: {1}.': "“{0}”被锁定的顶点组保持不变：{1}。",
+    '"{0}" has no weights for the bones of "{1}" yet. Transfer the weights as well.': (
+        "“{0}”还没有“{1}”的骨骼权重。请同时传递权重。"
+    ),
+    'Constraints or drivers of "{0}" still point to {1}.': "“{0}”的约束或驱动器仍指向 {1}。",
+    '"{0}" has no shape keys beside the basis, so there are none to carry over.': (
+        "“{0}”除基型外没有形态键，因此没有可传递的内容。"
+    ),
+    '"{0}" already has {1}, which was skipped.': "“{0}”已有 {1}，已跳过。",
+    '"{0}" has no UV map to carry over. Unwrap it, or choose another Source.': (
+        "“{0}”没有可传递的 UV 贴图。请展开，或选择另一个源。"
+    ),
+    (
+        '"{0}" has nothing of what is to be carried over: no such attributes, materials, marked edges or custom '
+        "normals. Choose other options, or another Source."
+    ): "“{0}”没有要传递的内容：没有此类属性、材质、标记边或自定义法线。请选择其他选项或另一个源。",
+    (
+        '"{0}" carries nothing of what is to be made symmetric: no vertex groups, shape keys or color '
+        "attributes. Choose another object, or turn more of them on."
+    ): "“{0}”没有可对称化的内容：没有顶点组、形态键或颜色属性。请选择其他物体，或启用更多选项。",
+    "{0} left out: {1}": "{0} 已跳过：{1}",
+    'the rig "{0}" with {1} bones': "绑定“{0}”（{1} 根骨骼）",
+    "{0} vertex groups": "{0} 个顶点组",
+    "{0} shape keys": "{0} 个形态键",
+    "{0} color attributes": "{0} 个颜色属性",
+    "{0} UV maps": "{0} 个 UV 贴图",
+    "1 vertex group": "1 个顶点组",
+    "1 UV map": "1 个 UV 贴图",
+    '"{0}" has no attribute "{1}". Check the Names.': "“{0}”没有属性“{1}”。请检查名称。",
+    (
+        'The mesh "{0}" of "{1}" is shared with other objects, which would get the shape keys as well. Make it a '
+        "single user first (Object > Relations > Make Single User > Object & Data)."
+    ): "“{1}”的网格“{0}”与其他物体共用，它们也会得到形态键。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
+    'The shape keys of "{0}" are absolute. Turn Relative on in its Shape Keys panel, or remove them.': (
+        "“{0}”的形态键是绝对的。请在形态键面板中启用相对，或将其移除。"
+    ),
+    (
+        '"{0}" is the basis of the shape keys of "{1}", but a shape key of the source has the same name. Rename '
+        "one of them."
+    ): "“{0}”是“{1}”的形态键的基型，但源有同名的形态键。请重命名其中一个。",
+    'The shape keys of "{0}" do not have the vertices of its mesh. Remove them first.': (
+        "“{0}”的形态键与其网格的顶点不一致。请先将其移除。"
+    ),
+    'The active shape key of "{0}" is its basis. Select another one in its Shape Keys panel.': (
+        "“{0}”的活动形态键是基型。请在形态键面板中另选一个。"
+    ),
+    '"{0}" has no shape key {1}. Check the Names.': "“{0}”没有形态键 {1}。请检查名称。",
+    '"{0}" would have {1} UV maps, but Blender allows {2}. Remove some of them first, or carry fewer over.': (
+        "“{0}”将有 {1} 个 UV 贴图，但 Blender 只允许 {2} 个。请先移除一些，或减少传递。"
+    ),
+    '"{0}" has no UV map "{1}". Check the Names.': "“{0}”没有 UV 贴图“{1}”。请检查名称。",
 }
 """The translation of each English text."""

@@ -11,9 +11,10 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from hiermatch.hiermatch_addon import translations
+from hiermatch.hiermatch_addon import translated_text, translations
 from hiermatch.hiermatch_addon.panel_text import wrap_text
 from hiermatch.hiermatch_addon.registration import CLASSES
+from hiermatch.hiermatch_addon.translated_text import translated
 from hiermatch.hiermatch_addon.translations import LANGUAGES
 
 from tests.addon.conftest import ROOT
@@ -26,12 +27,22 @@ SENTENCES = {"ObjectError", "report", "Progress", "translated", "poll_message_se
 
 
 def literals(node):
-    """Strings that an expression may be as it stands in the code."""
+    """Strings that an expression may be as it stands in the code, with numbers in the places of what is filled in."""
     if isinstance(node, ast.Constant):
         return [node.value] if isinstance(node.value, str) else []
+    if isinstance(node, ast.JoinedStr):
+        return [with_gaps(node)]
     if isinstance(node, ast.IfExp):
         return literals(node.body) + literals(node.orelse)
     return []
+
+
+def with_gaps(node):
+    """The pattern of a sentence that is put together; nothing if there are no words in it."""
+    text, numbers = "", iter(range(99))
+    for part in node.values:
+        text += part.value if isinstance(part, ast.Constant) else f"{{{next(numbers)}}}"
+    return text if re.search("[A-Za-z]{3}", text) else ""
 
 
 def rna_of(cls):
@@ -83,14 +94,17 @@ def _is_cast(node):
 
 
 def fixed_sentences():
-    """Reports, errors, and what a bar of progress says, as far as they are not put together from parts."""
+    """Reports, errors, and what a bar of progress says.
+
+    Of the engine's errors those are left out that only a program can cause, and that no table has.
+    """
     for path in (*INTERFACE, *ENGINE):
         for node in ast.walk(ast.parse(path.read_text("utf8"))):
             if isinstance(node, ast.Call):
                 called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
                 arguments = node.args if called in SENTENCES else []
                 yield from ((text, path.name) for argument in arguments for text in literals(argument))
-            elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "cancelled":
+            elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") in ("cancelled", "doing"):
                 yield from ((text, path.name) for text in literals(node.value))
 
 
@@ -208,3 +222,53 @@ def test_japanese_and_chinese_are_broken_anywhere(messages):
 
 def test_latin_words_stay_whole():
     assert wrap_text("HierMatchが作業中です", 10) == ["HierMatch", "が作業中で", "す"]
+
+
+class TestSentencesWithGaps:
+    """Sentences that were put together, in a Blender that speaks Japanese."""
+
+    @pytest.fixture(autouse=True)
+    def japanese(self, monkeypatch):
+        messages = LANGUAGES["ja_JP"]
+        blender = SimpleNamespace(locale="ja_JP", pgettext_iface=lambda text: messages.get(text, text))
+        monkeypatch.setattr(translated_text, "bpy", SimpleNamespace(app=SimpleNamespace(translations=blender)))
+
+    def test_what_is_filled_in_is_kept(self):
+        said = translated(
+            '"Cat" has 12 vertices, too few for 64 Points. Set Points to 12 or fewer, or subdivide the mesh.'
+        )
+        assert said.startswith("「Cat」の頂点は12個で、ポイント64個には")
+
+    def test_order_may_differ(self):
+        said = translated('Matched 64 points of "A" and "B" in 3.2 s. The shapes correspond closely.')
+        assert said.index("「A」") < said.index("64") < said.index("3.2")
+        assert said.endswith(LANGUAGES["ja_JP"]["The shapes correspond closely."])
+
+    def test_names_are_not_translated_and_words_are(self):
+        said = translated(
+            'The source of this match, "source", was deleted or is not in the view layer "Points". '
+            "Bring it back, or match again."
+        )
+        assert "ソース「source」" in said
+        assert "「Points」" in said
+
+    def test_the_pattern_that_says_most_counts(self):
+        said = translated('"Cat" cannot be read: it is empty. Choose another file.')
+        assert said == "「Cat」を読み込めません：it is empty。別のファイルを選んでください。"
+
+    @pytest.mark.parametrize("text", ["Nobody has translated this.", "", '"Cat" sat on the mat.'])
+    def test_what_is_unknown_stays(self, text):
+        assert translated(text) == text
+
+    def test_every_pattern_finds_itself(self):
+        for template, _ in translated_text._patterns():  # noqa: SLF001
+            fields = {name: f"<{name}>" for _, name, _, _ in Formatter().parse(template) if name}
+            text = re.sub(r"\{(\w+)\}", lambda field: fields[field[1]], template)  # noqa: B023
+            said = translated(text)
+            assert said != text, template
+            assert all(value in said for value in fields.values()), template
+
+
+def test_english_stays_english():
+    text = '"Cat" was edited meanwhile. Nothing was written.'
+    assert translated(text) == text

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Texts in the language of the interface, also those that were put together from parts.
+
+The code, and the engine that knows nothing of languages, say everything in English.  Where a text reaches the user,
+`translated` looks it up.  A sentence with names and numbers in it is found by its pattern: the tables of
+`translations` have it with ``{0}``, ``{1}`` and so on in the places of what is filled in.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache, lru_cache
+from string import Formatter
+from typing import Any
+
+import bpy
+
+from .translations import LANGUAGES
+
+__all__ = ["translated"]
+
+
+def translated(text: str) -> str:
+    """Return a text in the language of the interface.
+
+    Parameters
+    ----------
+    text : str
+        The text in English.
+
+    Returns
+    -------
+    str
+        Its translation; the text itself if there is none, or none is wanted.  What is filled in is translated, too,
+        unless it stands in quotation marks: that is a name.
+    """
+    translations: Any = bpy.app.translations  # whose functions Blender's stubs declare to return nothing
+    said: str = translations.pgettext_iface(text)
+    if said != text or translations.locale not in LANGUAGES:
+        return said
+    template, values = _taken_apart(text)
+    said = translations.pgettext_iface(template)
+    if said == template:
+        return text
+    filled = {name: value if f'"{{{name}}}"' in template else translated(value) for name, value in values}
+    return re.sub(r"\{(\w+)\}", lambda field: filled[field[1]], said)
+
+
+@lru_cache(maxsize=1024)
+def _taken_apart(text: str) -> tuple[str, tuple[tuple[str, str], ...]]:
+    """Find the pattern of a sentence, and what is filled in; the sentence itself and nothing if it has none."""
+    for template, pattern in _patterns():
+        found = pattern.fullmatch(text)
+        if found is not None:
+            names = (name.removeprefix("_") for name in found.groupdict())
+            return template, tuple(zip(names, found.groups(), strict=True))
+    return text, ()
+
+
+@cache
+def _patterns() -> tuple[tuple[str, re.Pattern[str]], ...]:
+    """List the sentences with gaps, those that say most first, and what matches them."""
+    patterns = []
+    for text in next(iter(LANGUAGES.values())):
+        parts = list(Formatter().parse(text))
+        if any(name is not None for _, name, _, _ in parts):
+            wanted = "".join(re.escape(said) + (f"(?P<_{name}>.+?)" if name else "") for said, name, _, _ in parts)
+            patterns.append((sum(len(said) for said, *_ in parts), text, re.compile(wanted, re.DOTALL)))
+    return tuple((text, pattern) for _, text, pattern in sorted(patterns, key=lambda each: -each[0]))
