@@ -1337,10 +1337,10 @@ MESSAGES: Final[dict[str, str]] = {
     "a vertex group": "頂点グループ",
     "an attribute": "属性",
     (
-        '"{0}" has no vertex group, boolean attribute or material called "{1}", which is to be left out. Choose '
-        "another one, or empty the field."
+        '"{0}" has no vertex group, boolean attribute, material or face set called "{1}", which is to be left out. '
+        "Choose another one, or empty the field."
     ): (
-        "「{0}」には、除外する「{1}」という頂点グループ、ブーリアン属性、マテリアルがありません。別のものを選"
+        "「{0}」には、除外する「{1}」という頂点グループ、ブーリアン属性、マテリアル、フェイスセットがありません。別のものを選"
         "ぶか、欄を空にしてください。"
     ),
     'No vertex of "{0}" is in "{1}", which is to be left out. Assign vertices to it, or empty the field.': (
@@ -1580,8 +1580,6 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} left out: {1}": "{0}は除外：{1}",
     'the rig "{0}" with {1} bones': "リグ「{0}」（ボーン{1}本）",
     "{0} vertex groups": "{0}個の頂点グループ",
-    "{0} shape keys": "{0}個のシェイプキー",
-    "{0} color attributes": "{0}個のカラー属性",
     "{0} UV maps": "{0}個のUVマップ",
     "1 vertex group": "1個の頂点グループ",
     "1 UV map": "1個のUVマップ",

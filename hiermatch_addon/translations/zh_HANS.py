@@ -1095,9 +1095,9 @@ MESSAGES: Final[dict[str, str]] = {
     "a vertex group": "顶点组",
     "an attribute": "属性",
     (
-        '"{0}" has no vertex group, boolean attribute or material called "{1}", which is to be left out. Choose '
-        "another one, or empty the field."
-    ): "“{0}”没有名为“{1}”的顶点组、布尔属性或材质可供排除。请另选一个，或清空该栏。",
+        '"{0}" has no vertex group, boolean attribute, material or face set called "{1}", which is to be left out. '
+        "Choose another one, or empty the field."
+    ): "“{0}”没有名为“{1}”的顶点组、布尔属性、材质或面组可供排除。请另选一个，或清空该栏。",
     'No vertex of "{0}" is in "{1}", which is to be left out. Assign vertices to it, or empty the field.': (
         "“{0}”没有顶点在要排除的“{1}”中。请为其指定顶点，或清空该栏。"
     ),
@@ -1267,8 +1267,6 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} left out: {1}": "{0} 已跳过：{1}",
     'the rig "{0}" with {1} bones': "绑定“{0}”（{1} 根骨骼）",
     "{0} vertex groups": "{0} 个顶点组",
-    "{0} shape keys": "{0} 个形态键",
-    "{0} color attributes": "{0} 个颜色属性",
     "{0} UV maps": "{0} 个 UV 贴图",
     "1 vertex group": "1 个顶点组",
     "1 UV map": "1 个 UV 贴图",
