@@ -137,7 +137,8 @@ class RigTransfer:
             self._notes.append(
                 f'"{target.name}" has no weights for the bones of "{armature.name}" yet. Transfer the weights as well.'
             )
-        done = f'the rig "{armature.name}" with {len(self._names)} bones'
+        bones = "1 bone" if len(self._names) == 1 else f"{len(self._names)} bones"
+        done = f'the rig "{armature.name}" with {bones}'
         if self._rest is not None:
             action = self._keep_rest(armature)
             done += f' and the rest pose "{action}"'
