@@ -83,7 +83,7 @@ def carry_values_steps(
     Parameters
     ----------
     values : (k, ...) array
-        One for each point, edge, face or corner of the source.
+        One for each point, edge, face or corner of the source: numbers, or texts as bytes.
     domain : {"POINT", "EDGE", "FACE", "CORNER"}
         Which of these.
     crossing : Crossing
@@ -119,6 +119,11 @@ def carry_values_steps(
     }[domain]
     if len(array) != wanted:
         raise MatchError(f"There should be one value for each of {wanted}, but there are {len(array)}.")
+    if array.dtype.kind == "S":
+        # Numbers stand for the texts; that of the empty one, which edges without a source have, is zero.
+        texts, numbers = np.unique(np.append(array, b""), return_inverse=True)
+        carried = yield from carry_values_steps(numbers[:-1].reshape(array.shape), domain, crossing)
+        return CarriedValues(texts[carried.values], carried.lost)
     if np.issubdtype(array.dtype, np.floating) and not blended:
         # The same bits as whole numbers, which are never mixed.
         whole = np.ascontiguousarray(array, np.float32).view(np.int32)
@@ -132,9 +137,8 @@ def carry_values_steps(
         return CarriedValues(carry_face_values(array, faces, crossing.places))
     if domain == "CORNER":
         return CarriedValues(carry_corner_values(array, faces, crossing.places))
-    if marks:
-        return CarriedValues(carry_point_marks(array, crossing.source_to_target))
-    return CarriedValues(carry_point_values(array, crossing.target_to_source))
+    marked = carry_point_marks(array, crossing.source_to_target) if marks else None
+    return CarriedValues(carry_point_values(array, crossing.target_to_source) if marked is None else marked)
 
 
 def _edge_steps(values: NDArray[Any], crossing: Crossing) -> Steps[CarriedValues]:

@@ -36,6 +36,7 @@ _TYPES: dict[str, tuple[str, type[np.generic], int]] = {
     "FLOAT": ("value", np.float32, 1),
     "FLOAT2": ("vector", np.float32, 2),
     "FLOAT_VECTOR": ("vector", np.float32, 3),
+    "FLOAT4": ("vector", np.float32, 4),
     "FLOAT_COLOR": ("color", np.float32, 4),
     "BYTE_COLOR": ("color", np.float32, 4),
     "QUATERNION": ("value", np.float32, 4),
@@ -45,10 +46,11 @@ _TYPES: dict[str, tuple[str, type[np.generic], int]] = {
     "INT16_2D": ("value", np.int32, 2),
     "INT32_2D": ("value", np.int32, 2),
     "BOOLEAN": ("value", np.bool_, 1),
+    "STRING": ("value", np.bytes_, 1),
 }
 """For each type of attribute: what its values are called, the type of their numbers, and how many there are."""
 
-_BLENDED = frozenset({"FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"})
+_BLENDED = frozenset({"FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT4", "FLOAT_COLOR", "BYTE_COLOR"})
 """Types whose values have a mean; those of turns and transforms have none that is one of them."""
 
 
@@ -102,6 +104,8 @@ def read_attribute(mesh: bpy.types.Mesh, name: str) -> NDArray[Any]:
     attributes: Any = mesh.attributes
     attribute = attributes[name]
     member, number, width = _TYPES[attribute.data_type]
+    if number is np.bytes_:  # for which Blender has no bulk access
+        return np.array([getattr(element, member) for element in attribute.data], np.bytes_)
     values = np.empty(len(attribute.data) * width, number)
     attribute.data.foreach_get(member, values)
     return values if width == 1 else values.reshape(-1, width)
@@ -114,7 +118,12 @@ def write_attribute(mesh: bpy.types.Mesh, layout: AttributeLayout, values: NDArr
     if layout.name not in attributes:
         attributes.new(layout.name, layout.kind, layout.domain)
     # Looked up anew: whatever was found before an attribute is added may have moved in memory.
-    attributes[layout.name].data.foreach_set(member, np.ascontiguousarray(values, number).ravel())
+    data = attributes[layout.name].data
+    if number is np.bytes_:
+        for element, value in zip(data, values.tolist(), strict=True):
+            setattr(element, member, value)
+        return
+    data.foreach_set(member, np.ascontiguousarray(values, number).ravel())
 
 
 def read_polygons(mesh: bpy.types.Mesh) -> Polygons:

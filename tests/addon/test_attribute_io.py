@@ -28,6 +28,7 @@ KINDS = {
     "FLOAT": (),
     "FLOAT2": (2,),
     "FLOAT_VECTOR": (3,),
+    "FLOAT4": (4,),
     "FLOAT_COLOR": (4,),
     "BYTE_COLOR": (4,),
     "QUATERNION": (4,),
@@ -73,7 +74,8 @@ def test_what_is_blenders_own_is_not_listed():
     names = set(attribute_layouts(mesh))
     assert {"Mine", "UVMap"} <= names
     assert not names & {"position", ".corner_vert"}
-    assert not is_known("STRING")
+    assert is_known("INT")
+    assert not is_known("SPLINE")
 
 
 def test_faces_are_those_of_the_mesh():

@@ -189,11 +189,16 @@ def test_other_things_of_the_same_name_are_left_alone(pair):
     assert "Group" not in attribute_layouts(target.data)
 
 
-def test_texts_are_left_out(pair):
+def test_texts_arrive_where_they_belong(pair):
     source, target = pair
-    source.data.attributes.new("Names", "STRING", "FACE")
+    names = source.data.attributes.new("Names", "STRING", "FACE")
+    for face, place in enumerate(face_places(source)):
+        names.data[face].value = "Köpfchen".encode() if place > 0.5 else b""
     assert carry() == {"FINISHED"}
-    assert "Names" not in attribute_layouts(target.data)
+    faces = face_places(target)
+    clear = abs(faces - 0.5) > 0.4
+    found = np.array([element.value.decode() for element in target.data.attributes["Names"].data])
+    np.testing.assert_array_equal(found[clear], np.where(faces > 0.5, "Köpfchen", "")[clear])
 
 
 def test_the_active_color_is_shown_if_there_was_none(pair):
