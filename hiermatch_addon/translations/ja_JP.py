@@ -1578,7 +1578,9 @@ MESSAGES: Final[dict[str, str]] = {
         "選ぶか、対象を増やしてください。"
     ),
     "{0} left out: {1}": "{0}は除外：{1}",
-    'the rig "{0}" with {1} bones': "リグ「{0}」（ボーン{1}本）",
+    'the rig "{0}" with {1}': "リグ「{0}」（{1}）",
+    "1 bone": "ボーン1本",
+    "{0} bones": "ボーン{0}本",
     "{0} vertex groups": "{0}個の頂点グループ",
     "{0} UV maps": "{0}個のUVマップ",
     "1 vertex group": "1個の頂点グループ",

@@ -1265,7 +1265,9 @@ MESSAGES: Final[dict[str, str]] = {
         "attributes. Choose another object, or turn more of them on."
     ): "“{0}”没有可对称化的内容：没有顶点组、形态键或颜色属性。请选择其他物体，或启用更多选项。",
     "{0} left out: {1}": "{0} 已跳过：{1}",
-    'the rig "{0}" with {1} bones': "绑定“{0}”（{1} 根骨骼）",
+    'the rig "{0}" with {1}': "绑定“{0}”（{1}）",
+    "1 bone": "1 根骨骼",
+    "{0} bones": "{0} 根骨骼",
     "{0} vertex groups": "{0} 个顶点组",
     "{0} UV maps": "{0} 个 UV 贴图",
     "1 vertex group": "1 个顶点组",
