@@ -12,6 +12,7 @@ import bpy
 from ..engine import MatchSettings
 from .excluded_regions import region_names
 from .steering_lists import sync_lists
+from .summary import remember_common
 from .translations import CONTEXT
 
 if TYPE_CHECKING:
@@ -206,8 +207,10 @@ def _is_mesh(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
 
 
 def _on_pick(owner: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
-    """List what the two meshes that are picked now have in common."""
-    sync_lists(cast("bpy.types.Scene", owner.id_data))
+    """Tell of the match that the two meshes carry that are picked now, and list what they have in common."""
+    scene = cast("bpy.types.Scene", owner.id_data)
+    remember_common(scene)
+    sync_lists(scene)
 
 
 class HIERMATCH_PG_summary(bpy.types.PropertyGroup):

@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panel remembers of the match that was written last."""
+"""What the panel remembers of the match that was written last, or that the picked meshes carry."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from .properties import HIERMATCH_PG_summary
-    from .stored_match import StoredMatch
+from .access import summary_of
+from .steering_lists import common_match
+from .stored_match import StoredMatch
 
-__all__ = ["remember"]
+if TYPE_CHECKING:
+    import bpy
+
+    from .properties import HIERMATCH_PG_summary
+
+__all__ = ["remember", "remember_common"]
 
 
 def remember(
@@ -45,3 +50,17 @@ def remember(
     summary.seconds = seconds
     summary.notes = "\n".join(stored.notes)
     summary.prefix, summary.key = prefix, stored.key
+
+
+def remember_common(scene: bpy.types.Scene) -> None:
+    """Fill a scene's summary with the match of the two meshes that its panels are about, such as after appending them.
+
+    If they carry none, or the summary tells of it already, it stays as it is.
+    """
+    summary, halves = summary_of(scene), common_match(scene)
+    if halves is None or (halves[0].key, halves[0].prefix) == (summary.key, summary.prefix):
+        return
+    source, target = halves if halves[0].role == "source" else halves[::-1]
+    stored = StoredMatch.from_plain(source.kept, target.kept)
+    remember(summary, stored, (source.obj.name, target.obj.name), source.prefix, 0.0)
+    summary.stale = source.staleness() or target.staleness()

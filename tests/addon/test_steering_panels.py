@@ -113,3 +113,28 @@ def test_drawing_changes_nothing(context):
     for name in ("HIERMATCH_PT_landmarks", "HIERMATCH_PT_pairs", "HIERMATCH_PT_overlay"):
         draw(name, context)
     assert snapshot() == before
+
+
+@pytest.mark.usefixtures("pair")
+def test_picking_two_meshes_tells_of_the_match_that_they_carry():
+    """As after appending them to another file."""
+    state = bpy.context.scene.hiermatch
+    before = {name: value for name, value in snapshot()["summary"].items() if name != "seconds"}
+    state.source = state.target = None
+    for name in state.summary.bl_rna.properties.keys():  # noqa: SIM118 - not a dict
+        if name not in ("rna_type", "name"):
+            state.summary.property_unset(name)
+    assert not state.summary.points
+    state.source, state.target = bpy.data.objects["Source"], bpy.data.objects["Target"]
+    after = snapshot()["summary"]
+    assert {name: after[name] for name in before} == before
+    assert after["points"] == QUICK["points"]
+
+
+@pytest.mark.usefixtures("pair")
+def test_picking_a_mesh_that_carries_none_leaves_the_summary():
+    state = bpy.context.scene.hiermatch
+    before = snapshot()["summary"]
+    bpy.ops.mesh.primitive_cube_add()
+    state.target = bpy.context.object
+    assert snapshot()["summary"] == before
