@@ -70,11 +70,13 @@ class LandmarkOperator(_Operator):
             name="Source",
             description="Name of the object that is the source; if empty, the one picked in the panel or else the "
             "active object",
+            options={"SKIP_SAVE"},
         ),
         "target": _props.StringProperty(
             name="Target",
             description="Name of the object that is the target; if empty, the one picked in the panel or else the "
             "other selected mesh",
+            options={"SKIP_SAVE"},
         ),
     }
 

@@ -13,9 +13,6 @@ if TYPE_CHECKING:
 
 __all__ = ["can_start", "is_running", "running_panel"]
 
-_PICKING = "HIERMATCH_OT_pick_landmarks"
-"""This one waits for clicks and does no work."""
-
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
     """Return whether one of our operators runs modally in a window."""
@@ -23,12 +20,13 @@ def is_running(window_manager: bpy.types.WindowManager) -> bool:
 
 
 def running_panel(window_manager: bpy.types.WindowManager) -> str:
-    """Return the identifier of the panel that shows the job that runs; empty if none does."""
+    """Return the identifier of the panel that shows the job that runs; empty if none does.
+
+    Operators that wait for clicks, or for a name in the file browser, run modally, too, but do no work.
+    """
     operators: Any = (operator for window in window_manager.windows for operator in window.modal_operators)
-    for operator in operators:
-        if operator.bl_idname.startswith("HIERMATCH_OT_") and operator.bl_idname != _PICKING:
-            return str(operator.panel)
-    return ""
+    ours = (operator for operator in operators if operator.bl_idname.startswith("HIERMATCH_OT_"))
+    return next((panel for operator in ours if (panel := getattr(operator, "panel", ""))), "")
 
 
 def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:

@@ -39,22 +39,25 @@ class TransferOperator(JobOperator):
             name="Source",
             description="Name of the object to carry from; if empty, the one picked in the panel or else the active "
             "object",
+            options={"SKIP_SAVE"},
         ),
         "target": _props.StringProperty(
             name="Target",
             description="Name of the object to carry to; if empty, the one picked in the panel or else all other "
             "selected meshes",
+            options={"SKIP_SAVE"},
         ),
         "targets": _props.CollectionProperty(
             name="Targets",
             description="Names of several objects to carry to",
             type=bpy.types.OperatorFileListElement,
-            options={"HIDDEN"},
+            options={"HIDDEN", "SKIP_SAVE"},
         ),
         "prefix": _props.StringProperty(
             name="Prefix",
             description="What the names start with that the match to use wrote; if empty, the one match that the "
             "objects carry",
+            options={"SKIP_SAVE"},
         ),
         "refine": _props.BoolProperty(
             name="Refine with Rig",

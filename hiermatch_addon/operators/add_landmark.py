@@ -32,10 +32,18 @@ class HIERMATCH_OT_add_landmark(LandmarkOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     source_vertex: bpy.props.IntProperty(
-        name="Source Vertex", description="Vertex of the source; if negative, the selected one", default=-1, min=-1
+        name="Source Vertex",
+        description="Vertex of the source; if negative, the selected one",
+        default=-1,
+        min=-1,
+        options={"SKIP_SAVE"},
     )
     target_vertex: bpy.props.IntProperty(
-        name="Target Vertex", description="Vertex of the target; if negative, the selected one", default=-1, min=-1
+        name="Target Vertex",
+        description="Vertex of the target; if negative, the selected one",
+        default=-1,
+        min=-1,
+        options={"SKIP_SAVE"},
     )
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[OperatorReturnItems]:

@@ -33,9 +33,12 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
     object: bpy.props.StringProperty(
         name="Object",
         description="Name of the object to clear; if empty, the picked Source and Target and all selected meshes",
+        options={"SKIP_SAVE"},
     )
     prefix: bpy.props.StringProperty(
-        name="Prefix", description="Remove only what was written with this prefix; if empty, everything"
+        name="Prefix",
+        description="Remove only what was written with this prefix; if empty, everything",
+        options={"SKIP_SAVE"},
     )
 
     @classmethod

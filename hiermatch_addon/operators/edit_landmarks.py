@@ -39,7 +39,10 @@ class HIERMATCH_OT_remove_landmark(LandmarkOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     number: bpy.props.IntProperty(
-        name="Number", description="Which landmark; if zero, the one that is active in the list", min=0
+        name="Number",
+        description="Which landmark; if zero, the one that is active in the list",
+        min=0,
+        options={"SKIP_SAVE"},
     )
 
     def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
@@ -69,7 +72,10 @@ class HIERMATCH_OT_switch_landmark(LandmarkOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     number: bpy.props.IntProperty(
-        name="Number", description="Which landmark; if zero, the one that is active in the list", min=0
+        name="Number",
+        description="Which landmark; if zero, the one that is active in the list",
+        min=0,
+        options={"SKIP_SAVE"},
     )
     use: bpy.props.BoolProperty(name="Use", description="Whether matches are to keep to it", default=True)
 
@@ -88,7 +94,10 @@ class HIERMATCH_OT_select_landmark(LandmarkOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     number: bpy.props.IntProperty(
-        name="Number", description="Which landmark; if zero, the one that is active in the list", min=0
+        name="Number",
+        description="Which landmark; if zero, the one that is active in the list",
+        min=0,
+        options={"SKIP_SAVE"},
     )
 
     def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:

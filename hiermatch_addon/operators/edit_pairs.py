@@ -34,7 +34,10 @@ class _PairOperator(LandmarkOperator):
     __annotations__ = {
         **LandmarkOperator.__annotations__,
         "number": _props.IntProperty(
-            name="Number", description="Which matched point; if zero, the one that is active in the list", min=0
+            name="Number",
+            description="Which matched point; if zero, the one that is active in the list",
+            min=0,
+            options={"SKIP_SAVE"},
         ),
     }
 

@@ -46,14 +46,17 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
     source: bpy.props.StringProperty(
         name="Source",
         description="Name of one of the two objects; if empty, the one picked in the panel or else the active object",
+        options={"SKIP_SAVE"},
     )
     target: bpy.props.StringProperty(
         name="Target",
         description="Name of the other object; if empty, the one picked in the panel or else the other selected mesh",
+        options={"SKIP_SAVE"},
     )
     prefix: bpy.props.StringProperty(
         name="Prefix",
         description="What the names start with that the match wrote; if empty, the one match that the objects carry",
+        options={"SKIP_SAVE"},
     )
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

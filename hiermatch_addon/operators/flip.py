@@ -40,11 +40,13 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         name="Object",
         description="Name of one of the two matched objects; if empty, the match that the panel shows is meant, or "
         "else that of the active object",
+        options={"SKIP_SAVE"},
     )
     prefix: bpy.props.StringProperty(
         name="Prefix",
         description="What the names that the match wrote start with; needed only for a named or active object that "
         "carries several matches",
+        options={"SKIP_SAVE"},
     )
 
     doing = "Writing the other answer"

@@ -49,14 +49,20 @@ class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: igno
         name="Source",
         description="Name of the object to be the source; if empty, the one picked in the panel or else the active "
         "object",
+        options={"SKIP_SAVE"},
     )
     target: bpy.props.StringProperty(
         name="Target",
         description="Name of the object to be the target; if empty, the one picked in the panel or else the other "
         "selected mesh",
+        options={"SKIP_SAVE"},
     )
     prefix: bpy.props.StringProperty(
-        name="Prefix", description="What the names of everything that is written start with", default="HM", maxlen=32
+        name="Prefix",
+        description="What the names of everything that is written start with",
+        default="HM",
+        maxlen=32,
+        options={"SKIP_SAVE"},
     )
 
     @classmethod

@@ -95,6 +95,7 @@ class HIERMATCH_OT_load_landmarks(_FileOperator, bpy.types.Operator):
         name="Replace",
         description="Remove the landmarks that the two meshes have in common before those of the file are added",
         default=True,
+        options={"SKIP_SAVE"},
     )
 
     def _do(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:

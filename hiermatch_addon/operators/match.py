@@ -41,11 +41,13 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         name="Source",
         description="Name of the object whose points are matched; if empty, the one picked in the panel or else the "
         "active object",
+        options={"SKIP_SAVE"},
     )
     target: bpy.props.StringProperty(
         name="Target",
         description="Name of the object on which the corresponding points are sought; if empty, the one picked in the "
         "panel or else the other selected mesh",
+        options={"SKIP_SAVE"},
     )
 
     doing = "Matching"

@@ -37,6 +37,7 @@ class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator
     object: bpy.props.StringProperty(
         name="Object",
         description="Name of the object to make symmetric; if empty, the active object",
+        options={"SKIP_SAVE"},
     )
 
     doing = "Symmetrising"

@@ -194,6 +194,15 @@ def test_while_something_else_runs_the_bar_is_where_it_was_started(context):
     assert ("operator", "hiermatch.match") in drawn
 
 
+@pytest.mark.parametrize("name", ["HIERMATCH_OT_pick_landmarks", "HIERMATCH_OT_export_match"])
+def test_what_waits_for_clicks_or_a_name_is_no_work(context, name):
+    waiting = SimpleNamespace(bl_idname=name)
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[waiting])])
+    drawn = draw(context)
+    assert ("operator", "hiermatch.match") in drawn
+    assert "HierMatch is at work" not in texts(drawn)
+
+
 def test_the_last_result(context):
     add_pair()
     assert "matched" not in texts(draw(context))

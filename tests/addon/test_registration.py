@@ -129,3 +129,24 @@ def test_every_operator_is_described(cls):
 def test_the_operators_can_be_undone():
     for name in ("match", "flip", "use_setup", "clear"):
         assert getattr(bpy.types, f"HIERMATCH_OT_{name}").bl_options == {"REGISTER", "UNDO"}
+
+
+OF_ONE_RUN = {"source", "target", "targets", "object", "source_vertex", "target_vertex", "number"}
+"""Options of operators that say which objects, vertices or rows are meant."""
+
+
+def test_no_button_means_what_another_press_of_it_meant():
+    """Blender fills in for a button what an operator had been given before, unless it is told not to."""
+    kept, known = [], set()
+    for cls in CLASSES:
+        if issubclass(cls, bpy.types.Operator):
+            group, name = cls.bl_idname.split(".")
+            properties = getattr(getattr(bpy.ops, group), name).get_rna_type().properties
+            known |= OF_ONE_RUN & set(properties.keys())
+            kept += [
+                (cls.__name__, option)
+                for option in OF_ONE_RUN
+                if option in properties and not properties[option].is_skip_save
+            ]
+    assert known == OF_ONE_RUN
+    assert not kept
