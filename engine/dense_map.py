@@ -213,14 +213,13 @@ def _limbs_repaired_steps(
     smooth: NDArray[np.float64],
     ties: Ties | None,
 ) -> Steps[Candidate | None]:
-    """Follow the best candidate up anew if it exchanges limbs; None if it does not, or if that makes it no better."""
+    """Follow the best candidate up anew if it exchanges limbs; None if it does not, or if that is no better."""
     start = repaired_start(*shapes, _vertex_maps(*surfaces, best.registration))
     if start is None:
         return None
     hypotheses = yield from within(map_hypotheses_steps(*shapes, (start,), search=False), 0.0, 0.3)
     repaired = yield from within(_candidate_steps(*surfaces, hypotheses[0], smooth, ties), 0.3, 1.0)
-    still = repaired_start(*shapes, _vertex_maps(*surfaces, repaired.registration)) is not None
-    return None if still or repaired.score > best.score + _AMBIGUOUS else repaired
+    return repaired if repaired.score < best.score else None
 
 
 def _vertex_maps(source: DeformableSurface, target: DeformableSurface, registration: Registration) -> PointMaps:
@@ -242,5 +241,5 @@ def _margin(best: Candidate, candidates: list[Candidate], hypotheses: list[MapHy
     gaps = [candidate.score - best.score for candidate in candidates[1:]]
     tried = {id(candidate.hypothesis) for candidate in candidates}
     gaps += [h.score - best.hypothesis.score for h in hypotheses if id(h) not in tried and h.orientation > 0]
-    # What exchanged limbs may have scored better than what does not.
+    # With limbs put right, the hypothesis is another one than those that were sorted out by their scores.
     return max(float(min(gaps)), 0.0) if gaps else None

@@ -29,12 +29,15 @@ _CENTRAL = 0.5
 _TRUSTED = 0.1
 """Distance between a place and where both maps bring it, in sqrt(area), up to which the map is believed there."""
 
-_TOLD_APART = 0.04
+_SIDE = 0.06
+"""How far to one side a place counts at most, in sqrt(area): what is farther is on the limbs, and goes with them."""
+
+_TOLD_APART = 0.03
 """How differently two tips must lie to the middle of the body, in sqrt(area), root mean square: more than maps err."""
 
-_EXCHANGED = -0.2
-"""Correlation of how two tips lie, and of how their images do, below which they are exchanged; the truth has above 0.4,
-and an exchange the negative."""
+_EXCHANGED = 0.1
+"""Correlation of how two tips lie, and of how their images do, below which they seem to be exchanged: limbs that are,
+from top to toe, have less, and the truth nearly always above 0.4."""
 
 _FEWEST = 8
 """Places of the middle of the body that are needed to say anything."""
@@ -70,7 +73,7 @@ def repaired_start(x: Shape, y: Shape, maps: PointMaps) -> LandmarkStart | None:
 
     .. math:: u_s = d_X(i, s) - d_X(j, s), \qquad v_s = d_Y(c(i), c(s)) - d_Y(c(j), c(s)),
 
-    less their means, which are those of the lengths of the limbs, say on which side of the body the limbs grow. They
+    less their medians, which are those of the lengths of the limbs, say on which side of the body the limbs grow.  They
     correlate if the limbs are where they belong, and if they are exchanged, u with -v, be the rest of the map ever so
     good.  Limbs that lie side by side in space are as far apart in this as any.
 
@@ -100,72 +103,89 @@ def _exchange(
     x: Shape, y: Shape, there: NDArray[np.int64], back: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
     """Find vertices of X and where they belong on Y, if the tips of X have got each other's images."""
-    tips, middle = limb_tips(x), _trusted_middle(x, there, back)
+    middle = _trusted_middle(x, there, back)
     if len(middle) < _FEWEST:
         return None
-    images = there[x.samples[tips]]
     weights = x.cell_areas[middle] / x.cell_areas[middle].sum()
-    here = _centred(x.sample_distances[np.ix_(tips, middle)], weights)
-    seen = _centred(_distances_between(y, images, there[x.samples[middle]]), weights)
+    tips = _told_apart(x, limb_tips(x), middle, weights)
+    images = there[x.samples[tips]]
+    here = _sides(x.sample_distances[np.ix_(tips, middle)])
+    seen = _sides(_distances_between(y, images, there[x.samples[middle]]))
     order = _best_order(here, seen, weights)
     moved = np.flatnonzero(order != np.arange(len(order)))
     if not len(moved):
         return None
     # Where the limbs are exchanged from high up, some of the middle is on them.
-    known = np.sort(middle[_consistent(here[moved], seen[order[moved]])])
-    known = known[:_ANCHORS]  # the first samples are spread the best
+    u, v = here[np.ix_(moved, moved)], seen[np.ix_(order[moved], order[moved])]
+    opposite = (u * v < 0) & (np.minimum(np.abs(u), np.abs(v)) > _TOLD_APART)
+    known = np.sort(middle[~opposite.any(axis=(0, 1))])[:_ANCHORS]  # the first samples are spread the best
     vertices = x.samples[np.concatenate([tips, known])]
     return vertices, np.concatenate([images[order], there[x.samples[known]]])
 
 
-def _centred(distances: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distances (k, c) less the weighted mean of each row."""
-    return distances - (distances @ weights)[:, None]
+def _told_apart(
+    x: Shape, tips: NDArray[np.int64], middle: NDArray[np.int64], weights: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Keep one tip of each limb: those that lie differently to the middle of the body than all before them."""
+    sides = _from_mean(_sides(x.sample_distances[np.ix_(tips, middle)]), weights)
+    clear = np.square(sides) @ weights > _TOLD_APART**2
+    kept: list[int] = []
+    for number in range(len(tips)):
+        if clear[number, kept].all():
+            kept.append(number)
+    return tips[kept]
+
+
+def _sides(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """By how much each place is nearer to the second of two tips than most places, (k, k, c), from distances (k, c)."""
+    differences = distances[:, None] - distances
+    sides: NDArray[np.float64] = differences - np.median(differences, axis=2, keepdims=True)
+    return sides
 
 
 def _best_order(
     here: NDArray[np.float64], there: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Exchange images of tips as long as two are clearly at each other's place.
+    """Exchange images of tips that are at each other's place, the clearest first, no two tips twice.
 
     Parameters
     ----------
-    here, there : (k, c) array of float
-        Distances of the tips, and of their images, from the middle of the body, less the mean of each.
+    here, there : (k, k, c) array of float
+        The sides of places, seen from the tips and from their images.
     weights : (c,) array of float
-        Weights of its places; they sum to one.
+        Weights of the places; they sum to one.
 
     Returns
     -------
     (k,) array of int
         For each tip the tip whose image it should have.
     """
-    here, there = here * np.sqrt(weights), there * np.sqrt(weights)
     order = np.arange(len(here))
-    for _ in range(len(here)):
-        correlation = _correlations(here, there[order])
+    fresh = ~np.eye(len(here), dtype=bool)
+    while fresh.any():
+        correlation = np.where(fresh, _correlations(here, there[np.ix_(order, order)], weights), np.inf)
         i, j = np.unravel_index(correlation.argmin(), correlation.shape)
         if correlation[i, j] >= _EXCHANGED:
             break
         order[[i, j]] = order[[j, i]]
+        fresh[i, j] = fresh[j, i] = False
     return order
 
 
-def _consistent(here: NDArray[np.float64], there: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether places lie to the same side of each two of some tips as their images do, (c,), from (k, c) distances."""
-    u, v = (rows[:, None] - rows for rows in (here, there))
-    opposite = (u * v < 0) & (np.minimum(np.abs(u), np.abs(v)) > _TOLD_APART)
-    return ~opposite.any(axis=(0, 1))
-
-
-def _correlations(here: NDArray[np.float64], there: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Correlate the differences of each two rows with those of their images, (k, k); 1 where they say too little."""
-    products, own, other = here @ there.T, here @ here.T, there @ there.T
-    both, own, other = (
-        np.diag(m)[:, None] + np.diag(m) - m - m.T for m in (products, own, other)
-    )  # sums over places of u v, of u u and of v v
+def _correlations(
+    here: NDArray[np.float64], there: NDArray[np.float64], weights: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Correlate sides (k, k, c) seen from each two tips and from their images, (k, k); 1 where they say too little."""
+    u, v = _from_mean(here, weights), _from_mean(there, weights)
+    both, own, other = (np.einsum("ijc,ijc,c->ij", a, b, weights) for a, b in ((u, v), (u, u), (v, v)))
     clear = np.minimum(own, other) > _TOLD_APART**2
     return np.where(clear, both / np.sqrt(np.where(clear, own * other, 1.0)), 1.0)
+
+
+def _from_mean(sides: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Bound the sides of places, and take them from their weighted mean, (k, k, c)."""
+    bounded = sides.clip(-_SIDE, _SIDE)
+    return bounded - (bounded @ weights)[..., None]
 
 
 def _trusted_middle(x: Shape, there: NDArray[np.int64], back: NDArray[np.int64]) -> NDArray[np.int64]:
