@@ -151,13 +151,13 @@ def registered_pair_steps(
     smooth = _functions(x, _SMOOTH)
     candidates = []
     for number, hypothesis in enumerate(plausible):
-        begin, end = (0.42 + 0.28 * (number + i) / len(plausible) for i in (0, 1))
+        begin, end = (0.42 + 0.26 * (number + i) / len(plausible) for i in (0, 1))
         candidates.append((yield from within(_candidate_steps(source, target, hypothesis, smooth, ties), begin, end)))
     candidates.sort(key=lambda candidate: candidate.score)
     if search:
         # Where no map is looked for, the one that is given is followed as it is.
         repairing = _limbs_repaired_steps((x, y), (source, target), candidates[0], smooth, ties)
-        repaired = yield from within(repairing, 0.69, 0.7)
+        repaired = yield from within(repairing, 0.68, 0.7)
         if repaired is not None:
             hypotheses = [h for h in hypotheses if h is not candidates[0].hypothesis]
             candidates[0] = repaired

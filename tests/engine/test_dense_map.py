@@ -37,15 +37,20 @@ def bodies():
     return shape(*first[:2]), shape(*second[:2]), first[2], second[2]
 
 
-@pytest.fixture(scope="module")
-def watched(bodies):
-    """What a registration yields on the way, and returns."""
-    steps, reports = registered_pair_steps(*bodies[:2]), []
+def followed(steps):
+    """What a computation yields on the way, and returns."""
+    reports = []
     while True:
         try:
             reports.append(next(steps))
         except StopIteration as stop:
             return reports, stop.value
+
+
+@pytest.fixture(scope="module")
+def watched(bodies):
+    """What a registration yields on the way, and returns."""
+    return followed(registered_pair_steps(*bodies[:2]))
 
 
 @pytest.fixture(scope="module")
@@ -123,12 +128,13 @@ def test_limbs_that_the_best_hypothesis_exchanges_are_put_right(bodies, monkeypa
     left = run(registered_pair_steps(x, y, [wrong], search=False))
     assert errors(left.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() > 0.15
 
-    def misled(x, y, starts=(), *, search=True):
-        return map_hypotheses_steps(x, y, [wrong] if search else starts, search=False)
+    def misled(x, y, starts=(), *, search=True, mirrored=True):
+        return map_hypotheses_steps(x, y, [wrong] if search else starts, search=False, mirrored=mirrored)
 
     monkeypatch.setattr(dense_map, "map_hypotheses_steps", misled)
-    pair = run(registered_pair_steps(x, y))
+    reports, pair = followed(registered_pair_steps(x, y))
     assert pair.candidates[0].hypothesis.origin == "limbs"
+    assert [report.fraction for report in reports] == sorted(report.fraction for report in reports)
     assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
     assert pair.margin is None or pair.margin >= 0
 
