@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,13 +16,22 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .surface import SurfacePoints
 
-__all__ = ["MatchQuality", "assess_maps", "map_confidence", "round_trips"]
+__all__ = ["MatchQuality", "assess_maps", "map_confidence", "round_trips", "with_partner"]
 
 _TRUSTED_ROUND_TRIP = 0.02
 """Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
 
 _TRUSTED_STRETCH = 1.0
 """Logarithm of the stretch of the surface around a point at which its confidence is halved."""
+
+_SPACINGS, _LEAST_REACH = 3.0, 0.03
+"""Length of a round trip from which on it does not lead home: vertex spacings, and a part of sqrt(area)."""
+
+_MOSTLY = 0.5
+"""Part of a vertex and its neighbours that must be at home for it to have a partner."""
+
+_WHOLE = 0.98
+"""Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths."""
 
 _CLEAR_MARGIN = 1.0
 """Difference of scores to the next candidate from which on the choice between them was clear."""
@@ -51,6 +60,8 @@ class MatchQuality:
         All of this in one number, 0 to 1.
     sentence : str
         The same for a person to read.
+    source_coverage : float
+        Like `coverage`, the part of the source's area that has a partner on the target.
     """
 
     orientation: float
@@ -60,6 +71,7 @@ class MatchQuality:
     margin: float | None
     confidence: float
     sentence: str
+    source_coverage: float = 1.0
 
 
 def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> NDArray[np.float64]:
@@ -71,6 +83,16 @@ def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints)
     return np.linalg.norm(returned - source.vertices, axis=1)
 
 
+def with_partner(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> NDArray[np.bool_]:
+    """Tell which vertices of the source have a partner on the target, (n,), by a pair of maps.
+
+    What is missing on the target is mapped to whatever is left, but from there the way back leads elsewhere.
+    """
+    spacing = np.sqrt(source.area / source.vertex_count)
+    home = round_trips(source, there, back) < max(_SPACINGS * spacing, _LEAST_REACH * np.sqrt(source.area))
+    return _neighbour_means(source, home.astype(np.float64)) >= _MOSTLY
+
+
 def map_confidence(
     source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints
 ) -> NDArray[np.float64]:
@@ -79,12 +101,13 @@ def map_confidence(
     Returns
     -------
     (n,) array of float
-        From 0 to 1; a rough guide, averaged over neighbours: no measure tells a well-fitting wrong place.
+        From 0 to 1; a rough guide, averaged over neighbours: no measure tells a well-fitting wrong place.  Zero for
+        what has no partner on the target.
     """
     distances = round_trips(source, there, back) / np.sqrt(source.area)
     stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
     confidence = 1 / ((1 + np.square(distances / _TRUSTED_ROUND_TRIP)) * (1 + np.square(stretch / _TRUSTED_STRETCH)))
-    return np.clip(_neighbour_means(source, confidence), 0, 1)
+    return np.clip(_neighbour_means(source, confidence), 0, 1) * with_partner(source, there, back)
 
 
 def assess_maps(
@@ -104,28 +127,31 @@ def assess_maps(
     orientation = SurfaceMap.from_points(target, there).orientation(source, target)
     lengths = np.square(source.edge_lengths)
     distortion = float(np.average(np.abs(_log_stretch(source, target, there)), weights=lengths))
-    # A point of the target is reached if the way to the source and back does not lead away.
-    spacing = np.sqrt(target.area / target.vertex_count)
-    reached = round_trips(target, back, there) < max(3 * spacing, 0.03 * np.sqrt(target.area))
-    coverage = float(np.average(reached, weights=target.vertex_areas))
+    coverage = float(np.average(with_partner(target, back, there), weights=target.vertex_areas))
+    source_coverage = float(np.average(with_partner(source, there, back), weights=source.vertex_areas))
     trips = round_trips(source, there, back) / np.sqrt(source.area)
     disagreement = float(np.average(trips, weights=source.vertex_areas))
     confidence = float(np.average(map_confidence(source, target, there, back), weights=source.vertex_areas))
     confidence *= max(orientation, 0.0)
     if margin is not None:
         confidence *= 1 - 0.5 * float(np.exp(-margin / _CLEAR_MARGIN))
-    numbers = (orientation, distortion, coverage, disagreement)
-    return MatchQuality(*numbers, margin, confidence, _sentence(*numbers, margin))
+    quality = MatchQuality(orientation, distortion, coverage, disagreement, margin, confidence, "", source_coverage)
+    return replace(quality, sentence=_sentence(quality))
 
 
-def _sentence(orientation: float, distortion: float, coverage: float, disagreement: float, margin: float | None) -> str:
+def _sentence(quality: MatchQuality) -> str:
     """Say the worst that is known."""
-    if orientation < 0.3:
+    margin, distortion, disagreement = quality.margin, quality.distortion, quality.disagreement
+    if quality.orientation < 0.3:
         return "The map turns large parts of the surface over: do not trust it; try landmarks."
     if margin is not None and margin < _CLEAR_MARGIN:
         return "Another map was almost as likely, such as one that swaps left and right: check the sides."
-    if coverage < 0.9:
-        return f"Only {coverage:.0%} of the target is reached: parts of one shape seem to be missing on the other."
+    if min(quality.coverage, quality.source_coverage) < _WHOLE:
+        if quality.coverage <= quality.source_coverage:
+            start = f"Only {quality.coverage:.0%} of the target is reached"
+        else:
+            start = f"Only {quality.source_coverage:.0%} of the source has a partner"
+        return f"{start}: parts of one shape seem to be missing on the other."
     if disagreement > 0.02 or distortion > 0.5:
         return "The shapes differ much: the map is a good guess that keeps left and right, but details may slide."
     if disagreement > 0.008 or distortion > 0.2:

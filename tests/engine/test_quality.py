@@ -6,9 +6,9 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import ClosestPoints, SurfacePoints, TriangleMesh
-from engine.quality import assess_maps, map_confidence, round_trips
+from engine.quality import assess_maps, map_confidence, round_trips, with_partner
 from tests.bodies import mirrored_body
-from tests.shapes import creature, icosphere, permuted, plane, rotation
+from tests.shapes import compacted, creature, icosphere, permuted, plane, rotation
 
 
 def at(mesh, vertices=None):
@@ -197,3 +197,37 @@ def test_edges_and_faces_without_size_do_no_harm():
     assert quality.distortion == pytest.approx(0, abs=1e-12)
     assert quality.coverage == pytest.approx(1)
     assert np.isfinite(map_confidence(mesh, mesh, at(mesh), at(mesh))).all()
+
+
+def cut_square(square, end=0.5):
+    """Keep the part of a square with x up to an end."""
+    return TriangleMesh(
+        *compacted(
+            square.vertices, square.triangles[(square.vertices[square.triangles][:, :, 0] <= end + 1e-9).all(axis=1)]
+        )
+    )
+
+
+def test_what_the_target_lacks_has_no_partner(square):
+    """A whole square and half of one: both ways are said, and nothing is trusted where something is missing."""
+    half = cut_square(square)
+    there, back = nearest_on(half, square.vertices), nearest_on(square, half.vertices)
+    missing = square.vertices[:, 0] > 0.5 + 4 / 20
+    known = with_partner(square, there, back)
+    assert not known[missing].any()
+    assert known[square.vertices[:, 0] < 0.5 - 1 / 20].all()
+    assert with_partner(half, back, there).all()
+    confidence = map_confidence(square, half, there, back)
+    assert (confidence[~known] == 0).all()
+    assert confidence[known].min() > 0
+    quality = assess_maps(square, half, there, back, None)
+    assert quality.source_coverage == pytest.approx(0.5 + 3 / 21, abs=0.06)  # up to three spacings
+    assert quality.coverage == 1
+    assert f"Only {quality.source_coverage:.0%} of the source has a partner" in quality.sentence
+    turned = assess_maps(half, square, back, there, None)
+    assert (turned.coverage, turned.source_coverage) == (quality.source_coverage, 1)
+    assert f"Only {turned.coverage:.0%} of the target is reached" in turned.sentence
+
+
+def test_a_surface_misses_nothing_of_itself(square):
+    assert with_partner(square, at(square), at(square)).all()
