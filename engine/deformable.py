@@ -72,6 +72,13 @@ class DeformableSurface:
         return ClosestPoints(self.mesh)
 
     @cached_property
+    def border(self) -> NDArray[np.float64]:
+        """One for the vertices at which the surface ends, zero for all others, (n,)."""
+        border = np.zeros(len(self.vertices))
+        border[self.mesh.boundary_edges] = 1
+        return border
+
+    @cached_property
     def elastic(self) -> ElasticSurface:
         """Its resistance to deformation."""
         return ElasticSurface(self.vertices, self._laplace)

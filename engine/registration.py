@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from .procrustes import nearest_rotations
 from .progress import Progress, Steps
 
 if TYPE_CHECKING:
@@ -32,6 +33,9 @@ __all__ = [
 
 _LEAST_AGREEMENT = 0.05
 """Least part of its area with which a point counts whose normal disagrees with that of its match."""
+
+_ENDS = 1 - 1e-6
+"""Part of a point's weights on vertices of the border from which on the point is taken to lie there."""
 
 _SOLVES = 2
 """How often positions and rotations are found in turn for the same matches."""
@@ -315,17 +319,35 @@ def _solved(
     wanted = _at(on_target, target.triangles, target.vertices)
     seen = _at(on_target, target.triangles, target.normals)
     own = weight * source.mass * _agreement(normals, seen)
+    beyond = np.flatnonzero(_beyond(source, on_target, target))
+    own[beyond] = 0
     theirs = weight * target.mass * _agreement(_at(on_source, source.triangles, normals), target.normals)
+    theirs[_beyond(target, on_source, source)] = 0
     equations = source.equations
     solve = equations.solver(own, on_source, theirs)
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
     response = None if ties is None else ties.response(solve)
     for _ in range(_SOLVES):
         rotations = source.elastic.rotations(positions, matcher.stage.rotation_radius)
+        if len(beyond):
+            # Harmonic extension: what has no partner turns with its surroundings, however it was squeezed before.
+            extended = solve(own[:, None] * rotations.reshape(-1, 9))[beyond]
+            rotations[beyond] = nearest_rotations(extended.reshape(-1, 3, 3))
         positions = solve(source.elastic.pull(rotations) + right)
         if ties is not None and response is not None:
             positions = ties.held(positions, response)
     return positions
+
+
+def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> NDArray[np.bool_]:
+    """Tell which vertices (n,) of a surface are matched to where the other ends, but not because they end themselves.
+
+    What they would be matched to is missing: they are not to be drawn to what is left.
+    """
+    if not other.border.any():
+        return np.zeros(len(surface.vertices), bool)
+    ends = (other.border[other.triangles[matches.triangles]] * matches.barycentric).sum(axis=1)
+    return (ends > _ENDS) & (surface.border == 0)
 
 
 def _agreement(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from engine.deformable import DeformableSurface
 from engine.eigenpairs import eigenpairs_steps
 from engine.laplacian import laplace_beltrami
 from engine.registration import CLOSE, FINE, LAST, POLISH, SOFT, Stage, register_steps, smooth_start
-from tests.shapes import creature, icosphere, permuted, rotation
+from tests.shapes import compacted, creature, icosphere, permuted, rotation
 
 
 def deformable(vertices, triangles):
@@ -209,3 +209,20 @@ def test_a_smooth_start_is_without_the_noise_of_the_map(bodies, near_truth, func
     before = np.linalg.norm(target.vertices[noisy] - wanted, axis=1)
     after = np.linalg.norm(smooth_start(source, target, noisy, functions) - wanted, axis=1)
     assert after.max() < 0.6 * before.max()
+
+
+def test_what_the_target_lacks_keeps_its_shape():
+    """A tail that is cut off on the target is not squeezed into the stump, and what is left comes to lie in place."""
+    vertices, triangles, _ = creature(0.4, 11)
+    whole = TriangleMesh(vertices, triangles)
+    tail = vertices[:, 0] < -1.0
+    assert 0.01 < tail.mean() < 0.1
+    cut = TriangleMesh(*compacted(vertices, triangles[~tail[triangles].any(axis=1)]))
+    source, target = (deformable(mesh.vertices, mesh.triangles) for mesh in (whole, cut))
+    truth = target.in_unit_size(vertices)
+    found = run(register_steps(source, target, 0.97 * truth, (FINE, CLOSE, LAST)))
+    away = np.linalg.norm(found.positions - truth, axis=1)
+    assert away[~tail].max() < 0.02
+    assert away[tail].max() < 0.05
+    back = run(register_steps(target, source, 1.03 * source.in_unit_size(cut.vertices), (FINE, CLOSE, LAST)))
+    assert np.linalg.norm(back.positions - source.in_unit_size(cut.vertices), axis=1).max() < 0.02
