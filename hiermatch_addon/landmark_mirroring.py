@@ -12,10 +12,12 @@ from ..engine import symmetry_map_steps
 from ..engine.progress import within
 from .access import mesh_of, view_layer_of
 from .errors import ObjectError
+from .halves import find_common
 from .landmarks import add_landmarks, find_landmarks, landmark_array
 from .mesh_io import position_digest, read_mesh, topology
 from .pair import check_pair
 from .stepped_job import SteppedJob
+from .vertex_maps import StoredMaps, map_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,6 +30,9 @@ __all__ = ["MirrorJob"]
 
 _MIDDLE = 0.02
 """A place that is not farther from its mirror image, in sqrt(area), is called the middle."""
+
+_ASTRAY = 0.1
+"""So much farther, in sqrt(area), from where a match takes it a mirror image may be than its landmark is."""
 
 
 class MirrorJob(SteppedJob):
@@ -47,6 +52,8 @@ class MirrorJob(SteppedJob):
     ----------
     progress : Progress
         How far the work is.
+    left_out : int
+        Once finished, how many mirror images were left out because they contradict the match of the two meshes.
 
     Raises
     ------
@@ -65,7 +72,9 @@ class MirrorJob(SteppedJob):
         self._landmarks = found
         self._objects = tuple((obj.session_uid, obj.name, _state(obj)) for obj in (source, target))
         self._meshes = tuple(read_mesh(obj, depsgraph, use_modifiers=False) for obj in (source, target))
+        self._maps = _fresh_maps(source, target)
         self._images: list[NDArray[np.int64]] = []
+        self.left_out = 0
         super().__init__()
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> list[Landmark]:
@@ -87,11 +96,14 @@ class MirrorJob(SteppedJob):
         taken = {vertex for landmark in find_landmarks(source, target) for vertex in [("s", landmark.source)]}
         taken |= {("t", landmark.target) for landmark in find_landmarks(source, target)}
         pairs: list[tuple[int, int]] = []
-        for (x, y), image_x, image_y in zip(self._landmarks.tolist(), *self._images, strict=True):
+        astray = self._astray()
+        for (x, y), image_x, image_y, wrong in zip(self._landmarks.tolist(), *self._images, astray, strict=True):
             if _in_middle(self._meshes[0], x, image_x) or _in_middle(self._meshes[1], y, image_y):
                 continue
             new = {("s", int(image_x)), ("t", int(image_y))}
-            if not new & taken:
+            if wrong:
+                self.left_out += 1
+            elif not new & taken:
                 taken |= new
                 pairs.append((int(image_x), int(image_y)))
         return add_landmarks(source, target, pairs)
@@ -101,6 +113,31 @@ class MirrorJob(SteppedJob):
         for number, mesh in enumerate(self._meshes):
             dense = yield from within(symmetry_map_steps(mesh), number / 2, (number + 1) / 2)
             self._images.append(dense.source_to_target.nearest_vertices[self._landmarks[:, number]])
+
+    def _astray(self) -> NDArray[np.bool_]:
+        """Tell which mirror images do not correspond by the match of the two meshes, if they carry one.
+
+        A shape may be nearly symmetric in more than one way, and then the two meshes may be mirrored differently.
+        """
+        if self._maps is None:
+            return np.zeros(len(self._landmarks), np.bool_)
+        target = self._meshes[1]
+        there = self._maps.between(*self._meshes).source_to_target.positions
+        before, after = (
+            np.linalg.norm(there[at] - target.vertices[to], axis=1) for at, to in (self._landmarks.T, self._images)
+        )
+        return after > before + _ASTRAY * np.sqrt(target.area)
+
+
+def _fresh_maps(source: bpy.types.Object, target: bpy.types.Object) -> StoredMaps | None:
+    """Read the dense maps of a match that is not out of date, from source to target; None if there is none."""
+    for half, partner in find_common(source, target):
+        if not (half.staleness() or partner.staleness()):
+            first, second = (half, partner) if half.role == "source" else (partner, half)
+            maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(half.prefix))
+            if maps is not None:
+                return maps if first is half else maps.reverse
+    return None
 
 
 def _state(obj: bpy.types.Object) -> tuple[str, str]:

@@ -51,5 +51,13 @@ class HIERMATCH_OT_mirror_landmarks(JobOperator, bpy.types.Operator):
         """Add the landmarks and report."""
         added = job.finish(view_layer_of(context))
         sync_lists(cast("bpy.types.Scene", context.scene))
+        if job.left_out:
+            self.report(
+                {"WARNING"},
+                translated(
+                    f"{job.left_out} landmarks were left out: the two meshes were mirrored in different ways there, by "
+                    "their match"
+                ),
+            )
         self.report({"INFO"}, translated(f"Added {len(added)} landmarks on the other side"))
         return {"FINISHED"}

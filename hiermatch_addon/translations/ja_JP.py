@@ -1616,5 +1616,8 @@ MESSAGES: Final[dict[str, str]] = {
         "減らしてください。"
     ),
     '"{0}" has no UV map "{1}". Check the Names.': "「{0}」にUVマップ「{1}」はありません。名前を確認してください。",
+    "{0} landmarks were left out: the two meshes were mirrored in different ways there, by their match": (
+        "{0}個のランドマークを除外しました。マッチングによると、そこでは二つのメッシュの左右反転の仕方が異なります"
+    ),
 }
 """The translation of each English text."""

@@ -1295,5 +1295,8 @@ MESSAGES: Final[dict[str, str]] = {
         "“{0}”将有 {1} 个 UV 贴图，但 Blender 只允许 {2} 个。请先移除一些，或减少传递。"
     ),
     '"{0}" has no UV map "{1}". Check the Names.': "“{0}”没有 UV 贴图“{1}”。请检查名称。",
+    "{0} landmarks were left out: the two meshes were mirrored in different ways there, by their match": (
+        "{0} 个地标被跳过：根据匹配，两个网格在那里的镜像方式不同"
+    ),
 }
 """The translation of each English text."""

@@ -424,6 +424,24 @@ class TestMirror:
         bpy.ops.hiermatch.mirror_landmarks()
         assert find_landmarks(*pair) == landmarks
 
+    def test_what_contradicts_the_match_is_left_out(self, dense_pair, monkeypatch):
+        def turned(mesh):
+            """Mirror the source, and turn the target, which has more vertices, upside down."""
+            signs = [1, -1, 1] if mesh.vertex_count == len(dense_pair[0].data.vertices) else [1, -1, -1]
+            centre = mesh.vertices.mean(axis=0)
+            images = cKDTree(mesh.vertices).query((mesh.vertices - centre) * signs + centre)[1]
+            yield Progress(0.5, "Looking")
+            return SimpleNamespace(source_to_target=SimpleNamespace(nearest_vertices=images))
+
+        monkeypatch.setattr(landmark_mirroring, "symmetry_map_steps", turned)
+        high = [max(obj.data.vertices, key=lambda vertex: vertex.co.y + 0.6 * vertex.co.z).index for obj in dense_pair]
+        add_landmarks(*dense_pair, [tuple(high)])
+        bpy.ops.hiermatch.mirror_landmarks()
+        assert len(find_landmarks(*dense_pair)) == 1
+        monkeypatch.setattr(landmark_mirroring, "symmetry_map_steps", mirrored)
+        bpy.ops.hiermatch.mirror_landmarks()
+        assert len(find_landmarks(*dense_pair)) == 2
+
     def test_nothing_to_mirror(self, pair):
         assert pair
         with pytest.raises(RuntimeError, match="no landmarks in common"):
