@@ -162,9 +162,9 @@ def _pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
 
 @contextmanager
 def _edited(context: bpy.types.Context, armature: bpy.types.Object) -> Iterator[Any]:
-    """Lend the bones of an armature in Edit Mode, and put back what was active and selected."""
+    """Lend the bones of an armature in Edit Mode, and put back its mode, and what was active and selected."""
     layer = view_layer_of(context)
-    active, selected = layer.objects.active, list(layer.objects.selected)
+    active, selected, mode = layer.objects.active, list(layer.objects.selected), armature.mode
     for obj in selected:  # or other armatures among them would be edited too
         obj.select_set(state=False)
     data = armature_of(armature)
@@ -177,6 +177,8 @@ def _edited(context: bpy.types.Context, armature: bpy.types.Object) -> Iterator[
         finally:
             if armature.mode == "EDIT":
                 bpy.ops.object.mode_set(mode="OBJECT")
+            if armature.mode != mode:
+                bpy.ops.object.mode_set(mode=mode)
             data.use_mirror_x = mirrored
             armature.select_set(state=False)
             for obj in selected:

@@ -50,3 +50,16 @@ def test_an_action_of_the_users_own_is_not_replaced():
         fit(source, target, rest=True, pose="POSED")
     assert mine == bpy.data.actions["Source Rig Target Rest"]
     assert len(bpy.data.actions) == 2
+
+
+def test_a_rig_in_pose_mode_stays_in_it():
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    made, _ = fit(source, target)
+    bpy.context.view_layer.objects.active = made
+    bpy.ops.object.mode_set(mode="POSE")
+    bpy.context.view_layer.objects.active = target
+    again, _ = fit(source, target)
+    assert again == made
+    assert made.mode == "POSE"
+    assert bpy.context.view_layer.objects.active == target
