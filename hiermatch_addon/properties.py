@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "OPTION_NAMES",
     "OUTPUT_NAMES",
+    "PREFIX_LENGTH",
     "SETTING_NAMES",
     "MatchOptions",
     "copy_options",
@@ -32,7 +33,7 @@ __all__ = [
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
-_PREFIX_LENGTH = 32
+PREFIX_LENGTH = 32
 """Longest prefix, in bytes: with the longest ending it stays below the 63 that Blender allows a name."""
 
 
@@ -116,7 +117,7 @@ _OPTIONS: dict[str, Any] = {
         description="What the names of everything that is written start with. "
         "Another prefix keeps the results of other matches",
         default="HM",
-        maxlen=_PREFIX_LENGTH,
+        maxlen=PREFIX_LENGTH,
     ),
     "write_vertex_groups": _props.BoolProperty(
         name="Vertex Groups",

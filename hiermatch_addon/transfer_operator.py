@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -14,6 +15,7 @@ from .freshness import refresh
 from .job import job_options
 from .job_operator import JobOperator
 from .pair import named_object, selected_meshes
+from .properties import PREFIX_LENGTH
 from .retarget_properties import remember_transfer
 from .running import can_start
 from .summary import remember
@@ -57,6 +59,7 @@ class TransferOperator(JobOperator):
             name="Prefix",
             description="What the names start with that the match to use wrote; if empty, the one match that the "
             "objects carry",
+            maxlen=PREFIX_LENGTH,
             options={"SKIP_SAVE"},
         ),
         "refine": _props.BoolProperty(
@@ -98,7 +101,8 @@ class TransferOperator(JobOperator):
         """Read all objects."""
         state = state_of(context)
         source, targets = self._pick(context)
-        options = TransferOptions(job_options(state), self.prefix, refine=self.refine, optional=self.optional)
+        match = replace(job_options(state), prefix=self.prefix or state.prefix)
+        options = TransferOptions(match, self.prefix, refine=self.refine, optional=self.optional)
         job = TransferJob(context, source, targets, self._transfers, options)
         # So that Adjust Last Operation repeats it with the same ones, whatever is selected by then.
         self.source = source.name
@@ -115,7 +119,7 @@ class TransferOperator(JobOperator):
             if one.outcome is not None:
                 outcome = one.outcome
                 names = (outcome.source, outcome.target)
-                prefix = state_of(context).prefix
+                prefix = self.prefix or state_of(context).prefix
                 remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
         refresh(scene)
         remember_transfer(context, carried)

@@ -167,6 +167,16 @@ def test_a_match_is_made_on_the_way_if_it_is_out_of_date(pair):
     assert not found.refined
 
 
+def test_a_match_of_a_new_prefix_leaves_the_others_alone(pair):
+    source, target = pair
+    before = find_maps(source, target, "HM").source.kept
+    kinds = {"use_rig": False, "use_shape_keys": False, "use_uvs": False}
+    bpy.ops.hiermatch.retarget(source=source.name, target=target.name, prefix="New", refine=False, **kinds)
+    assert find_maps(source, target, "HM").source.kept == before
+    assert find_maps(source, target, "New")
+    assert bpy.context.scene.hiermatch.summary.prefix == "New"
+
+
 def test_several_targets_get_theirs_and_no_match_is_kept():
     source, _ = add_rigged(resolution=5)
     targets = [add_target(source, name, part)[0] for name, part in (("One", 0.3), ("Two", -0.3))]
