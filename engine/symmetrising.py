@@ -114,7 +114,10 @@ class Symmetriser:
     def offsets(self, offsets: NDArray[np.float64], partners: NDArray[np.int64]) -> NDArray[np.float64]:
         """Make offsets (k, n, 3) of shape keys symmetric; `partners` (k,) are the keys of the other side."""
         own = self.own[:, None]
-        return own * offsets + (1 - own) * np.stack([self.mirrored_offsets(offsets[other]) for other in partners])
+        mirrored = np.empty_like(offsets)
+        for number, other in enumerate(partners.tolist()):
+            mirrored[number] = self.mirrored_offsets(offsets[other])
+        return own * offsets + (1 - own) * mirrored
 
     def mirrored_offsets(self, offsets: NDArray[np.float64]) -> NDArray[np.float64]:
         """Take offsets (n, 3) of all vertices to the mirror images, both ways."""

@@ -122,6 +122,16 @@ def test_shape_keys_are_mirrored(body):
     assert np.linalg.norm(both - made - 0.1 * bump[:, 0]) < 0.2 * np.linalg.norm(expected)
 
 
+def test_a_key_of_one_side_alone_gets_its_partner(body):
+    obj, rest = body
+    add_legs(obj, rest)
+    add_key(obj, "Kick.L", np.full_like(rest, 0.1))
+    assert symmetrise(symmetrise_weights=False) == {"FINISHED"}
+    assert [key.name for key in obj.data.shape_keys.key_blocks] == ["Basis", "Kick.L", "Kick.R"]
+    np.testing.assert_allclose(offsets_of(obj, "Kick.L"), 0.1, atol=1e-6)
+    np.testing.assert_allclose(np.linalg.norm(offsets_of(obj, "Kick.R"), axis=1), 0.1 * np.sqrt(3), rtol=0.02)
+
+
 def test_colors_of_vertices_and_corners(body):
     obj, rest = body
     add_legs(obj, rest)
