@@ -147,16 +147,20 @@ def _sentence(quality: MatchQuality) -> str:
     if margin is not None and margin < _CLEAR_MARGIN:
         return "Another map was almost as likely, such as one that swaps left and right: check the sides."
     if min(quality.coverage, quality.source_coverage) < _WHOLE:
-        if quality.coverage <= quality.source_coverage:
-            start = f"Only {quality.coverage:.0%} of the target is reached"
-        else:
-            start = f"Only {quality.source_coverage:.0%} of the source has a partner"
-        return f"{start}: parts of one shape seem to be missing on the other."
+        return _without_partner(quality)
     if disagreement > 0.02 or distortion > 0.5:
         return "The shapes differ much: the map is a good guess that keeps left and right, but details may slide."
     if disagreement > 0.008 or distortion > 0.2:
         return "The shapes correspond, with some stretching where they differ."
     return "The shapes correspond closely."
+
+
+def _without_partner(quality: MatchQuality) -> str:
+    """Say which of the shapes has more that the other lacks."""
+    missing = "parts of one shape seem to be missing on the other."
+    if quality.coverage <= quality.source_coverage:
+        return f"Only {quality.coverage:.0%} of the target is reached: {missing}"
+    return f"Only {quality.source_coverage:.0%} of the source has a partner: {missing}"
 
 
 def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> NDArray[np.float64]:

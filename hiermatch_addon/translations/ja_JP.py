@@ -1154,9 +1154,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     'Click on a place of "{0}" or "{1}"': "「{0}」か「{1}」の場所をクリック",
     'Click on the corresponding place of "{0}"': "「{0}」の対応する場所をクリック",
-    "Only {0} of the target is reached: parts of one shape seem to be missing on the other.": (
-        "ターゲットの{0}にしか届いていません。一方の形状の一部がもう一方にないようです。"
-    ),
+    "Only {0} of the target is reached: {1}": "ターゲットの{0}にしか届いていません。{1}",
+    "Only {0} of the source has a partner: {1}": "ソースの{0}にしか対応する場所がありません。{1}",
+    "parts of one shape seem to be missing on the other.": "一方の形状の一部がもう一方にないようです。",
     "Matched {0} points of {1} in {2} s": "{1}の{0}個のポイントを{2}秒でマッチングしました",
     "Matched {0} points of {1} in {2} s. {3}": "{1}の{0}個のポイントを{2}秒でマッチングしました。{3}",
     '"{0}" and "{1}"': "「{0}」と「{1}」",

@@ -962,9 +962,9 @@ MESSAGES: Final[dict[str, str]] = {
     "{0}    {1} landmarks added    Enter: done    Esc: back": "{0}    已添加 {1} 个地标    Enter：完成    Esc：返回",
     'Click on a place of "{0}" or "{1}"': "点击“{0}”或“{1}”上的一处",
     'Click on the corresponding place of "{0}"': "点击“{0}”上的对应位置",
-    "Only {0} of the target is reached: parts of one shape seem to be missing on the other.": (
-        "只覆盖了目标的 {0}：一个形状的某些部分似乎在另一个上不存在。"
-    ),
+    "Only {0} of the target is reached: {1}": "只覆盖了目标的 {0}：{1}",
+    "Only {0} of the source has a partner: {1}": "源只有 {0} 有对应位置：{1}",
+    "parts of one shape seem to be missing on the other.": "一个形状的某些部分似乎在另一个上不存在。",
     "Matched {0} points of {1} in {2} s": "在 {2} 秒内匹配了 {1} 的 {0} 个点",
     "Matched {0} points of {1} in {2} s. {3}": "在 {2} 秒内匹配了 {1} 的 {0} 个点。{3}",
     '"{0}" and "{1}"': "“{0}”和“{1}”",
