@@ -180,7 +180,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
             continue
         split = box.split(factor=_LABEL_SHARE)
         split.label(text=name)
-        split.label(text=text)
+        split.label(text=text, translate=False)  # a name such as "Source" stays as it is
     if summary.has_mirrored:
         box.operator("hiermatch.flip", icon="MOD_MIRROR", depress=summary.mirrored)
     for note in summary.notes.splitlines():

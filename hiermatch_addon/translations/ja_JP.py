@@ -1619,5 +1619,11 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} landmarks were left out: the two meshes were mirrored in different ways there, by their match": (
         "{0}個のランドマークを除外しました。マッチングによると、そこでは二つのメッシュの左右反転の仕方が異なります"
     ),
+    "Matching the coarse points exactly": "粗いポイントを厳密にマッチング中",
+    "Matching the surface to itself": "表面を自身とマッチング中",
+    "Comparing symmetries": "対称性を比較中",
+    "Simplifying": "単純化中",
+    "Lowering the largest difference": "最大の差を減らしています",
+    "Fitting the rig": "リグを合わせています",
 }
 """The translation of each English text."""

@@ -1298,5 +1298,11 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} landmarks were left out: the two meshes were mirrored in different ways there, by their match": (
         "{0} 个地标被跳过：根据匹配，两个网格在那里的镜像方式不同"
     ),
+    "Matching the coarse points exactly": "正在精确匹配粗匹配点",
+    "Matching the surface to itself": "正在将表面与自身匹配",
+    "Comparing symmetries": "正在比较对称性",
+    "Simplifying": "正在简化",
+    "Lowering the largest difference": "正在减小最大差异",
+    "Fitting the rig": "正在适配绑定",
 }
 """The translation of each English text."""

@@ -103,6 +103,8 @@ def fixed_sentences():
             if isinstance(node, ast.Call):
                 called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
                 arguments = node.args if called in SENTENCES else []
+                if called == "within":  # what a bar of progress says of a part
+                    arguments = [*node.args[3:], *(named.value for named in node.keywords if named.arg == "label")]
                 yield from ((text, path.name) for argument in arguments for text in literals(argument))
             elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") in ("cancelled", "doing"):
                 yield from ((text, path.name) for text in literals(node.value))
