@@ -112,7 +112,7 @@ class MatchSettings:
         "Comparison",
         "How histograms are compared",
         {
-            "earth_mover": ("Earth Mover's Distance", "How far the mass of one has to be moved to make the other"),
+            "earth_mover": ("Earth Mover's", "How far the mass of one has to be moved to make the other"),
             "bin_to_bin": ("Bin to Bin", "The difference in each bin by itself"),
         },
     )

@@ -138,7 +138,7 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Comparison": "比較",
     "How histograms are compared": "ヒストグラムの比較方法",
-    "Earth Mover's Distance": "アースムーバー距離",
+    "Earth Mover's": "アースムーバー距離",
     "How far the mass of one has to be moved to make the other": "一方の質量をどれだけ動かせばもう一方になるか",
     "Bin to Bin": "ビンごと",
     "The difference in each bin by itself": "各ビンそれぞれの差",

@@ -116,7 +116,7 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Comparison": "比较",
     "How histograms are compared": "比较直方图的方法",
-    "Earth Mover's Distance": "推土机距离",
+    "Earth Mover's": "推土机距离",
     "How far the mass of one has to be moved to make the other": "一方的质量需移动多远才能变成另一方",
     "Bin to Bin": "逐柱比较",
     "The difference in each bin by itself": "每一柱各自的差异",
