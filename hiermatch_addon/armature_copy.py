@@ -129,6 +129,7 @@ def _stop_animation(data: bpy.types.Object | bpy.types.Armature) -> None:
     animation = data.animation_data
     if animation is None:
         return
+    animation.use_tweak_mode = False  # in which the action could not be taken away
     animation.action = None
     for track in list(animation.nla_tracks):
         animation.nla_tracks.remove(track)

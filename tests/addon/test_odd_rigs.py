@@ -63,3 +63,22 @@ def test_a_rig_in_pose_mode_stays_in_it():
     assert again == made
     assert made.mode == "POSE"
     assert bpy.context.view_layer.objects.active == target
+
+
+def test_a_strip_of_the_source_that_is_being_tweaked_stays_so():
+    source, armature = add_rigged()
+    target, _ = add_target(source)
+    bone = armature.pose.bones["neck"]
+    bone.rotation_mode = "XYZ"
+    bone.rotation_euler = (0.5, 0, 0)
+    bone.keyframe_insert("rotation_euler", frame=1)
+    animation = armature.animation_data
+    strip = animation.nla_tracks.new().strips.new("Nod", 1, animation.action)
+    animation.action, strip.select = None, True
+    animation.nla_tracks[0].select = animation.use_tweak_mode = True
+    made, _ = fit(source, target)
+    assert not made.animation_data.use_tweak_mode
+    assert made.animation_data.action is None
+    assert not made.animation_data.nla_tracks
+    assert animation.use_tweak_mode
+    np.testing.assert_allclose(shown(target), own(target), atol=1e-5)
