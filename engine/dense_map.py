@@ -11,7 +11,7 @@ import numpy as np
 from .closest_points import FoundPoints
 from .deformable import DeformableSurface
 from .functional_maps import PointMaps
-from .limb_sides import repaired_start
+from .limb_sides import exchanged_limbs, repaired_start
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps
 from .progress import Steps, within
 from .registration import CLOSE, FINE, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
@@ -214,12 +214,16 @@ def _limbs_repaired_steps(
     ties: Ties | None,
 ) -> Steps[Candidate | None]:
     """Follow the best candidate up anew if it exchanges limbs; None if it does not, or if that is no better."""
-    start = repaired_start(*shapes, _vertex_maps(*surfaces, best.registration))
+    wrong = _vertex_maps(*surfaces, best.registration)
+    start = repaired_start(*shapes, wrong)
     if start is None:
         return None
     hypotheses = yield from within(map_hypotheses_steps(*shapes, (start,), search=False), 0.0, 0.3)
     repaired = yield from within(_candidate_steps(*surfaces, hypotheses[0], smooth, ties), 0.3, 1.0)
-    return repaired if repaired.score < best.score else None
+    right = _vertex_maps(*surfaces, repaired.registration)
+    # What exchanges the ends of limbs may fit a little better by all other measures.
+    clear = all(exchanged_limbs(*shapes, wrong)) and not any(exchanged_limbs(*shapes, right))
+    return repaired if repaired.score < best.score + (_AMBIGUOUS if clear else 0.0) else None
 
 
 def _vertex_maps(source: DeformableSurface, target: DeformableSurface, registration: Registration) -> PointMaps:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .functional_maps import PointMaps
     from .shape import Shape
 
-__all__ = ["limb_tips", "repaired_start"]
+__all__ = ["exchanged_limbs", "limb_tips", "repaired_start"]
 
 _REACH = 0.15
 """Distance, in sqrt(area), in which a tip is farther from the rest of the surface than all else."""
@@ -97,6 +97,17 @@ def repaired_start(x: Shape, y: Shape, maps: PointMaps) -> LandmarkStart | None:
     if found is not None:
         return LandmarkStart(_rows(x, found[1]), _rows(y, found[0]), "limbs")
     return None
+
+
+def exchanged_limbs(x: Shape, y: Shape, maps: PointMaps) -> tuple[bool, bool]:
+    """Say whether a map exchanges limbs, seen from either surface; see `repaired_start`.
+
+    Seen from one alone, a true map may seem to, about once in thirty times; hardly ever from both.
+    """
+    return (
+        _exchange(x, y, maps.on_y, maps.on_x) is not None,
+        _exchange(y, x, maps.on_x, maps.on_y) is not None,
+    )
 
 
 def _exchange(
