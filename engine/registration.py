@@ -140,21 +140,11 @@ class _Matcher:
         features = np.concatenate([positions, self.stage.normal_length * normals, self._source_curvatures], axis=1)
         return self.source.search.moved(features), normals
 
-    def matches(
-        self, source: ClosestPoints, before: tuple[FoundPoints, FoundPoints] | None = None, *, last: bool = False
-    ) -> tuple[FoundPoints, FoundPoints]:
-        """Match every vertex of either surface, by the features of the deformed source.
-
-        What was found `before`, anywhere and from almost the same positions, is where exact searches start.
-        """
+    def matches(self, source: ClosestPoints, *, last: bool = False) -> tuple[FoundPoints, FoundPoints]:
+        """Match every vertex of either surface, by the features of the deformed source."""
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
         coarse = min(len(self.source.vertices), len(self.target.vertices)) < _COARSE
         find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
-        if before is not None and self.stage.matched == "anywhere":
-            return (
-                _from_before(self.target_search, source.vertices, before[0]),
-                _from_before(source, self.target_features, before[1]),
-            )
         return find(self.target_search, source.vertices), find(source, self.target_features)
 
 
@@ -168,11 +158,6 @@ def _around_nearest_vertices(search: ClosestPoints, points: NDArray[np.float64])
 
 def _anywhere(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
     return search.nearest(points)
-
-
-def _from_before(search: ClosestPoints, points: NDArray[np.float64], before: FoundPoints) -> FoundPoints:
-    heaviest = before.barycentric.argmax(axis=1)
-    return search.walk(points, search.triangles[before.triangles, heaviest])
 
 
 def smooth_start(
@@ -281,18 +266,17 @@ def register_steps(
     matches = first
     for stage in stages:
         matcher = _Matcher(source, target, stage)
-        before = None
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)
             if matches is None:
-                matches = before = matcher.matches(search, before)
+                matches = matcher.matches(search)
             solved = _solved(matcher, positions, normals, matches, weight=weight, ties=ties)
             positions = solved + stage.lead * (solved - positions)
             matches = None
             done += 1
             yield Progress(done / total, "Fitting the surfaces")
     search, _ = matcher.source_search(positions)
-    on_target, on_source = matcher.matches(search, before, last=True)
+    on_target, on_source = matcher.matches(search, last=True)
     rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
     there = _at(on_target, target.triangles, target.vertices)
     misfit = float(source.mass @ np.square(there - positions).sum(axis=1))
