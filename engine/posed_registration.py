@@ -126,6 +126,8 @@ class PosedRegistration:
         posed: NDArray[np.float64],
         matches: FoundPoints,
         stiffness: float,
+        *,
+        seeking: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
         """Let the body slide once.
 
@@ -139,6 +141,8 @@ class PosedRegistration:
             For each vertex of the target the point of the body that lies there, m.
         stiffness : float
             How much the elastic energy counts, against distances in units of the root of the target's area.
+        seeking : (n,) array of float, optional
+            How much, 0 to 1, each vertex of the body looks for the target: not where the target lacks what it is of.
 
         Returns
         -------
@@ -148,7 +152,7 @@ class PosedRegistration:
         target = self._target
         elastic = ElasticSurface(self._inside(posed), self._laplace)
         now = self._inside(positions)
-        planes = self._planes(now, matches)
+        planes = self._planes(now, matches, seeking)
         system = _SlidingSystem(planes, stiffness * elastic.stiffness)
         for _ in range(_SOLVES):
             turned = elastic.rotations(now, _ROTATION_RADIUS)
@@ -156,7 +160,7 @@ class PosedRegistration:
             now = system.solved(system.wanted + stiffness * elastic.pull(turned), now)
         return now * target.scale + target.centre
 
-    def _planes(self, now: NDArray[np.float64], matches: FoundPoints) -> _Planes:
+    def _planes(self, now: NDArray[np.float64], matches: FoundPoints, seeking: NDArray[np.float64] | None) -> _Planes:
         """Collect what both surfaces ask of one another."""
         target, count = self._target, len(now)
         corners = self._body.triangles[matches.triangles]
@@ -173,6 +177,7 @@ class PosedRegistration:
         seen /= np.maximum(np.linalg.norm(seen, axis=1, keepdims=True), np.finfo(float).tiny)
         trust = np.clip(np.einsum("kd,kd->k", seen, normals), 0, 1) ** 2
         trust = trust / (1 + found.squared_distances / _REACH**2)
+        trust = trust if seeking is None else trust * seeking
         second = _Planes(csr_array(eye_array(count)), places, seen, _BACK * self._own_shares * trust)
         return first.with_others(second)
 

@@ -22,6 +22,7 @@ from .posed_registration import PosedRegistration, facing
 from .progress import Progress, Steps, run, within
 from .proxy import proxy_steps
 from .quality import map_confidence
+from .stunted_digits import stunted_digits, with_stiff_digits
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
 
@@ -282,13 +283,20 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     registration = PosedRegistration(body, laplace_beltrami(body), target, Homes.of(body, target, found))
     bones = with_digits(body, weights, pair.skeleton, target, found, bones=bones)
     yield Progress(0.3, "Posing hands")
-    posed = bones.posed
-    positions, matches = posed, registration.matched(posed)
+    positions, matches = bones.posed, registration.matched(bones.posed)
     shares = body.vertex_areas / body.area, target.vertex_areas / target.area
+    seeking = None
+    if stunted := stunted_digits(body, weights, pair.skeleton, target, matches):
+        # Digits that the target lacks would crumple to lie on what there is.
+        evidence = _Evidence(body, with_stiff_digits(weights, stunted), target, pair.skeleton)
+        seeking = 1 - weights[:, np.concatenate([group.bones[1:] for group in stunted])].sum(axis=1)
+        bones = evidence.bones(positions, matches, *shares)
+        positions, matches = bones.posed, registration.matched(bones.posed)
+    posed = bones.posed
     for number, stiffness in enumerate(_STIFFNESS):
         # Each third takes some tenths of a second: whoever drives this may stop in between.
         done = [Progress(0.3 + 0.5 * (number + part / 3) / len(_STIFFNESS), "Sliding") for part in (1, 2, 3)]
-        positions = registration.slid(positions, posed, matches, stiffness)
+        positions = registration.slid(positions, posed, matches, stiffness, seeking=seeking)
         yield done[0]
         matches = registration.matched(positions)
         yield done[1]

@@ -56,3 +56,18 @@ def test_what_the_target_lacks_is_not_drawn_to_it():
     registration = PosedRegistration(whole, laplace_beltrami(whole), part)
     positions = registration.slid(vertices, vertices, registration.matched(vertices), 4e-4)
     np.testing.assert_allclose(positions, vertices, atol=0.05)
+
+
+def test_a_knob_that_does_not_look_for_the_target_keeps_its_shape():
+    vertices, triangles = icosphere(12)
+    knob = np.exp(-np.square(vertices - [0, 0, 1]).sum(axis=1) / 0.05)
+    source, target = TriangleMesh(vertices * (1 + 0.3 * knob)[:, None], triangles), TriangleMesh(vertices, triangles)
+    registration = PosedRegistration(source, laplace_beltrami(source), target)
+    matches = registration.matched(source.vertices)
+    usual, all_of_it, without_knob = (
+        registration.slid(source.vertices, source.vertices, matches, 8e-5, seeking=seeking)[knob > 0.9]
+        for seeking in (None, np.ones(len(knob)), 1 - knob)
+    )
+    np.testing.assert_array_equal(usual, all_of_it)
+    heights = [np.linalg.norm(knobs, axis=1).mean() for knobs in (usual, without_knob)]
+    assert heights[1] > heights[0] + 0.02
