@@ -38,18 +38,13 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from screen import choose_tab, picture, scroll_sidebar, set_scene, view  # noqa: E402 - no script's folder is on the path
 from source_extension import load_extension  # noqa: E402
+from window_events import key, press, running, until  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 _PAUSE = 1.0
 """Seconds between two steps: enough for a window to be drawn, in software too."""
-
-_SOON = 0.02
-"""Seconds between two looks at something that is waited for."""
-
-_PATIENCE = 240.0
-"""Seconds after which a step that still runs has failed."""
 
 
 class WalkthroughError(Exception):
@@ -65,36 +60,6 @@ def check(condition: object, message: str) -> None:
 def state() -> Any:  # noqa: ANN401 - a property group
     """Return the panel's state."""
     return bpy.context.scene.hiermatch
-
-
-def running() -> bool:
-    """Tell whether one of our operators runs in the window."""
-    operators = bpy.context.window_manager.windows[0].modal_operators
-    return any(operator.bl_idname.startswith("HIERMATCH_OT_") for operator in operators)
-
-
-def press(operator: Callable[..., Any], **options: object) -> None:
-    """Start an operator as its button does."""
-    with bpy.context.temp_override(**view()):
-        operator("INVOKE_DEFAULT", True, **options)  # noqa: FBT003 - True: it is an undo step, as if by a button
-
-
-def key(name: str) -> None:
-    """Press a key over the viewport."""
-    place = view()
-    region = place["region"]
-    middle = (region.x + region.width // 3, region.y + region.height // 2)
-    for value in ("PRESS", "RELEASE"):
-        place["window"].event_simulate(type=name, value=value, x=middle[0], y=middle[1])
-
-
-def until(condition: Callable[[], bool], what: str) -> Any:  # noqa: ANN401 - a generator of pauses
-    """Wait, while the window goes on, until something holds."""
-    end = time.monotonic() + _PATIENCE
-    while not condition():
-        check(time.monotonic() < end, f"{what} takes too long")
-        yield _SOON
-    yield
 
 
 def walk(folder: Path, command: list[str]) -> Any:  # noqa: ANN401 - a generator of pauses
