@@ -38,7 +38,6 @@ def pictures(camera: Camera) -> Iterator[float | None]:
     with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
         bpy.ops.wm.call_menu(name="USERPREF_MT_extensions_settings")
     yield None
-    print({name: (region.x, region.y, region.width, region.height) for name, region in regions.items()})
     sections = Box(area.x, top - 420, area.x + 180, top)
     camera.take("install", sections, Box(right - 640, top - 420, right, top))
     window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
