@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _NOSE = (0.0, -1.1, 1.15)
 _RIGHT_TOES = (-0.1, -0.6, 0.03)
 _HIP = (-0.15, 0.4, 0.8)
+"""Places of a demo cat in the rest pose."""
 
 
 def pictures(camera: Camera) -> Iterator[float | None]:
@@ -61,7 +62,7 @@ def pick(camera: Camera) -> Iterator[float | None]:
     fold()
     show_panels("HierMatch", "Landmarks")
     yield None
-    bottom = look_down()
+    bottom = status_bar()
     press(bpy.ops.hiermatch.pick_landmarks)
     yield None
     rows = []
@@ -125,7 +126,7 @@ def start() -> Any:  # noqa: ANN401 - a property group
     return bpy.context.scene.hiermatch
 
 
-def look_down() -> Box:
+def status_bar() -> Box:
     """Return where the status bar is."""
     window = view()["window"]
     return Box(0, 0, min(window.width, 1000), 22)
