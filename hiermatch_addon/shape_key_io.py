@@ -27,6 +27,7 @@ __all__ = [
     "key_value_path",
     "keys_of",
     "linear_part",
+    "locked_keys",
     "read_offsets",
     "shape_key_names",
     "world_matrix",
@@ -110,6 +111,12 @@ def shape_key_names(obj: bpy.types.Object) -> tuple[str, ...]:
     """Return the names of an object's shape keys, without the reference key."""
     keys = keys_of(obj)
     return () if keys is None else tuple(key.name for key in keys.key_blocks if key != keys.reference_key)
+
+
+def locked_keys(obj: bpy.types.Object) -> set[str]:
+    """Return the names of an object's shape keys that are locked against changes."""
+    keys = keys_of(obj)
+    return set() if keys is None else {key.name for key in keys.key_blocks if key.lock_shape}
 
 
 def key_positions(key: bpy.types.ShapeKey) -> NDArray[np.float64]:

@@ -21,6 +21,7 @@ from ..shape_key_io import (
     key_paths,
     keys_of,
     linear_part,
+    locked_keys,
     read_offsets,
     shape_key_names,
 )
@@ -67,6 +68,10 @@ class ShapeKeyTransfer:
             chosen = [name for name in chosen if name not in present]
             if skipped:
                 self._notes.append(f'"{target.name}" already has {_listed(skipped)}, which was skipped.')
+        locked = [name for name in chosen if name in locked_keys(target)]
+        chosen = [name for name in chosen if name not in locked]
+        if locked:
+            self._notes.append(f'Locked shape keys of "{target.name}" were left alone: {_listed(locked)}.')
         keys = cast("bpy.types.Key", keys_of(source))
         absolute = not keys.use_relative and can_be_absolute(target, chosen)
         check_keys_writable(target, chosen, absolute=absolute)

@@ -1547,6 +1547,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "「{1}」の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。"
     ),
+    'Locked shape keys of "{0}" were left alone: {1}.': (
+        "「{0}」のロックされたシェイプキーはそのままにしました：{1}。"
+    ),
     'Locked vertex groups of "{0}" were left alone: {1}.': (
         "「{0}」のロックされた頂点グループはそのままにしました：{1}。"
     ),

@@ -1244,6 +1244,7 @@ MESSAGES: Final[dict[str, str]] = {
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "“{1}”的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。"
     ),
+    'Locked shape keys of "{0}" were left alone: {1}.': "“{0}”被锁定的形态键保持不变：{1}。",
     'Locked vertex groups of "{0}" were left alone: {1}.': "“{0}”被锁定的顶点组保持不变：{1}。",
     '"{0}" has no weights for the bones of "{1}" yet. Transfer the weights as well.': (
         "“{0}”还没有“{1}”的骨骼权重。请同时传递权重。"

@@ -256,6 +256,16 @@ def test_the_action_of_the_keys_is_shared(pair, absolute):
     assert f'the action "{keys.animation_data.action.name}"' in bpy.context.scene.hiermatch_retarget.report.done
 
 
+def test_locked_keys_stay_as_they_are(pair):
+    target = pair[1]
+    own = np.full_like(positions(target), 0.3)
+    add_key(target, "Swell", own).lock_shape = True
+    assert carry() == {"FINISHED"}
+    assert names(target) == ["Basis", "Swell", "Lift"]
+    np.testing.assert_allclose(offsets_of(target, "Swell"), own, atol=1e-6)
+    assert 'were left alone: "Swell"' in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 def test_an_action_of_its_own_stays(pair):
     source, target = pair
     source.data.shape_keys.key_blocks["Swell"].keyframe_insert("value", frame=1)
