@@ -26,6 +26,7 @@ from ..shape_key_io import (
     check_keys_writable,
     keys_of,
     linear_part,
+    locked_keys,
     read_offsets,
     shape_key_names,
 )
@@ -156,11 +157,11 @@ class _Weights:
 
 
 class _Keys:
-    """The shape keys that do not wrap the whole onto another mesh; those of one side only get a partner."""
+    """The shape keys that are not locked nor wrap the whole onto another mesh; those of one side only get a partner."""
 
     def __init__(self, context: bpy.types.Context, obj: bpy.types.Object, *, create: bool) -> None:
-        wraps = wrap_key_name("")
-        self.names = [name for name in shape_key_names(obj) if not name.startswith(wraps)]
+        wraps, locked = wrap_key_name(""), locked_keys(obj)
+        self.names = [name for name in shape_key_names(obj) if not (name.startswith(wraps) or name in locked)]
         if not self.names:
             return
         check_keys_writable(obj, self.names)

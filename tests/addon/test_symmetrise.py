@@ -132,6 +132,17 @@ def test_a_key_of_one_side_alone_gets_its_partner(body):
     np.testing.assert_allclose(np.linalg.norm(offsets_of(obj, "Kick.R"), axis=1), 0.1 * np.sqrt(3), rtol=0.02)
 
 
+def test_locked_keys_stay_as_they_are(body):
+    obj, rest = body
+    add_legs(obj, rest)
+    add_key(obj, "Kick.L", np.full_like(rest, 0.1))
+    add_key(obj, "Kick.R", np.full_like(rest, 0.3)).lock_shape = True
+    assert symmetrise() == {"FINISHED"}
+    assert [key.name for key in obj.data.shape_keys.key_blocks] == ["Basis", "Kick.L", "Kick.R"]
+    np.testing.assert_allclose(offsets_of(obj, "Kick.L"), 0.1, atol=1e-6)
+    np.testing.assert_allclose(offsets_of(obj, "Kick.R"), 0.3, atol=1e-6)
+
+
 def test_colors_of_vertices_and_corners(body):
     obj, rest = body
     add_legs(obj, rest)
