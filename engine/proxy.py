@@ -133,7 +133,9 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
             closed, grid_labels(closed, _CELL_SIZE * float(np.sqrt(closed.area / (_CELLS * count))))
         )
         yield Progress(start + 0.2, "Simplifying the mesh")
-        regions = _repaired(closed, _spread_regions(cells, count))
+        regions = _spread_regions(cells, count)
+        yield Progress(start + 0.25, "Simplifying the mesh")
+        regions = _repaired(closed, regions)
         kept = (
             manifold_part(regions.dual.triangles, len(regions.seeds))
             if regions.dual.faulty.any()
