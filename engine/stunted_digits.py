@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from .digit_fit import digit_groups
+from .digit_groups import digit_groups
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .closest_points import FoundPoints
-    from .digit_fit import DigitGroup
+    from .digit_groups import DigitGroup
     from .mesh import TriangleMesh
     from .skeleton import Skeleton
 

@@ -5,7 +5,7 @@ import pytest
 from engine import ClosestPoints, TriangleMesh
 from engine.bone_fit import fit_bones
 from engine.stunted_digits import stunted_digits, with_stiff_digits
-from tests.engine.test_digit_fit import PALM, hand_body, hand_bones
+from tests.hands import PALM, hand_body, hand_bones
 
 
 @pytest.fixture(scope="module")
