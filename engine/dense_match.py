@@ -82,13 +82,13 @@ def densify_steps(
 ) -> Steps[DenseMatch]:
     """Extend a sparse correspondence to all vertices, in steps.
 
-    No other correspondence is tried: also one that mirrors the surface is extended as it is.
+    No other correspondence of two surfaces is tried: also one that mirrors is extended as it is.
 
     Parameters
     ----------
     source, target : TriangleMesh or Shape
         The surfaces.  With one `Shape` as both, a correspondence that mirrors is taken for its own inverse: the map is
-        found in one direction, which is the other one as well.
+        found in one direction, which is the other one as well.  Other maps that mirror are tried beside it.
     source_points, target_points : SurfacePoints
         Corresponding points (k,) on them: some twenty, spread over the surface, are needed at least.
 
@@ -111,9 +111,10 @@ def densify_steps(
     mirrored = _mirrors(x, y, start)
     # Seen in a mirror, the source is matched by a map that keeps the orientation.
     seen = x.reflected() if mirrored else x
-    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=False)
-    pair = yield from within(steps, 0.35, 0.8)
     involution = mirrored and x is y
+    # A search never proposes the identity there: it turns the reflected surface over.
+    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=involution)
+    pair = yield from within(steps, 0.35, 0.8)
     dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
     if mirrored:
         dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))

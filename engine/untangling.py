@@ -6,8 +6,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array, diags_array
 
-from .quasi_newton import minimize_lbfgs
+from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,10 +18,10 @@ if TYPE_CHECKING:
 
 __all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle"]
 
-_ROUNDS = 8
-_AVERAGED = 4  # round before which what is still flipped is averaged
+_ROUNDS = 12
+_AVERAGED = 4  # every so many rounds, what is still flipped is averaged first
 _SWEEPS = 3  # of averaging
-_ITERATIONS = 20
+_ITERATIONS = 8
 _LEAST_AREA = 0.2  # part of its own area, in the scale of the target, that a triangle's image should have
 _SMALLEST = 0.01  # part of the mean area from which on a triangle counts: one without area has no side to be on
 _TETHER = 1e-3  # weight of staying in place, squared distances in units of the mean area, against the areas that lack
@@ -144,15 +145,12 @@ class _Image:
         areas: NDArray[np.float64] = np.einsum("fd,fd->f", np.cross(b - a, c - a), self.normals) / 2
         return areas
 
-    def pulled(self, positions: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Gradient (v, 3) of the sum of the areas by weights (f,)."""
+    def slopes(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Differentiate the areas by the positions of the three corners, (f, 3, 3)."""
         a, b, c = positions[self.corners].transpose(1, 0, 2)
-        gradient = np.zeros_like(positions)
-        for corner, opposite in zip(self.corners.T, (b - c, c - a, a - b), strict=True):
-            pull = (weights / 2)[:, None] * np.cross(opposite, self.normals)
-            for axis in range(3):
-                gradient[:, axis] += np.bincount(corner, pull[:, axis], len(positions))
-        return gradient
+        opposite = np.stack([b - c, c - a, a - b], axis=1)
+        slopes: NDArray[np.float64] = np.cross(opposite, self.normals[:, None]) / 2
+        return slopes
 
     def average(self, chosen: NDArray[np.bool_]) -> None:
         """Move chosen ones of the vertices (v,) to the mean of their neighbours, some times."""
@@ -194,7 +192,7 @@ def untangle(
     .. math:: \sum_t \frac{(\beta r_t - a_t(x))_+^2}{r_t} + \epsilon |x - x_0|^2
 
     is least, and back onto the target.  Here :math:`a_t` is the area of the image of a triangle as seen from outside,
-    negative if it is flipped, and :math:`r_t` what it would be in the scale of the target [1]_.  Half way, vertices
+    negative if it is flipped, and :math:`r_t` what it would be in the scale of the target [1]_.  Now and then, vertices
     that this did not help go to the mean of their neighbours.
 
     Parameters
@@ -228,7 +226,7 @@ def untangle(
         image = _Image(source, target, triangles, barycentric, around)
         rest = source.triangle_areas[around] * (target.area / source.area)
         free = np.flatnonzero(moving[image.vertices])
-        if number == _AVERAGED:
+        if number % _AVERAGED == _AVERAGED - 1:
             image.average(np.isin(image.vertices, source.triangles[flipped]))
         members = image.vertices[free]
         found = search.walk(
@@ -239,24 +237,29 @@ def untangle(
 
 
 def _opened(image: _Image, rest: NDArray[np.float64], free: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Positions of the free vertices (q,), (q, 3), at which the triangles come nearer to their areas (f,) at rest."""
-    unit = float(rest.mean())
-    rest = np.maximum(rest, _SMALLEST * unit)
+    """Positions of the free vertices (q,), (q, 3), at which the triangles come nearer to their areas (f,) at rest.
 
-    def moved(steps: NDArray[np.float64]) -> NDArray[np.float64]:
-        positions = image.positions.copy()
-        positions[free] += np.sqrt(unit) * steps.reshape(-1, 3)
-        return positions
-
-    def energy(steps: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
-        positions = moved(steps)
-        lack = np.maximum(_LEAST_AREA * rest - image.areas(positions), 0)
-        value = (np.square(lack) / rest).sum() / unit + _TETHER * np.square(steps).sum()
-        gradient = image.pulled(positions, -2 * lack / rest)[free] / np.sqrt(unit)
-        return float(value), gradient.ravel() + 2 * _TETHER * steps
-
-    steps, _ = minimize_lbfgs(energy, np.zeros(3 * len(free)), _ITERATIONS)
-    return moved(steps)[free]
+    Found by damped Gauss-Newton steps without a search along lines: none of them decides anything, so that what is
+    nearly the same comes out nearly the same.
+    """
+    rest = np.maximum(rest, _SMALLEST * float(rest.mean()))
+    number = np.full(len(image.vertices), -1)
+    number[free] = np.arange(len(free))
+    now = image.positions.copy()
+    for _ in range(_ITERATIONS):
+        lack = np.maximum(_LEAST_AREA - image.areas(now) / rest, 0)
+        lacking = np.flatnonzero(lack)
+        rows, corners = np.nonzero(number[image.corners[lacking]] >= 0)
+        slopes = image.slopes(now)[lacking[rows], corners] / np.sqrt(rest[lacking[rows], None])  # (e, 3)
+        columns = 3 * number[image.corners[lacking[rows], corners]][:, None] + np.arange(3)
+        entries = (slopes.ravel(), (rows.repeat(3), columns.ravel()))
+        jacobian = csr_array(entries, shape=(len(lacking), 3 * len(free)))
+        # Areas are products of positions: beside the Jacobian, what they lack bounds by how much they can change.
+        around = np.bincount(columns[:, 0] // 3, lack[lacking[rows]], len(free)).repeat(3)
+        system = jacobian.T @ jacobian + diags_array(_TETHER + around)
+        pull = jacobian.T @ (lack * np.sqrt(rest))[lacking] - _TETHER * (now - image.positions)[free].ravel()
+        now[free] += symmetric_factor(system).solve(pull).reshape(-1, 3)
+    return now[free]
 
 
 def _both_ways(edges: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

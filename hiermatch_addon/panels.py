@@ -188,10 +188,10 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
 
 
 def _coarse_text(summary: HIERMATCH_PG_summary) -> str:
-    """Say how good the coarse match is."""
+    """Say how good the coarse match is; nothing once it was refined, since then it is not what was proven of."""
     if summary.proven:
         return translated("optimum proven")
-    return translated("within {gap} of the optimum").format(gap=f"{summary.gap:.0%}")
+    return translated("within {gap} of the best").format(gap=f"{summary.gap:.0%}") if summary.gap else ""
 
 
 def _orientation_text(summary: HIERMATCH_PG_summary) -> str:

@@ -1095,7 +1095,7 @@ MESSAGES: Final[dict[str, str]] = {
     "kept": "保持",
     "exchanged": "入れ替わり",
     "optimum proven": "最適と証明済み",
-    "within {gap} of the optimum": "最適値との差は{gap}以内",
+    "within {gap} of the best": "最適値との差は{gap}以内",
     "{count} points matched": "{count}個のポイントをマッチングしました",
     "Custom": "カスタム",
     "Metric and Descriptor": "距離と記述子",

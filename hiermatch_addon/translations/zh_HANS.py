@@ -911,7 +911,7 @@ MESSAGES: Final[dict[str, str]] = {
     "kept": "保持",
     "exchanged": "互换",
     "optimum proven": "已证明最优",
-    "within {gap} of the optimum": "与最优值相差不超过 {gap}",
+    "within {gap} of the best": "与最优值相差不超过 {gap}",
     "{count} points matched": "已匹配 {count} 个点",
     "Custom": "自定义",
     "Metric and Descriptor": "度量与描述符",

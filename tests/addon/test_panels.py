@@ -220,7 +220,7 @@ def test_what_is_not_proven_and_what_is_mirrored(context):
     summary.points, summary.proven, summary.gap, summary.orientation = 5, False, 0.25, -0.8
     summary.notes = "The source has two parts.\nMind the gap."
     shown = texts(draw(context))
-    assert "within 25% of the optimum" in shown
+    assert "within 25% of the best" in shown
     assert "exchanged (-0.80)" in shown
     assert "The source has two parts." in shown
     assert "Mind the gap." in shown
