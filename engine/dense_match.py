@@ -82,13 +82,14 @@ def densify_steps(
 ) -> Steps[DenseMatch]:
     """Extend a sparse correspondence to all vertices, in steps.
 
-    No other correspondence of two surfaces is tried: also one that mirrors is extended as it is.
+    If it mirrors the surface, other maps that do are tried as well, and the most credible is taken; any other
+    correspondence is extended as it is.
 
     Parameters
     ----------
     source, target : TriangleMesh or Shape
         The surfaces.  With one `Shape` as both, a correspondence that mirrors is taken for its own inverse: the map is
-        found in one direction, which is the other one as well.  Other maps that mirror are tried beside it.
+        found in one direction, which is the other one as well.
     source_points, target_points : SurfacePoints
         Corresponding points (k,) on them: some twenty, spread over the surface, are needed at least.
 
@@ -111,10 +112,10 @@ def densify_steps(
     mirrored = _mirrors(x, y, start)
     # Seen in a mirror, the source is matched by a map that keeps the orientation.
     seen = x.reflected() if mirrored else x
-    involution = mirrored and x is y
-    # A search never proposes the identity there: it turns the reflected surface over.
-    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=involution)
+    # Maps that keep the reflected surface as it is mirror this one: no search proposes the true one, or the identity.
+    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=mirrored)
     pair = yield from within(steps, 0.35, 0.8)
+    involution = mirrored and x is y
     dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
     if mirrored:
         dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from .progress import Steps
     from .surface_map import SurfaceMap
 
-__all__ = ["point_distortions", "refine_map", "refine_map_steps"]
+__all__ = ["distortion_after", "placed_by_map", "point_distortions", "refine_map", "refine_map_steps"]
 
 _DETAILED = 100
 """Eigenfunctions that a surface is placed by before it is registered."""
@@ -109,6 +109,43 @@ def refine_map_steps(
     back = yield from within(steps, 0.5, 0.75)
     pair = RegisteredPair(x, y, moving, fixed, there, back, (), None, known, mirrored)
     return (yield from within(dense_match_steps(pair, _BRIEF), 0.75, 1.0))
+
+
+def placed_by_map(
+    source: TriangleMesh, target: TriangleMesh, source_points: SurfacePoints, found: SurfaceMap
+) -> tuple[SurfacePoints, NDArray[np.float64]]:
+    """Let matched points lie where a map takes them.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    source_points : SurfacePoints
+        The matched points (k,) of the source, at vertices.
+    found : SurfaceMap
+        A map from the source to the target.
+
+    Returns
+    -------
+    target_points : SurfacePoints
+        Their images, k.
+    point_distortion : (k,) array of float
+        See `point_distortions`.
+
+    Raises
+    ------
+    MatchError
+        If a point is not on the largest part of its mesh.
+    """
+    vertices = source_points.nearest_vertices
+    images = SurfacePoints.from_barycentric(target, found.triangles[vertices], found.barycentric[vertices])
+    return images, point_distortions(source, target, vertices, images.nearest_vertices)
+
+
+def distortion_after(distortion: float, before: NDArray[np.float64], after: NDArray[np.float64]) -> float:
+    """Scale the distortion of a match, which is made of the squares of its points' (k,), to what these are now."""
+    squares = float(np.square(before).sum())
+    return distortion * float(np.square(after).sum()) / squares if squares > 0 else distortion
 
 
 def point_distortions(

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..engine import Progress
 from ..engine.progress import run, within
+from ..engine.refinement import distortion_after, placed_by_map
 from . import writing
 from .contents import contents_steps
+from .stored_match import CornerPoints, Quality
 from .vertex_maps import add_maps, place_points
 
 if TYPE_CHECKING:
@@ -17,13 +19,13 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ..engine import SurfacePoints, TriangleMesh
+    from ..engine import DenseMatch, SurfacePoints, TriangleMesh
     from ..engine.progress import Steps
     from .contents import Content
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["Restored", "contents_with_maps", "mapped_contents_steps", "restored", "write_answer"]
+__all__ = ["Restored", "contents_with_maps", "following", "mapped_contents_steps", "restored", "write_answer"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +46,25 @@ def restored(stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh]) -> 
         place_points(mesh, points.corners, points.barycentric) for mesh, points in zip(meshes, sides, strict=True)
     )
     return Restored(source, target, stored.answer.point_distortion)
+
+
+def following(
+    stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh], dense: DenseMatch, *, proven: bool
+) -> StoredMatch:
+    """Let the points of the chosen answer lie where new dense maps take them; `proven` is what is said of it then."""
+    answer = stored.answer
+    images, distortion = placed_by_map(*meshes, restored(stored, meshes).source_points, dense.source_to_target)
+    answers = list(stored.answers)
+    answers[stored.mirrored] = replace(
+        answer,
+        target_points=CornerPoints.of(images),
+        point_distortion=distortion,
+        distortion=distortion_after(answer.distortion, answer.point_distortion, distortion),
+        proven=proven,
+        quality=Quality.of(dense.quality),
+        refined=False,
+    )
+    return replace(stored, answers=tuple(answers))
 
 
 def contents_with_maps(

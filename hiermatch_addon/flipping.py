@@ -11,7 +11,7 @@ from ..engine import Shape, densify_steps
 from ..engine.progress import within
 from ..engine.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .access import mesh_of, view_layer_of
-from .answer_writing import mapped_contents_steps, restored, write_answer
+from .answer_writing import following, mapped_contents_steps, restored, write_answer
 from .contents import contents_steps
 from .errors import ObjectError
 from .halves import find_again, find_keyed
@@ -138,7 +138,7 @@ class FlipJob(SteppedJob):
             points = restored(stored, meshes)
             dense = yield from within(densify_steps(*meshes, points.source_points, points.target_points), 0.0, _MAPPED)
             maps, start = StoredMaps.of(dense.source_to_target, dense.target_to_source), _MAPPED
-            self._stored = stored.with_quality(dense.quality)
+            self._stored = following(stored, meshes, dense, proven=stored.answer.proven)
         steps = mapped_contents_steps(self._stored, meshes, self.prefix, maps, self._maps)
         return (yield from within(steps, start, 1.0))
 

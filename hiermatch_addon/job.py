@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
 
 from ..engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
 from ..engine.progress import within
+from ..engine.refinement import distortion_after, placed_by_map
 from . import writing
 from .access import mesh_of, view_layer_of
 from .contents import contents_steps
@@ -226,8 +227,16 @@ class MatchJob(SteppedJob):
         mirrored = result.mirrored
         if not both or mirrored is None:
             return _Found(result, None)
-        dense = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
-        return _Found(result, (yield from within(dense, 0.7, 1.0)))
+        points = mirrored.source_points
+        dense = yield from within(densify_steps(source, target, points, mirrored.target_points), 0.7, 1.0)
+        images, distortion = placed_by_map(source, target, points, dense.source_to_target)
+        moved = replace(
+            mirrored,
+            target_points=images,
+            point_distortion=distortion,
+            distortion=distortion_after(mirrored.distortion, mirrored.point_distortion, distortion),
+        )
+        return _Found(replace(result, mirrored=moved), dense)
 
     def _prepare_steps(self, found: _Found) -> Steps[_Prepared]:
         """Prepare what is to be written of either answer."""

@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..engine import Progress, SurfacePoints
+from ..engine import Progress
 from ..engine.progress import within
-from ..engine.refinement import point_distortions, refine_map_steps
+from ..engine.refinement import refine_map_steps
 from .access import mesh_of, view_layer_of
-from .answer_writing import mapped_contents_steps, restored, write_answer
+from .answer_writing import following, mapped_contents_steps, write_answer
 from .errors import ObjectError
 from .excluded_regions import excluded_vertices
 from .halves import find_again
@@ -21,7 +20,7 @@ from .landmarks import find_landmarks, landmark_array
 from .mesh_io import read_mesh
 from .pair import check_pair
 from .stepped_job import SteppedJob
-from .stored_match import CornerPoints, Quality, StoredMatch
+from .stored_match import StoredMatch
 from .vertex_maps import StoredMaps, map_name
 
 if TYPE_CHECKING:
@@ -135,25 +134,7 @@ class RefineJob(SteppedJob):
         steps = refine_map_steps(source, target, self._map, self._landmarks, self._excluded)
         dense = yield from within(steps, 0.0, 0.9)
         yield Progress(0.9, "Measuring the matched points")
-        places = restored(self._stored, self._meshes).source_points
-        vertices = places.nearest_vertices  # the points of a source are at vertices
-        found = dense.source_to_target
-        images = SurfacePoints.from_barycentric(target, found.triangles[vertices], found.barycentric[vertices])
-        distortion = point_distortions(source, target, vertices, images.nearest_vertices)
-        answer = self._stored.answer
-        before = float(np.square(answer.point_distortion).sum())
-        ratio = float(np.square(distortion).sum()) / before if before > 0 else 1.0
-        answers = list(self._stored.answers)
-        answers[self._stored.mirrored] = replace(
-            answer,
-            target_points=CornerPoints.of(images),
-            point_distortion=distortion,
-            distortion=answer.distortion * ratio,  # it is made of the same squares
-            proven=False,
-            quality=Quality.of(dense.quality),
-            refined=False,
-        )
-        self._stored = replace(self._stored, answers=tuple(answers))
+        self._stored = following(self._stored, self._meshes, dense, proven=False)
         shown = StoredMaps.of(dense.source_to_target, dense.target_to_source)
         writing = mapped_contents_steps(self._stored, self._meshes, self.prefix, shown, self._other_maps)
         self._prepared = yield from within(writing, 0.92, 1.0)

@@ -249,12 +249,6 @@ class StoredMatch:
         """The answer that is written."""
         return self.answers[self.mirrored]
 
-    def with_quality(self, quality: MatchQuality) -> StoredMatch:
-        """Return the same with another verdict on the maps of the answer that is written."""
-        answers = list(self.answers)
-        answers[self.mirrored] = replace(self.answer, quality=Quality.of(quality))
-        return replace(self, answers=tuple(answers))
-
     def as_refined(self) -> StoredMatch:
         """Return the same with the maps of the answer that is written called refined."""
         answers = list(self.answers)

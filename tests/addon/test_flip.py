@@ -4,10 +4,14 @@
 from __future__ import annotations
 
 import bpy
+import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.access import mesh_of
 from hiermatch.hiermatch_addon.errors import ObjectError
 from hiermatch.hiermatch_addon.flipping import FlipJob
 from hiermatch.hiermatch_addon.halves import find_half
+from hiermatch.hiermatch_addon.mesh_io import read_mesh
+from hiermatch.hiermatch_addon.vertex_maps import StoredMaps, map_name
 
 from tests.addon.scenes import (
     DENSE,
@@ -391,6 +395,19 @@ class TestInSteps:
         assert snapshot() == before
         assert job.finish(bpy.context).mirrored
         assert snapshot() != before
+
+    def test_the_points_lie_on_the_map(self, job, dense_pair):
+        while not self.advance(job):
+            pass
+        stored = job.finish(bpy.context)
+        meshes = [mesh_of(obj) for obj in dense_pair]
+        maps = StoredMaps.read(*meshes, map_name("HM", other=False))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        source, target = (read_mesh(obj, depsgraph, use_modifiers=False) for obj in dense_pair)
+        images = maps.between(source, target).source_to_target.positions[stored.source_points.nearest_vertices]
+        points = stored.answer.target_points
+        placed = np.einsum("kc,kcd->kd", points.barycentric, target.vertices[points.corners])
+        np.testing.assert_allclose(placed, images, atol=1e-5)
 
     def test_closing_changes_nothing(self, job):
         before = snapshot()

@@ -8,7 +8,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from hiermatch.engine import MatchQuality, SurfacePoints, TriangleMesh
+from hiermatch.engine import SurfacePoints, TriangleMesh
 from hiermatch.hiermatch_addon.mesh_io import topology
 from hiermatch.hiermatch_addon.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 
@@ -66,13 +66,6 @@ def test_maps_that_were_not_made_have_no_quality():
     before = stored()
     before = replace(before, answers=(before.answers[0], replace(before.answers[1], quality=None)))
     assert same(StoredMatch.from_plain(*before.to_plain()), before)
-
-
-def test_a_new_verdict_is_on_the_answer_that_is_written():
-    before = stored(mirrored=False)
-    after = before.with_quality(MatchQuality(0.1, 0.2, 0.3, 0.4, None, 0.5, "New."))
-    assert [answer.quality.sentence for answer in after.answers] == ["New.", "Fair."]
-    assert after.key == before.key
 
 
 def test_a_match_of_an_older_version_can_be_read():

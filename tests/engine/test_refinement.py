@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import MatchError, SurfaceMap, SurfacePoints, TriangleMesh
-from engine.refinement import point_distortions, refine_map
+from engine.refinement import distortion_after, placed_by_map, point_distortions, refine_map
 from tests.shapes import creature, icosphere, posed
 
 
@@ -105,3 +105,21 @@ class TestDistortions:
     def test_one_point(self):
         ball = TriangleMesh(*icosphere(3))
         assert point_distortions(ball, ball, [3], [4]).tolist() == [0.0]
+
+
+class TestPlacedByMap:
+    """Matched points follow a map."""
+
+    def test_points_lie_where_the_map_takes_them(self):
+        ball = TriangleMesh(*icosphere(5))
+        points = SurfacePoints.at_vertices(ball, spread(ball, 8))
+        images, distortion = placed_by_map(ball, ball, points, identity(ball))
+        np.testing.assert_allclose(images.positions, points.positions)
+        np.testing.assert_allclose(distortion, 0, atol=1e-6)
+        images, distortion = placed_by_map(ball, ball, points, slid(ball, 0.1))
+        assert np.linalg.norm(images.positions - points.positions, axis=1).min() > 0.05 * np.sqrt(ball.area)
+        assert distortion.max() > 0
+
+    def test_the_distortion_of_the_whole_is_made_of_squares(self):
+        assert distortion_after(4.0, np.array([1.0, 1.0]), np.array([0.5, 0.5])) == pytest.approx(1.0)
+        assert distortion_after(4.0, np.zeros(2), np.ones(2)) == 4.0
