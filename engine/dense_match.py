@@ -82,8 +82,8 @@ def densify_steps(
 ) -> Steps[DenseMatch]:
     """Extend a sparse correspondence to all vertices, in steps.
 
-    If it mirrors the surface, other maps that do are tried as well, and the most credible is taken; any other
-    correspondence is extended as it is.
+    If it mirrors one surface onto another, other maps that do are tried as well, and the most credible is taken; any
+    other correspondence is extended as it is.
 
     Parameters
     ----------
@@ -112,10 +112,11 @@ def densify_steps(
     mirrored = _mirrors(x, y, start)
     # Seen in a mirror, the source is matched by a map that keeps the orientation.
     seen = x.reflected() if mirrored else x
-    # Maps that keep the reflected surface as it is mirror this one: no search proposes the true one, or the identity.
-    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=mirrored)
-    pair = yield from within(steps, 0.35, 0.8)
     involution = mirrored and x is y
+    # Maps that keep the reflected surface as it is mirror this one: no search proposes the true one.
+    search = mirrored and not involution
+    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=search)
+    pair = yield from within(steps, 0.35, 0.8)
     dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
     if mirrored:
         dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))
