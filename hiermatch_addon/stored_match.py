@@ -257,9 +257,13 @@ class StoredMatch:
 
     @property
     def key(self) -> str:
-        """A text that both meshes carry, and that is the same for the same answers between the same objects only."""
-        digest = hashlib.blake2b("\0".join((*self.names, *self.topologies)).encode(), digest_size=16)
-        for points in (self.source_points, *(answer.target_points for answer in self.answers)):
+        """A text that both meshes carry, and that is the same for the same direct answer between the same objects only.
+
+        The points of the mirrored answer move when it is written for the first time.
+        """
+        told = (*self.names, *self.topologies, str(len(self.answers)))
+        digest = hashlib.blake2b("\0".join(told).encode(), digest_size=16)
+        for points in (self.source_points, self.answers[0].target_points):
             for numbers in points.to_plain().values():
                 digest.update(numbers.tobytes())
         return digest.hexdigest()
