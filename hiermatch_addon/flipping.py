@@ -11,13 +11,13 @@ from ..engine import Shape, densify_steps
 from ..engine.progress import within
 from ..engine.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .access import mesh_of, view_layer_of
-from .answer_writing import following, mapped_contents_steps, restored, write_answer
+from .answer_writing import following, mapped_contents_steps, restored
 from .contents import contents_steps
 from .errors import ObjectError
-from .halves import find_again, find_keyed
+from .halves import find_keyed
 from .mesh_io import read_mesh
 from .pair import check_pair
-from .stepped_job import SteppedJob
+from .rewriting_job import RewritingJob
 from .stored_match import StoredMatch
 from .vertex_maps import StoredMaps, map_name
 
@@ -37,12 +37,10 @@ _MAPPED = 0.95
 """Where on the bar of progress the making of dense maps ends."""
 
 
-class FlipJob(SteppedJob):
+class FlipJob(RewritingJob):
     """Writes the other answer of a match in place of the one that is written.
 
-    The dense maps of the answer that was written stay on the meshes, so that the way back takes no time.  Between two
-    calls of `advance` Blender may do anything, so the job holds no references to its objects but looks them up again,
-    and ends with an error if they are not what they were.  Nothing is written before `finish`.
+    The dense maps of the answer that was written stay on the meshes, so that the way back takes no time.
 
     Parameters
     ----------
@@ -51,17 +49,6 @@ class FlipJob(SteppedJob):
     half : Half
         One side of the match.
 
-    Attributes
-    ----------
-    progress : Progress
-        How far the work is.
-    names : tuple of str
-        What source and target of the match are called now.
-    prefix, key : str
-        Which match it is.
-    seconds : float
-        Once finished, how long it took.
-
     Raises
     ------
     HierMatchError
@@ -69,7 +56,7 @@ class FlipJob(SteppedJob):
     """
 
     def __init__(self, context: bpy.types.Context, half: Half) -> None:
-        self._start = time.perf_counter()
+        started = time.perf_counter()
         depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
         view_layer = view_layer_of(context)
         partner = find_keyed(view_layer, half.key, half.prefix, half.partner_role, half.partner_name)
@@ -77,15 +64,12 @@ class FlipJob(SteppedJob):
         check_pair(view_layer, source.obj, target.obj)
         for side in (source, target):
             _check_topology(side)
-        self.names, self.prefix, self.key = (source.obj.name, target.obj.name), half.prefix, half.key
-        self._uids = (source.obj.session_uid, target.obj.session_uid)
         stored = StoredMatch.from_plain(source.kept, target.kept)
         if len(stored.answers) < 2:
             raise ObjectError(
                 f'The match of "{source.obj.name}" and "{target.obj.name}" has no mirrored answer: '
                 "the meshes are not symmetric enough for one."
             )
-        self._stored = replace(stored, mirrored=not stored.mirrored)
         use_modifiers = stored.written.use_modifiers
         self._meshes = (
             read_mesh(source.obj, depsgraph, use_modifiers=use_modifiers),
@@ -95,36 +79,10 @@ class FlipJob(SteppedJob):
             StoredMaps.read(mesh_of(source.obj), mesh_of(target.obj), map_name(half.prefix, other=other))
             for other in (False, True)
         )
-        self._prepared: tuple[Content, Content] | None = None
-        self.seconds = 0.0
-        super().__init__()
+        super().__init__((source, target), replace(stored, mirrored=not stored.mirrored), started)
 
-    def finish(self, context: bpy.types.Context) -> StoredMatch:
-        """Write the other answer on both objects, and return what is kept of the match.
-
-        Raises
-        ------
-        HierMatchError
-            If the objects have changed, or the user's own vertex groups or attributes are in the way.
-        """
-        if self._prepared is None:
-            raise RuntimeError("The work has not come to its end yet.")
-        source, target = self._halves(view_layer_of(context))
-        for side in (source, target):
-            _check_topology(side)
-        self.names = (source.obj.name, target.obj.name)
-        write_answer((source.obj, target.obj), self._stored, self._prepared, self.prefix)
-        self.seconds = time.perf_counter() - self._start
-        return self._stored
-
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
-        self._halves(view_layer)
-
-    def _halves(self, view_layer: bpy.types.ViewLayer) -> tuple[Half, Half]:
-        """Look the objects up again and make sure that they still carry the match."""
-        halves = find_again(self._uids, self.names, self.prefix, self.key)
-        check_pair(view_layer, halves[0].obj, halves[1].obj)
-        return halves
+    def _check_half(self, half: Half) -> None:
+        _check_topology(half)
 
     def _all_steps(self) -> Steps[None]:
         """Find what the other answer says of every vertex, and prepare what is written."""

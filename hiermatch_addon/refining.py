@@ -12,14 +12,13 @@ from ..engine import Progress
 from ..engine.progress import within
 from ..engine.refinement import refine_map_steps
 from .access import mesh_of, view_layer_of
-from .answer_writing import following, mapped_contents_steps, write_answer
+from .answer_writing import following, mapped_contents_steps
 from .errors import ObjectError
 from .excluded_regions import excluded_vertices
-from .halves import find_again
 from .landmarks import find_landmarks, landmark_array
 from .mesh_io import read_mesh
 from .pair import check_pair
-from .stepped_job import SteppedJob
+from .rewriting_job import RewritingJob
 from .stored_match import StoredMatch
 from .vertex_maps import StoredMaps, map_name
 
@@ -28,17 +27,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..engine.progress import Steps
-    from .contents import Content
     from .halves import Half
 
 __all__ = ["RefineJob"]
 
 
-class RefineJob(SteppedJob):
+class RefineJob(RewritingJob):
     """Refines the match that two meshes carry around their landmarks.
-
-    Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
-    them up again, and ends with an error if they are not what they were.  Nothing is written before `finish`.
 
     Parameters
     ----------
@@ -51,17 +46,9 @@ class RefineJob(SteppedJob):
 
     Attributes
     ----------
-    progress : Progress
-        How far the work is.
-    names : tuple of str
-        What source and target of the match are called now.
-    prefix : str
-        What all names written start with.
     moved : float
         Once computed, how far the map took the landmarks from where they belong before: the largest distance, in units
         of the square root of the target's area.
-    seconds : float
-        Once finished, how long it took.
 
     Raises
     ------
@@ -70,7 +57,7 @@ class RefineJob(SteppedJob):
     """
 
     def __init__(self, context: bpy.types.Context, halves: tuple[Half, Half], exclude: tuple[str, str]) -> None:
-        self._start = time.perf_counter()
+        started = time.perf_counter()
         depsgraph = context.evaluated_depsgraph_get()
         check_pair(view_layer_of(context), halves[0].obj, halves[1].obj)
         for half in halves:
@@ -79,9 +66,7 @@ class RefineJob(SteppedJob):
         if halves[0].role != "source":
             halves, exclude = (halves[1], halves[0]), (exclude[1], exclude[0])
         first, second = halves
-        self.names, self.prefix, self._key = (first.obj.name, second.obj.name), first.prefix, first.key
-        self._uids = (first.obj.session_uid, second.obj.session_uid)
-        self._stored = StoredMatch.from_plain(first.kept, second.kept)
+        stored, prefix = StoredMatch.from_plain(first.kept, second.kept), first.prefix
         pair = f'"{first.obj.name}" and "{second.obj.name}"'
         marks = landmark_array(find_landmarks(first.obj, second.obj))
         if marks is None:
@@ -90,10 +75,10 @@ class RefineJob(SteppedJob):
                 "right."
             )
         self._landmarks: NDArray[np.int64] = marks
-        maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(self.prefix))
+        maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(prefix))
         if maps is None:
             raise ObjectError(f"The match of {pair} has no dense map to refine. Match them again with Dense Map on.")
-        use_modifiers = self._stored.written.use_modifiers
+        use_modifiers = stored.written.use_modifiers
         self._meshes = (
             read_mesh(first.obj, depsgraph, use_modifiers=use_modifiers),
             read_mesh(second.obj, depsgraph, use_modifiers=use_modifiers),
@@ -103,30 +88,12 @@ class RefineJob(SteppedJob):
         at, to = self._landmarks.T
         apart = np.linalg.norm(self._meshes[1].vertices[to] - self._map.positions[at], axis=1)
         self.moved = float(apart.max() / np.sqrt(self._meshes[1].area))
-        self._other_maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(self.prefix, other=True))
-        self._prepared: tuple[Content, Content] | None = None
-        self.seconds = 0.0
-        super().__init__()
+        self._other_maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(prefix, other=True))
+        super().__init__((first, second), stored, started)
 
-    def finish(self, context: bpy.types.Context) -> StoredMatch:
-        """Write the better match on both objects in place of the one before, and return what is kept of it.
-
-        Raises
-        ------
-        HierMatchError
-            If the objects have changed, or the user's own vertex groups or attributes are in the way.
-        """
-        if self._prepared is None:
-            raise RuntimeError("The work has not come to its end yet.")
-        first, second = self._halves(view_layer_of(context))
-        for half in (first, second):
-            if half.staleness():
-                raise ObjectError(f'"{half.obj.name}" was edited meanwhile. Nothing was written.')
-        objects = (first.obj, second.obj)
-        self.names = (first.obj.name, second.obj.name)
-        write_answer(objects, self._stored, self._prepared, self.prefix)
-        self.seconds = time.perf_counter() - self._start
-        return self._stored
+    def _check_half(self, half: Half) -> None:
+        if half.staleness():
+            raise ObjectError(f'"{half.obj.name}" was edited meanwhile. Nothing was written.')
 
     def _all_steps(self) -> Steps[None]:
         """Refine the map, and let the matched points follow it."""
@@ -138,12 +105,3 @@ class RefineJob(SteppedJob):
         shown = StoredMaps.of(dense.source_to_target, dense.target_to_source)
         writing = mapped_contents_steps(self._stored, self._meshes, self.prefix, shown, self._other_maps)
         self._prepared = yield from within(writing, 0.92, 1.0)
-
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
-        self._halves(view_layer)
-
-    def _halves(self, view_layer: bpy.types.ViewLayer) -> tuple[Half, Half]:
-        """Look the objects up again and make sure that they still carry the match."""
-        halves = find_again(self._uids, self.names, self.prefix, self._key)
-        check_pair(view_layer, halves[0].obj, halves[1].obj)
-        return halves
