@@ -12,7 +12,7 @@ from .closest_points import FoundPoints
 from .deformable import DeformableSurface
 from .functional_maps import PointMaps
 from .limb_sides import exchanged_limbs, repaired_start
-from .map_hypotheses import MapHypothesis, map_hypotheses_steps
+from .map_hypotheses import MapHypothesis, map_hypotheses_steps, score_everywhere, unrefined_hypothesis
 from .progress import Steps, within
 from .registration import CLOSE, FINE, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
 from .steering import steered_hypotheses_steps
@@ -35,6 +35,12 @@ EIGENPAIRS = 120
 
 _AMBIGUOUS = 2.0
 """Difference of scores up to which a hypothesis is registered before it is given up."""
+
+_CONTRADICTED = 4.0
+"""The same for a map whose limbs are where they belong, against one that exchanges them as seen from both surfaces."""
+
+_DISTINCT = 0.07
+"""Mean distance, in sqrt(area), from which on two registrations are different maps."""
 
 _MOST_CANDIDATES = 3
 _ELASTIC_WEIGHT = 4.0
@@ -110,6 +116,7 @@ def registered_pair_steps(
     starts: Sequence[LandmarkStart] = (),
     *,
     search: bool = True,
+    as_they_are: bool = False,
     landmarks: Landmarks | None = None,
 ) -> Steps[RegisteredPair]:
     """Find the map between two surfaces that keeps left on the left, and refine it.
@@ -122,6 +129,9 @@ def registered_pair_steps(
         Sparse correspondences that the map may start from.
     search : bool
         Whether other starts are looked for as well.
+    as_they_are : bool
+        Whether the starts are followed up without being refined by functional maps, too.  Then candidates are compared
+        by the maps that their registrations give.
     landmarks : Landmarks, optional
         What is known to correspond, and is held together; the samples of the shapes begin with them.
 
@@ -148,15 +158,17 @@ def registered_pair_steps(
     # Both surfaces are seen from outside, so the true map keeps the orientation.
     keeping = [h for h in hypotheses if h.orientation > 0] or hypotheses
     plausible = [h for h in keeping if h.score < keeping[0].score + _AMBIGUOUS][:_MOST_CANDIDATES]
-    smooth = _functions(x, _SMOOTH)
+    if as_they_are:
+        plausible += [unrefined_hypothesis(hypotheses[0].domains, start) for start in starts]
+    follow = _Follower(source, target, _functions(x, _SMOOTH), ties, by_registration=as_they_are)
     candidates = []
     for number, hypothesis in enumerate(plausible):
         begin, end = (0.42 + 0.26 * (number + i) / len(plausible) for i in (0, 1))
-        candidates.append((yield from within(_candidate_steps(source, target, hypothesis, smooth, ties), begin, end)))
+        candidates.append((yield from within(follow.steps(hypothesis), begin, end)))
     candidates.sort(key=lambda candidate: candidate.score)
     if search:
         # Where no map is looked for, the one that is given is followed as it is.
-        repairing = _limbs_repaired_steps((x, y), (source, target), candidates[0], smooth, ties)
+        repairing = _limbs_repaired_steps((x, y), follow, candidates[0])
         repaired = yield from within(repairing, 0.68, 0.7)
         if repaired is not None:
             hypotheses = [h for h in hypotheses if h is not candidates[0].hypothesis]
@@ -171,7 +183,7 @@ def registered_pair_steps(
     matches = reverse.on_source, reverse.on_target
     steps = restarted_steps(source, target, _functions(x, _DETAILED), matches, stages=_STAGES, ties=ties)
     final = yield from within(steps, 0.88, 1.0)
-    margin = _margin(best, candidates, hypotheses)
+    margin = _margin(best, candidates, () if as_they_are else hypotheses)
     return RegisteredPair(x, y, source, target, final, reverse, tuple(candidates), margin, landmarks, mirrored)
 
 
@@ -189,50 +201,52 @@ def _ties(x: Shape, y: Shape, target: DeformableSurface, here: LandmarkPlaces, t
     return Ties.at(x.mesh, at, target.in_unit_size(places))
 
 
-def _candidate_steps(
-    source: DeformableSurface,
-    target: DeformableSurface,
-    hypothesis: MapHypothesis,
-    smooth: NDArray[np.float64],
-    ties: Ties | None,
-) -> Steps[Candidate]:
-    images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
-    start = smooth_start(source, target, images.on_y, smooth)
-    first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
-    steps = register_steps(source, target, start, (SOFT,), first, ties=ties)
-    registration = yield from within(steps, 0.2, 1.0)
-    cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
-    score = hypothesis.score + _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
-    return Candidate(hypothesis, registration, score)
+@dataclass(frozen=True, eq=False)
+class _Follower:
+    """Follows hypotheses up by a soft registration."""
+
+    source: DeformableSurface
+    target: DeformableSurface
+    smooth: NDArray[np.float64]
+    ties: Ties | None
+    by_registration: bool
+
+    def steps(self, hypothesis: MapHypothesis) -> Steps[Candidate]:
+        """Register the source from where a hypothesis takes it, and judge what comes of it."""
+        source, target = self.source, self.target
+        images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
+        start = smooth_start(source, target, images.on_y, self.smooth)
+        first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
+        steps = register_steps(source, target, start, (SOFT,), first, ties=self.ties)
+        registration = yield from within(steps, 0.2, 1.0)
+        cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
+        score = hypothesis.score
+        if self.by_registration:
+            score = score_everywhere(hypothesis.domains, self.vertex_maps(registration))
+        score += _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
+        return Candidate(hypothesis, registration, score)
+
+    def vertex_maps(self, registration: Registration) -> PointMaps:
+        """Take the maps of a registration between all vertices."""
+        on_target, on_source = registration.on_target, registration.on_source
+        return PointMaps(
+            self.target.triangles[on_target.triangles, on_target.barycentric.argmax(axis=1)],
+            self.source.triangles[on_source.triangles, on_source.barycentric.argmax(axis=1)],
+        )
 
 
-def _limbs_repaired_steps(
-    shapes: tuple[Shape, Shape],
-    surfaces: tuple[DeformableSurface, DeformableSurface],
-    best: Candidate,
-    smooth: NDArray[np.float64],
-    ties: Ties | None,
-) -> Steps[Candidate | None]:
+def _limbs_repaired_steps(shapes: tuple[Shape, Shape], follow: _Follower, best: Candidate) -> Steps[Candidate | None]:
     """Follow the best candidate up anew if it exchanges limbs; None if it does not, or if that is no better."""
-    wrong = _vertex_maps(*surfaces, best.registration)
+    wrong = follow.vertex_maps(best.registration)
     start = repaired_start(*shapes, wrong)
     if start is None:
         return None
     hypotheses = yield from within(map_hypotheses_steps(*shapes, (start,), search=False), 0.0, 0.3)
-    repaired = yield from within(_candidate_steps(*surfaces, hypotheses[0], smooth, ties), 0.3, 1.0)
-    right = _vertex_maps(*surfaces, repaired.registration)
+    repaired = yield from within(follow.steps(hypotheses[0]), 0.3, 1.0)
+    right = follow.vertex_maps(repaired.registration)
     # What exchanges the ends of limbs may fit a little better by all other measures.
     clear = all(exchanged_limbs(*shapes, wrong)) and not any(exchanged_limbs(*shapes, right))
-    return repaired if repaired.score < best.score + (_AMBIGUOUS if clear else 0.0) else None
-
-
-def _vertex_maps(source: DeformableSurface, target: DeformableSurface, registration: Registration) -> PointMaps:
-    """Take the maps of a registration between all vertices."""
-    on_target, on_source = registration.on_target, registration.on_source
-    return PointMaps(
-        target.triangles[on_target.triangles, on_target.barycentric.argmax(axis=1)],
-        source.triangles[on_source.triangles, on_source.barycentric.argmax(axis=1)],
-    )
+    return repaired if repaired.score < best.score + (_CONTRADICTED if clear else 0.0) else None
 
 
 def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
@@ -240,10 +254,16 @@ def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> Fou
     return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))
 
 
-def _margin(best: Candidate, candidates: list[Candidate], hypotheses: list[MapHypothesis]) -> float | None:
+def _margin(best: Candidate, candidates: list[Candidate], hypotheses: Sequence[MapHypothesis]) -> float | None:
     """By how much the second choice is less credible; hypotheses that were not registered count by their own score."""
-    gaps = [candidate.score - best.score for candidate in candidates[1:]]
+    others = [candidate for candidate in candidates if _apart(candidate, best) > _DISTINCT]
+    gaps = [candidate.score - best.score for candidate in others]
     tried = {id(candidate.hypothesis) for candidate in candidates}
     gaps += [h.score - best.hypothesis.score for h in hypotheses if id(h) not in tried and h.orientation > 0]
     # With limbs put right, the hypothesis is another one than those that were sorted out by their scores.
     return max(float(min(gaps)), 0.0) if gaps else None
+
+
+def _apart(first: Candidate, second: Candidate) -> float:
+    """Mean distance between where two candidates take the source, in sqrt(area)."""
+    return float(np.linalg.norm(first.registration.positions - second.registration.positions, axis=1).mean())

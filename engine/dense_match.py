@@ -113,9 +113,8 @@ def densify_steps(
     # Seen in a mirror, the source is matched by a map that keeps the orientation.
     seen = x.reflected() if mirrored else x
     involution = mirrored and x is y
-    # Maps that keep the reflected surface as it is mirror this one: no search proposes the true one.
-    search = mirrored and not involution
-    steps = registered_pair_steps(seen.limited(_SAMPLES), y.limited(_SAMPLES), (start,), search=search)
+    shapes = seen.limited(_SAMPLES), y.limited(_SAMPLES)
+    steps = registered_pair_steps(*shapes, (start,), search=mirrored, as_they_are=mirrored)
     pair = yield from within(steps, 0.35, 0.8)
     dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
     if mirrored:

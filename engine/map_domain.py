@@ -97,6 +97,12 @@ class MapDomain:
         places = self.shape.mesh.vertices[self.vertices] / self.shape.scale
         return places - places.mean(axis=0)
 
+    def nearest_samples(self, vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Numbers of the fine samples nearest, in space, to vertices (k,), (k,)."""
+        positions = self.shape.mesh.vertices
+        nearest: NDArray[np.int64] = cKDTree(positions[self.vertices]).query(positions[vertices])[1]
+        return nearest
+
     @cached_property
     def normals(self) -> NDArray[np.float64]:
         """Unit normals at the fine samples, (p, 3)."""

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from .shape import Shape
 
-__all__ = ["LandmarkStart", "MapHypothesis", "map_hypotheses_steps"]
+__all__ = ["LandmarkStart", "MapHypothesis", "map_hypotheses_steps", "score_everywhere", "unrefined_hypothesis"]
 
 _FINE_SIZES = spectral_sizes(15, 80, 9)
 _DENSE_SIZES = spectral_sizes(80, 110, 3)
@@ -172,6 +172,27 @@ def map_hypotheses_steps(
         refined.append(_assessed(a, b, (yield from within(finer, begin, end)), origin))
     kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
     return [MapHypothesis((a, b), lead.points, lead.score, lead.orientation, lead.terms, lead.origin) for lead in kept]
+
+
+def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: LandmarkStart) -> MapHypothesis:
+    """Take a start as it is: every vertex goes to the one at the most similar distances from the known places.
+
+    Functional maps join what looks alike, such as the one horn of two that is whole with itself in a map that mirrors.
+    """
+    x, y = domains
+    rough = _assessed(x, y, _from_landmarks(x, y, start), start.origin)
+    hypothesis = MapHypothesis(domains, rough.points, rough.score, rough.orientation, rough.terms, rough.origin)
+    rows = (np.asarray(distances, np.float64).T for distances in (start.source_distances, start.target_distances))
+    hypothesis.__dict__["images"] = nearest_both_ways(*rows)
+    return hypothesis
+
+
+def score_everywhere(domains: tuple[MapDomain, MapDomain], images: PointMaps) -> float:
+    """Score maps between all vertices like a hypothesis: smaller is more credible."""
+    x, y = domains
+    on_y = y.nearest_samples(images.on_y[x.vertices])
+    on_x = x.nearest_samples(images.on_x[y.vertices])
+    return _assessed(x, y, PointMaps(on_y, on_x), "").score
 
 
 def _keeping_leads_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:

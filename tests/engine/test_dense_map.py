@@ -107,6 +107,15 @@ def test_a_given_start_is_followed_where_nothing_is_searched(bodies, starts):
     assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
 
 
+def test_a_start_is_followed_as_it_is_too_and_is_no_other_map(bodies, starts):
+    x, y, rest_x, rest_y = bodies
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False, as_they_are=True))
+    assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true", "true"]
+    assert pair.candidates[0].score < pair.candidates[1].score
+    assert pair.margin is None
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
+
+
 def test_of_two_starts_the_one_that_keeps_the_orientation_is_taken(bodies, starts):
     x, y, rest_x, rest_y = bodies
     pair = run(registered_pair_steps(x, y, starts[::-1], search=False))

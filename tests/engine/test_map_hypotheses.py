@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from engine import MatchError, Shape, TriangleMesh
-from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps
+from engine.functional_maps import PointMaps
+from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere, unrefined_hypothesis
 from engine.progress import run
 from tests.bodies import mirrored_body
 from tests.shapes import creature, icosphere, permuted, plane, rotation
@@ -170,6 +171,27 @@ def test_landmarks_are_enough_without_a_search(poses):
     (only,) = hypotheses(x, y, [LandmarkStart(*rows)], search=False)
     assert only.origin == "landmarks"
     assert error(rest, only.images_on_y) < 0.02
+
+
+def test_a_start_can_be_taken_as_it_is(poses, proposed):
+    x, y, rest = poses
+    known = x.samples[:30]
+    start = LandmarkStart(x.solver.distances(known) / x.scale, y.solver.distances(known) / y.scale, "known")
+    found = unrefined_hypothesis(proposed[0].domains, start)
+    assert error(rest, found.images_on_y) < 0.02
+    assert error(rest, found.images_on_x) < 0.02
+    assert found.orientation > 0.6
+    assert found.origin == "known"
+
+
+def test_maps_between_all_vertices_are_scored_like_hypotheses(poses, proposed):
+    x, domains = poses[0], proposed[0].domains
+    everywhere = np.arange(x.mesh.vertex_count)
+    ahead = x.mesh.triangles[[np.flatnonzero((x.mesh.triangles == v).any(axis=1))[0] for v in everywhere]].max(axis=1)
+    truth, shuffled = PointMaps(everywhere, everywhere), PointMaps(everywhere[::-1], everywhere[::-1])
+    score = score_everywhere(domains, truth)
+    assert score < proposed[0].score + 0.5  # it is the true map itself
+    assert score < score_everywhere(domains, PointMaps(ahead, ahead)) < score_everywhere(domains, shuffled)
 
 
 def test_a_wrong_start_does_not_win(poses):

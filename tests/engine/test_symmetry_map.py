@@ -61,3 +61,16 @@ def test_progress_rises(body):
     assert fractions == sorted(fractions)
     assert fractions[0] >= 0
     assert fractions[-1] <= 1
+
+
+def test_a_leg_that_is_shorter_than_its_partner_still_belongs_to_it():
+    vertices, triangles, rest = mirrored_body(0.6, 11, seed=0)
+    straight, _, _ = mirrored_body(0.0, 11, seed=0)
+    leg = (straight[:, 0] > 0.2) & (straight[:, 1] < 0) & (straight[:, 2] < -0.5)
+    top = vertices[leg][straight[leg, 2].argmax()]
+    vertices = vertices.copy()
+    vertices[leg] = top + 0.85 * (vertices[leg] - top)
+    mesh = TriangleMesh(vertices, triangles)
+    gap = np.linalg.norm(symmetry_map(mesh, QUICK).source_to_target.transfer(rest) - rest * [1, -1, 1], axis=1)
+    assert gap.mean() < 0.02 * np.sqrt(mesh.area)
+    assert gap.max() < 0.2 * np.sqrt(mesh.area)
