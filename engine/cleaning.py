@@ -15,6 +15,7 @@ from .errors import MeshError
 from .hole_filling import fill_holes, small_holes
 from .mesh import TriangleMesh
 from .mesh_orientation import inward_components, orient_consistently, turn_triangles
+from .spikes import find_spikes, pulled_in
 from .triangle_components import triangle_components
 from .vertex_fans import split_fans
 from .vertex_welding import weld_boundaries
@@ -33,7 +34,8 @@ def clean(mesh: TriangleMesh, name: str = "mesh", left_out: NDArray[np.bool_] | 
 
     In this order: vertices along open seams are welded; triangles without three different vertices, and repeated ones,
     left out; edges of more than two triangles opened; triangles turned to agree with their neighbours; vertices split
-    at which sheets only touch; parts turned that look inward; small holes of the main part filled.
+    at which sheets only touch; single vertices that stick out pulled in; parts turned that look inward; small holes of
+    the main part filled.
 
     Parameters
     ----------
@@ -67,6 +69,7 @@ def clean(mesh: TriangleMesh, name: str = "mesh", left_out: NDArray[np.bool_] | 
         work.keep(~repeated)
         groups = group_half_edges(work.triangles, len(work.vertices))
     _make_manifold(work, groups)
+    _pull_in_spikes(work)
     inward = inward_components(work.vertices, work.triangles, work.twins, work.components)
     work.turn(inward[work.components])
     work.counts.loose = _loose_vertices(mesh, left_out)
@@ -199,6 +202,17 @@ def _leave_out_crowding(work: _Work) -> None:
         work.split()
     if work.counts.left_out:
         work.components = triangle_components(work.twins)
+
+
+def _pull_in_spikes(work: _Work) -> None:
+    """Move single vertices that stick out back to their neighbours: they would be taken for limbs."""
+    spikes = find_spikes(work.vertices, work.triangles)
+    work.counts.spikes = len(spikes)
+    if len(spikes):
+        work.vertices = pulled_in(work.vertices, work.triangles, spikes)
+        affected = np.flatnonzero(np.isin(work.triangles, spikes).any(axis=1))
+        work.areas = work.areas.copy()
+        work.areas[affected] = _areas(work.vertices, work.triangles[affected])
 
 
 def _in_parts(

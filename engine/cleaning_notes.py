@@ -28,6 +28,8 @@ class CleaningCounts:
         Whether there was a surface with only one side.
     touching : int
         Vertices at which sheets touched.
+    spikes : int
+        Single vertices that stuck out far from all their neighbours.
     inverted : bool
         Whether the main part was inside out.
     filled, left_open : int
@@ -46,6 +48,7 @@ class CleaningCounts:
     turned: int = 0
     one_sided: bool = False
     touching: int = 0
+    spikes: int = 0
     inverted: bool = False
     filled: int = 0
     left_open: int = 0
@@ -77,6 +80,7 @@ def cleaning_notes(name: str, counts: CleaningCounts) -> tuple[str, ...]:
         (counts.touching, "place", "places", "where sheets touch in one vertex", "separated for matching"),
         (counts.left_out, "face", "faces", "of sheets that share an edge", "left out"),
         (counts.turned, "face", "faces", "with normals against their neighbours", "read the other way round"),
+        (counts.spikes, "spike", "spikes", "of one vertex", "pulled in for matching"),
         (counts.filled, "small hole", "small holes", "", "closed for matching"),
     )
     notes = []

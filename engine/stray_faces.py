@@ -25,15 +25,6 @@ _TOOTH = 0.52
 _LARGE = 20.0
 """How many times the area of a face the parts on both sides have, so that no small part is eaten up."""
 
-_SPLINTER = 0.005
-"""Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
-
-_LARGE = 20.0
-"""How many times the area of a face the parts on both sides have, so that no small part is eaten up."""
-
-_SPLINTER = 0.005
-"""Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
-
 _TINY = float(np.finfo(float).tiny)
 
 
