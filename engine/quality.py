@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .missing_parts import neighbour_means, round_trips, with_partner
 from .surface_map import SurfaceMap
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .surface import SurfacePoints
 
-__all__ = ["MatchQuality", "assess_maps", "map_confidence", "round_trips", "with_partner"]
+__all__ = ["MatchQuality", "assess_maps", "map_confidence"]
 
 _TRUSTED_ROUND_TRIP = 0.02
 """Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
@@ -24,14 +25,12 @@ _TRUSTED_ROUND_TRIP = 0.02
 _TRUSTED_STRETCH = 1.0
 """Logarithm of the stretch of the surface around a point at which its confidence is halved."""
 
-_SPACINGS, _LEAST_REACH = 3.0, 0.03
-"""Length of a round trip from which on it does not lead home: vertex spacings, and a part of sqrt(area)."""
+_WHOLE = 0.995
+"""Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths, and
+fingertips that another body has not are no more than this."""
 
-_MOSTLY = 0.5
-"""Part of a vertex and its neighbours that must be at home for it to have a partner."""
-
-_WHOLE = 0.98
-"""Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths."""
+_ROUNDED = 0.98
+"""Parts from which on tenths of a percent are said."""
 
 _CLEAR_MARGIN = 1.0
 """Difference of scores to the next candidate from which on the choice between them was clear."""
@@ -49,7 +48,7 @@ class MatchQuality:
     distortion : float
         Mean of the absolute logarithm of the stretch of edges, by area: 0 for an isometry, 0.1 for some ten per cent.
     coverage : float
-        Part of the target's area that the source is mapped to, up to three vertex spacings away.
+        Part of the target's area that has a partner on the source, see `with_partner`.
     disagreement : float
         Mean distance between a point of the source and where the two maps bring it, there and back, in units of the
         square root of the area.
@@ -74,25 +73,6 @@ class MatchQuality:
     source_coverage: float = 1.0
 
 
-def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> NDArray[np.float64]:
-    """Distance between each vertex of the source and where two maps bring it, there and back, (n,).
-
-    `there` holds a point of the target for each vertex of the source, `back` one of the source for each of the target.
-    """
-    returned = np.einsum("kc,kcd->kd", there.barycentric, back.positions[there.corners])
-    return np.linalg.norm(returned - source.vertices, axis=1)
-
-
-def with_partner(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> NDArray[np.bool_]:
-    """Tell which vertices of the source have a partner on the target, (n,), by a pair of maps.
-
-    What is missing on the target is mapped to whatever is left, but from there the way back leads elsewhere.
-    """
-    spacing = np.sqrt(source.area / source.vertex_count)
-    home = round_trips(source, there, back) < max(_SPACINGS * spacing, _LEAST_REACH * np.sqrt(source.area))
-    return _neighbour_means(source, home.astype(np.float64)) >= _MOSTLY
-
-
 def map_confidence(
     source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints
 ) -> NDArray[np.float64]:
@@ -107,7 +87,7 @@ def map_confidence(
     distances = round_trips(source, there, back) / np.sqrt(source.area)
     stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
     confidence = 1 / ((1 + np.square(distances / _TRUSTED_ROUND_TRIP)) * (1 + np.square(stretch / _TRUSTED_STRETCH)))
-    return np.clip(_neighbour_means(source, confidence), 0, 1) * with_partner(source, there, back)
+    return np.clip(neighbour_means(source, confidence), 0, 1) * with_partner(source, target, there, back)
 
 
 def assess_maps(
@@ -127,8 +107,8 @@ def assess_maps(
     orientation = SurfaceMap.from_points(target, there).orientation(source, target)
     lengths = np.square(source.edge_lengths)
     distortion = float(np.average(np.abs(_log_stretch(source, target, there)), weights=lengths))
-    coverage = float(np.average(with_partner(target, back, there), weights=target.vertex_areas))
-    source_coverage = float(np.average(with_partner(source, there, back), weights=source.vertex_areas))
+    coverage = float(np.average(with_partner(target, source, back, there), weights=target.vertex_areas))
+    source_coverage = float(np.average(with_partner(source, target, there, back), weights=source.vertex_areas))
     trips = round_trips(source, there, back) / np.sqrt(source.area)
     disagreement = float(np.average(trips, weights=source.vertex_areas))
     confidence = float(np.average(map_confidence(source, target, there, back), weights=source.vertex_areas))
@@ -159,8 +139,13 @@ def _without_partner(quality: MatchQuality) -> str:
     """Say which of the shapes has more that the other lacks."""
     missing = "parts of one shape seem to be missing on the other."
     if quality.coverage <= quality.source_coverage:
-        return f"Only {quality.coverage:.0%} of the target is reached: {missing}"
-    return f"Only {quality.source_coverage:.0%} of the source has a partner: {missing}"
+        return f"Only {_percentage(quality.coverage)} of the target is reached: {missing}"
+    return f"Only {_percentage(quality.source_coverage)} of the source has a partner: {missing}"
+
+
+def _percentage(part: float) -> str:
+    """Write a part of a whole so that what is left does not vanish."""
+    return f"{part:.0%}" if part < _ROUNDED else f"{part:.1%}"
 
 
 def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> NDArray[np.float64]:
@@ -177,10 +162,3 @@ def _vertex_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np
     """Mean of values per edge (e,) over the edges at each vertex, (n,)."""
     ends, n = mesh.edges.ravel(), mesh.vertex_count
     return np.bincount(ends, np.repeat(values, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)
-
-
-def _neighbour_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean of values per vertex (n,) over each vertex and its neighbours."""
-    (first, second), n = mesh.edges.T, mesh.vertex_count
-    sums = values + np.bincount(first, values[second], n) + np.bincount(second, values[first], n)
-    return sums / (1 + np.bincount(first, minlength=n) + np.bincount(second, minlength=n))

@@ -17,7 +17,7 @@ from engine import (
     match,
     match_steps,
 )
-from engine.quality import round_trips
+from engine.missing_parts import round_trips
 from tests.bodies import mirrored_body
 from tests.messes import together
 from tests.shapes import creature, icosphere, permuted, rotation, subdivided
