@@ -109,6 +109,11 @@ class RegisteredPair:
     landmarks: Landmarks | None = None
     mirrored: bool = False
 
+    @property
+    def likeness(self) -> float | None:
+        """How credible the best candidate was, whatever the others; None with landmarks, which know more."""
+        return None if self.landmarks is not None else -self.candidates[0].score
+
 
 def registered_pair_steps(
     x: Shape,

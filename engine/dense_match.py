@@ -191,7 +191,7 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
         there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
         back = pinned(main_y, main_x, back, partners, here, search=x.dense_search)
     yield Progress(0.8, "Judging the map")
-    quality = assess_maps(main_x, main_y, there, back, pair.margin)
+    quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness)
     yield Progress(0.85, "Mapping every vertex")
     forward = _followed(x, y, there, map_confidence(main_x, main_y, there, back))
     yield Progress(0.9, "Mapping every vertex")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import expit
 
 from .missing_parts import neighbour_means, round_trips, with_partner
 from .surface_map import SurfaceMap
@@ -32,8 +33,15 @@ fingertips that another body has not are no more than this."""
 _ROUNDED = 0.98
 """Parts from which on tenths of a percent are said."""
 
+_PLAUSIBLE = 0.5
+"""Part of shapes so much alike that are matched rightly below which nothing should be trusted."""
+
 _CLEAR_MARGIN = 1.0
 """Difference of scores to the next candidate from which on the choice between them was clear."""
+
+_LIKENESS, _LIKENESS_SPREAD = 13.5, 0.6
+"""Likeness of shapes that are matched wrongly as often as not, and by how much more or less it decides: cats, people
+and octopuses are matched to one another at 9 to 13, gorillas to men at 14 to 17, two persons at 20 to 30."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +69,8 @@ class MatchQuality:
         The same for a person to read.
     source_coverage : float
         Like `coverage`, the part of the source's area that has a partner on the target.
+    likeness : float or None
+        How credible the map was before details were fitted, see `RegisteredPair.likeness`; None if that is not known.
     """
 
     orientation: float
@@ -71,6 +81,7 @@ class MatchQuality:
     confidence: float
     sentence: str
     source_coverage: float = 1.0
+    likeness: float | None = None
 
 
 def map_confidence(
@@ -91,7 +102,13 @@ def map_confidence(
 
 
 def assess_maps(
-    source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints, margin: float | None
+    source: TriangleMesh,
+    target: TriangleMesh,
+    there: SurfacePoints,
+    back: SurfacePoints,
+    margin: float | None,
+    *,
+    likeness: float | None = None,
 ) -> MatchQuality:
     """Measure a pair of maps between two surfaces.
 
@@ -103,6 +120,8 @@ def assess_maps(
         A point of the target for each vertex of the source, and the other way round.
     margin : float or None
         How clear the choice of the map was.
+    likeness : float, optional
+        How credible the map was.
     """
     orientation = SurfaceMap.from_points(target, there).orientation(source, target)
     lengths = np.square(source.edge_lengths)
@@ -115,17 +134,37 @@ def assess_maps(
     confidence *= max(orientation, 0.0)
     if margin is not None:
         confidence *= 1 - 0.5 * float(np.exp(-margin / _CLEAR_MARGIN))
-    quality = MatchQuality(orientation, distortion, coverage, disagreement, margin, confidence, "", source_coverage)
+    confidence *= _plausibility(likeness)
+    numbers = orientation, distortion, coverage, disagreement, margin, confidence
+    quality = MatchQuality(*numbers, "", source_coverage, likeness)
     return replace(quality, sentence=_sentence(quality))
+
+
+def _plausibility(likeness: float | None) -> float:
+    """Estimate the part of shapes so much alike that are matched rightly as a whole, 0 to 1."""
+    return 1.0 if likeness is None else float(expit((likeness - _LIKENESS) / _LIKENESS_SPREAD))
 
 
 def _sentence(quality: MatchQuality) -> str:
     """Say the worst that is known."""
-    margin, distortion, disagreement = quality.margin, quality.distortion, quality.disagreement
+    return _doubt(quality) or _difference(quality)
+
+
+def _doubt(quality: MatchQuality) -> str:
+    """Say why the map as a whole may be wrong; nothing if there is no reason."""
+    margin = quality.margin
     if quality.orientation < 0.3:
         return "The map turns large parts of the surface over: do not trust it; try landmarks."
+    if _plausibility(quality.likeness) < _PLAUSIBLE:
+        return "The shapes have too little in common: leave out what only one of them has, or try landmarks."
     if margin is not None and margin < _CLEAR_MARGIN:
         return "Another map was almost as likely, such as one that swaps left and right: check the sides."
+    return ""
+
+
+def _difference(quality: MatchQuality) -> str:
+    """Say how much the shapes differ."""
+    distortion, disagreement = quality.distortion, quality.disagreement
     if min(quality.coverage, quality.source_coverage) < _WHOLE:
         return _without_partner(quality)
     if disagreement > 0.02 or distortion > 0.5:

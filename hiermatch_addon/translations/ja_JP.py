@@ -1110,6 +1110,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The map turns large parts of the surface over: do not trust it; try landmarks.": (
         "マップが表面の大きな部分を裏返しています。信頼せず、ランドマークを試してください。"
     ),
+    "The shapes have too little in common: leave out what only one of them has, or try landmarks.": (
+        "形状の共通点が少なすぎます。片方にしかない部分を除外するか、ランドマークを試してください。"
+    ),
     "Another map was almost as likely, such as one that swaps left and right: check the sides.": (
         "左右が入れ替わったものなど、別のマップもほぼ同じくらい有力でした。左右を確認してください。"
     ),

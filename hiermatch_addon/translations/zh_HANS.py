@@ -924,6 +924,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The map turns large parts of the surface over: do not trust it; try landmarks.": (
         "映射将表面的大片区域翻转：不可信，请尝试使用地标。"
     ),
+    "The shapes have too little in common: leave out what only one of them has, or try landmarks.": (
+        "两个形状的共同点太少：请排除只有其中一个才有的部分，或尝试使用地标。"
+    ),
     "Another map was almost as likely, such as one that swaps left and right: check the sides.": (
         "另一个映射几乎同样可能，例如左右互换的映射：请检查左右。"
     ),

@@ -131,6 +131,19 @@ def test_the_choice_of_the_map_counts(ball):
     assert doubtful.margin == 0.5
 
 
+def test_shapes_that_are_too_unlike_are_not_trusted(ball):
+    """However well one is laid onto the other."""
+    sure, even, unlike = (
+        assess_maps(ball, ball, at(ball), at(ball), None, likeness=likeness) for likeness in (25.0, 13.5, 10.0)
+    )
+    assert sure.confidence == pytest.approx(1, abs=1e-6)
+    assert sure.sentence == "The shapes correspond closely."
+    assert even.confidence == pytest.approx(0.5)
+    assert unlike.confidence < 0.01
+    assert "too little in common" in unlike.sentence
+    assert (sure.likeness, unlike.likeness, by_index(ball, ball).likeness) == (25.0, 10.0, None)
+
+
 def test_the_worst_is_said_first(symmetric):
     body, other = symmetric
     turned = assess_maps(body, body, at(body, other), at(body, other), 0.1)
@@ -138,6 +151,8 @@ def test_the_worst_is_said_first(symmetric):
     point = at(body, np.zeros(body.vertex_count, int))
     reached = assess_maps(body, body, at(body), point, 0.1)
     assert "almost as likely" in reached.sentence
+    unlike = assess_maps(body, body, at(body), point, 0.1, likeness=5.0)
+    assert "too little in common" in unlike.sentence
 
 
 @pytest.mark.parametrize("slide", [0.0, 0.01, 0.02, 0.04])
