@@ -20,23 +20,8 @@ __all__ = [
 ]
 
 
-def _shown_number(context: bpy.types.Context, number: int) -> int:
-    """Return a number, or that of the active row of the list if it is zero."""
-    steering = steering_of(context)
-    if number:
-        return number
-    if not 0 <= steering.landmark_index < len(steering.landmarks):
-        raise ObjectError("No landmark is chosen. Choose one in the list, or add one.")
-    return int(steering.landmarks[steering.landmark_index].number)
-
-
-class HIERMATCH_OT_remove_landmark(LandmarkOperator, bpy.types.Operator):
-    """Remove a landmark."""
-
-    bl_idname = "hiermatch.remove_landmark"
-    bl_label = "Remove Landmark"
-    bl_description = "Remove a landmark from both meshes"
-    bl_options = {"REGISTER", "UNDO"}
+class _OneLandmark(LandmarkOperator):
+    """What is done to one landmark."""
 
     number: bpy.props.IntProperty(
         name="Number",
@@ -45,8 +30,26 @@ class HIERMATCH_OT_remove_landmark(LandmarkOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
+    def _chosen(self, context: bpy.types.Context) -> int:
+        """Return the number, or that of the active row of the list if it is zero."""
+        steering = steering_of(context)
+        if self.number:
+            return int(self.number)
+        if not 0 <= steering.landmark_index < len(steering.landmarks):
+            raise ObjectError("No landmark is chosen. Choose one in the list, or add one.")
+        return int(steering.landmarks[steering.landmark_index].number)
+
+
+class HIERMATCH_OT_remove_landmark(_OneLandmark, bpy.types.Operator):
+    """Remove a landmark."""
+
+    bl_idname = "hiermatch.remove_landmark"
+    bl_label = "Remove Landmark"
+    bl_description = "Remove a landmark from both meshes"
+    bl_options = {"REGISTER", "UNDO"}
+
     def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
-        number = _shown_number(context, self.number)
+        number = self._chosen(context)
         remove_landmark(source, target, number)
         return f"Removed landmark {number}"
 
@@ -63,7 +66,7 @@ class HIERMATCH_OT_clear_landmarks(LandmarkOperator, bpy.types.Operator):
         return f"Removed {clear_landmarks(source, target)} landmarks"
 
 
-class HIERMATCH_OT_switch_landmark(LandmarkOperator, bpy.types.Operator):
+class HIERMATCH_OT_switch_landmark(_OneLandmark, bpy.types.Operator):
     """Switch a landmark on or off."""
 
     bl_idname = "hiermatch.switch_landmark"
@@ -71,21 +74,15 @@ class HIERMATCH_OT_switch_landmark(LandmarkOperator, bpy.types.Operator):
     bl_description = "Switch a landmark on or off; matches keep to those that are on"
     bl_options = {"REGISTER", "UNDO"}
 
-    number: bpy.props.IntProperty(
-        name="Number",
-        description="Which landmark; if zero, the one that is active in the list",
-        min=0,
-        options={"SKIP_SAVE"},
-    )
     use: bpy.props.BoolProperty(name="Use", description="Whether matches are to keep to it", default=True)
 
     def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
-        number = _shown_number(context, self.number)
+        number = self._chosen(context)
         switch_landmark(source, target, number, use=self.use)
         return f"Landmark {number} is {'on' if self.use else 'off'}"
 
 
-class HIERMATCH_OT_select_landmark(LandmarkOperator, bpy.types.Operator):
+class HIERMATCH_OT_select_landmark(_OneLandmark, bpy.types.Operator):
     """Show where a landmark is."""
 
     bl_idname = "hiermatch.select_landmark"
@@ -93,15 +90,8 @@ class HIERMATCH_OT_select_landmark(LandmarkOperator, bpy.types.Operator):
     bl_description = "Select the two vertices of a landmark, and nothing else of the two meshes"
     bl_options = {"REGISTER", "UNDO"}
 
-    number: bpy.props.IntProperty(
-        name="Number",
-        description="Which landmark; if zero, the one that is active in the list",
-        min=0,
-        options={"SKIP_SAVE"},
-    )
-
     def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
-        number = _shown_number(context, self.number)
+        number = self._chosen(context)
         found = {landmark.number: landmark for landmark in find_landmarks(source, target)}
         if number not in found:
             raise ObjectError(f'"{source.name}" and "{target.name}" have no landmark {number} in common.')
