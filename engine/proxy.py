@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, diags_array
-from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
-from scipy.spatial import cKDTree
 
 from .closest_points import ClosestPoints
-from .dual_triangulation import DualTriangulation, dual_triangulation, manifold_part
+from .dual_triangulation import manifold_part
 from .mesh import TriangleMesh
 from .progress import Progress, Steps
 from .surface import SurfacePoints
 from .surface_cells import SurfaceCells, grid_labels, nearest_members
+from .voronoi_regions import VoronoiRegions, spread_regions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,12 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["Proxy", "proxy_steps"]
 
 _LARGE = 1.6  # times as many vertices as wanted: meshes with fewer stand for themselves
-_CELLS = 10.0  # cells for each vertex of the proxy; many, so that a cell never joins two fingers
+_CELLS = 20.0  # cells for each vertex of the proxy: some where it is densest, and none ever joins two fingers
 _CELL_SIZE = 0.85  # of sqrt(area / cells); a cube cuts more from a slanted surface than its side squared
-_SPACING = 0.78  # least distance of seeds, in units of sqrt(area / vertices)
-_LLOYD_STEPS = 2
-_REPAIRS = 24  # rounds; each may double the seeds where something is wrong
-_DISSOLVING = 6  # in every so many rounds regions that are still wrong fall apart into single vertices
 _HOLE = 2.0  # perimeter in units of sqrt(area / vertices) below which a hole is closed: no loop of the proxy fits it
 _FITS = 2
 _TETHER = 0.02  # weight of staying in place against that of the vertices around, where these leave freedom
@@ -69,16 +65,6 @@ class Proxy:
         return cls(mesh, SurfacePoints.at_vertices(mesh, vertices), vertices)
 
 
-@dataclass(frozen=True, eq=False)
-class _Regions:
-    """Cells gathered around seeds, and the triangulation of their neighbourhoods."""
-
-    cells: SurfaceCells
-    seeds: NDArray[np.int64]  # (k,) cells
-    labels: NDArray[np.int64]  # (c,) region of each cell
-    dual: DualTriangulation
-
-
 def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
     """Approximate a dense mesh by a coarse one.
 
@@ -102,13 +88,14 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
 
     Notes
     -----
-    The vertices are gathered in the cubes of a grid, ten for each vertex of the proxy and split into parts that hang
-    together, so that all that follows costs the same whatever the number of vertices.  Seeds are spread over these
-    cells with a least distance between each two (Poisson-disk sampling [1]_), moved to the centres of their
-    Voronoi regions twice [2]_, and joined by the triangulation dual to the regions.  Where that is not a manifold like
-    the surface, farther seeds are added to the regions at fault; so thin and intricate parts get more vertices, and in
-    the limit all of the mesh.  Last, the positions are fitted to the vertices in the least squares sense, which
-    restores most of the volume that coarse triangles cut away.
+    The vertices are gathered in the cubes of a grid, twenty for each vertex of the proxy and split into parts that
+    hang together, so that all that follows costs the same whatever the number of vertices.  Seeds are spread over these
+    cells with a least distance between each two (Poisson-disk sampling [1]_), smaller where the surface bends, so that
+    the features by which it is recognised are kept; moved to the centres of their Voronoi regions twice [2]_; and
+    joined by the triangulation dual to the regions.  Where that is not a manifold like the surface, farther seeds are
+    added to the regions at fault; so thin and intricate parts get more vertices, and in the limit all of the mesh.
+    Last, the positions are fitted to the vertices in the least squares sense, which restores most of the volume that
+    coarse triangles cut away.
 
     Holes too small for a loop of the proxy's edges are closed in it.  Should faults remain (a mesh that is not a
     manifold, say), a proxy of twice as many vertices is tried, and then the largest part without faults is taken.
@@ -133,9 +120,9 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
             closed, grid_labels(closed, _CELL_SIZE * float(np.sqrt(closed.area / (_CELLS * count))))
         )
         yield Progress(start + 0.2, "Simplifying the mesh")
-        regions = _spread_regions(cells, count)
+        regions = spread_regions(cells, count)
         yield Progress(start + 0.25, "Simplifying the mesh")
-        regions = _repaired(closed, regions)
+        regions = regions.repaired(closed)
         kept = (
             manifold_part(regions.dual.triangles, len(regions.seeds))
             if regions.dual.faulty.any()
@@ -180,82 +167,7 @@ def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
     return TriangleMesh(np.concatenate([mesh.vertices, centres[small]]), np.concatenate([mesh.triangles, fans]))
 
 
-def _spread_regions(cells: SurfaceCells, count: int) -> _Regions:
-    """Divide a surface into about `count` regions of about the same area."""
-    seeds = _poisson_disk(cells, _SPACING * cells.unit / np.sqrt(count))
-    # A part too small for a seed of its own still needs one.
-    components = cells.component_labels
-    parts, first = np.unique(components, return_index=True)
-    seeds = np.concatenate([seeds, first[~np.isin(parts, components[seeds])]])
-    for _ in range(_LLOYD_STEPS):
-        _, labels = _voronoi(cells, seeds)
-        areas = np.bincount(labels, cells.areas, len(seeds))
-        moments = [np.bincount(labels, cells.areas * column, len(seeds)) for column in cells.positions.T]
-        centres = np.stack(moments, axis=1) / np.maximum(areas, np.finfo(float).tiny)[:, None]
-        offsets = cells.positions - centres[labels]
-        seeds = nearest_members(labels, np.einsum("cd,cd->c", offsets, offsets), len(seeds))
-    return _triangulated(cells, seeds)
-
-
-def _poisson_disk(cells: SurfaceCells, radius: float) -> NDArray[np.int64]:
-    """Choose cells in random order, each unless a chosen one is nearer than a radius."""
-    pairs = cKDTree(cells.positions).query_pairs(radius, output_type="ndarray")
-    # Cells that face away from one another are on different sides of something thin.
-    agreement = np.einsum("pd,pd->p", cells.normals[pairs[:, 0]], cells.normals[pairs[:, 1]])
-    pairs = pairs[agreement >= 0]
-    priority = np.random.default_rng(0).permutation(cells.count)
-    ahead = np.where((priority[pairs[:, 0]] < priority[pairs[:, 1]])[:, None], pairs, pairs[:, ::-1])
-    # As if one after the other: whoever has nobody undecided ahead is chosen, and rules out all behind.
-    chosen, undecided = np.zeros(cells.count, bool), np.ones(cells.count, bool)
-    while undecided.any():
-        waits = np.zeros(cells.count, bool)
-        waits[ahead[:, 1]] = True
-        new = undecided & ~waits
-        chosen |= new
-        undecided &= ~new
-        undecided[ahead[new[ahead[:, 0]], 1]] = False
-        ahead = ahead[undecided[ahead].all(axis=1)]
-    return np.flatnonzero(chosen)
-
-
-def _voronoi(cells: SurfaceCells, seeds: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Distance from the nearest seed, and which it is, (c,) each; every component has a seed."""
-    distances, _, sources = dijkstra(cells.graph, directed=True, indices=seeds, min_only=True, return_predecessors=True)
-    number = np.empty(cells.count, np.int64)
-    number[seeds] = np.arange(len(seeds))
-    return distances, number[sources]
-
-
-def _triangulated(cells: SurfaceCells, seeds: NDArray[np.int64]) -> _Regions:
-    _, labels = _voronoi(cells, seeds)
-    return _Regions(cells, seeds, labels, dual_triangulation(cells, labels, len(seeds)))
-
-
-def _repaired(mesh: TriangleMesh, regions: _Regions) -> _Regions:
-    """Add seeds until the dual triangulation is a manifold like the surface, or the rounds run out."""
-    for repair in range(1, _REPAIRS + 1):
-        faulty = regions.dual.faulty
-        if not faulty.any():
-            break
-        cells, seeds = regions.cells, regions.seeds
-        distances, labels = _voronoi(cells, seeds)
-        farthest = nearest_members(labels, -distances, len(seeds))[faulty]
-        added = farthest[distances[farthest] > 0]
-        if not len(added) or repair % _DISSOLVING == 0:
-            in_faulty = faulty[labels] & (np.bincount(cells.labels, minlength=cells.count) > 1)
-            if in_faulty.any():
-                heads = cells.nearest_vertices(mesh.vertices)
-                chosen = heads[np.concatenate([seeds, added])]
-                cells = cells.dissolved(mesh, in_faulty)
-                regions = _triangulated(cells, cells.labels[chosen])
-                continue
-        if not len(added):
-            break
-        regions = _triangulated(cells, np.concatenate([seeds, added]))
-    return regions
-
-
-def _fitted(mesh: TriangleMesh, regions: _Regions, kept: NDArray[np.int64]) -> Steps[Proxy]:
+def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: NDArray[np.int64]) -> Steps[Proxy]:
     """Make a proxy of the kept triangles of a triangulation, and fit it to the mesh."""
     cells = regions.cells
     used, triangles = np.unique(regions.dual.triangles[kept], return_inverse=True)
@@ -296,7 +208,7 @@ def _fitted(mesh: TriangleMesh, regions: _Regions, kept: NDArray[np.int64]) -> S
     return Proxy(coarse, SurfacePoints.from_barycentric(coarse, where, barycentric), vertices)
 
 
-def _first_positions(regions: _Regions) -> NDArray[np.float64]:
+def _first_positions(regions: VoronoiRegions) -> NDArray[np.float64]:
     """Seeds' positions (k, 3), but for regions at open boundaries that of the nearest place there.
 
     Else a triangulation dual to regions would end half a region before the boundary.

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Voronoi regions of a surface whose dual triangulation is a manifold like it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
+
+from .dual_triangulation import DualTriangulation, dual_triangulation
+from .sizing_field import vertex_density
+from .surface_cells import SurfaceCells, nearest_members
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+
+__all__ = ["VoronoiRegions", "spread_regions"]
+
+_SPACING = 0.75  # least distance of seeds, in units of sqrt(area / vertices)
+_CANDIDATES = 10.0  # cells that may become seeds, for each one that will
+_LLOYD_STEPS = 2
+_REPAIRS = 24  # rounds; each may double the seeds where something is wrong
+_DISSOLVING = 6  # in every so many rounds regions that are still wrong fall apart into single vertices
+
+
+@dataclass(frozen=True, eq=False)
+class VoronoiRegions:
+    """Cells gathered around seeds, and the triangulation of their neighbourhoods.
+
+    Attributes
+    ----------
+    cells : SurfaceCells
+        The surface, c cells.
+    seeds : (k,) array of int
+        The cell in the middle of each region.
+    labels : (c,) array of int
+        The region of each cell: that of the nearest seed.
+    distances : (c,) array of float
+        How far it is.
+    dual : DualTriangulation
+        The triangulation dual to the regions.
+    """
+
+    cells: SurfaceCells
+    seeds: NDArray[np.int64]
+    labels: NDArray[np.int64]
+    distances: NDArray[np.float64]
+    dual: DualTriangulation
+
+    @classmethod
+    def around(cls, cells: SurfaceCells, seeds: NDArray[np.int64]) -> VoronoiRegions:
+        """Divide a surface into the regions of seeds (k,); every component has a seed."""
+        distances, labels = _nearest_seeds(cells, seeds)
+        return cls(cells, seeds, labels, distances, dual_triangulation(cells, labels, len(seeds)))
+
+    def with_seeds(self, added: NDArray[np.int64]) -> VoronoiRegions:
+        """Return the regions that there are with further seeds (q,)."""
+        # A seed takes no cell from another that is farther from it than any now is from its own.
+        distances, labels = _nearest_seeds(self.cells, added, limit=float(self.distances.max()))
+        closer = distances < self.distances
+        distances = np.where(closer, distances, self.distances)
+        labels = np.where(closer, len(self.seeds) + labels, self.labels)
+        seeds = np.concatenate([self.seeds, added])
+        return VoronoiRegions(self.cells, seeds, labels, distances, dual_triangulation(self.cells, labels, len(seeds)))
+
+    def repaired(self, mesh: TriangleMesh) -> VoronoiRegions:
+        """Add seeds until the dual triangulation is a manifold like the surface, or the rounds run out.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            What the cells are made of.
+        """
+        regions = self
+        for repair in range(1, _REPAIRS + 1):
+            faulty = regions.dual.faulty
+            if not faulty.any():
+                break
+            cells, seeds, labels = regions.cells, regions.seeds, regions.labels
+            farthest = nearest_members(labels, -regions.distances, len(seeds))[faulty]
+            added = farthest[regions.distances[farthest] > 0]
+            if not len(added) or repair % _DISSOLVING == 0:
+                in_faulty = faulty[labels] & (np.bincount(cells.labels, minlength=cells.count) > 1)
+                if in_faulty.any():
+                    heads = cells.nearest_vertices(mesh.vertices)
+                    chosen = heads[np.concatenate([seeds, added])]
+                    cells = cells.dissolved(mesh, in_faulty)
+                    regions = VoronoiRegions.around(cells, cells.labels[chosen])
+                    continue
+            if not len(added):
+                break
+            regions = regions.with_seeds(added)
+        return regions
+
+
+def spread_regions(cells: SurfaceCells, count: int) -> VoronoiRegions:
+    """Divide a surface into about `count` regions, smaller ones where it bends; see `vertex_density`.
+
+    Parameters
+    ----------
+    cells : SurfaceCells
+        The surface.
+    count : int
+        Number of regions; a surface of many parts may have more.
+    """
+    density = vertex_density(cells)
+    seeds = _poisson_disk(cells, count, density)
+    # A part too small for a seed of its own still needs one.
+    components = cells.component_labels
+    parts, first = np.unique(components, return_index=True)
+    seeds = np.concatenate([seeds, first[~np.isin(parts, components[seeds])]])
+    # Centres of such weights keep the density as it is: regions shrink by the fourth root of what their cells weigh.
+    weights = cells.areas * np.square(density)
+    for _ in range(_LLOYD_STEPS):
+        _, labels = _nearest_seeds(cells, seeds)
+        sums = np.bincount(labels, weights, len(seeds))
+        moments = [np.bincount(labels, weights * column, len(seeds)) for column in cells.positions.T]
+        centres = np.stack(moments, axis=1) / np.maximum(sums, np.finfo(float).tiny)[:, None]
+        offsets = cells.positions - centres[labels]
+        seeds = nearest_members(labels, np.einsum("cd,cd->c", offsets, offsets), len(seeds))
+    return VoronoiRegions.around(cells, seeds)
+
+
+def _poisson_disk(cells: SurfaceCells, count: int, density: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Choose cells in random order, each unless a chosen one is too near for the density there.
+
+    Of many small cells only some are asked, so that there are as many to choose from for each seed everywhere.
+    """
+    random = np.random.default_rng(0)
+    asked = random.random(cells.count) * cells.unit**2 < _CANDIDATES * count * cells.areas * density
+    candidates = np.flatnonzero(asked)
+    positions, normals = cells.positions[candidates], cells.normals[candidates]
+    radii = _SPACING * cells.unit / np.sqrt(count * density[candidates])
+    pairs = cKDTree(positions).query_pairs(float(radii.max(initial=0.0)), output_type="ndarray")
+    offsets = positions[pairs[:, 0]] - positions[pairs[:, 1]]
+    near = np.einsum("pd,pd->p", offsets, offsets) < np.square(radii[pairs].mean(axis=1))
+    # Cells that face away from one another are on different sides of something thin.
+    agreement = np.einsum("pd,pd->p", normals[pairs[:, 0]], normals[pairs[:, 1]])
+    pairs = pairs[near & (agreement >= 0)]
+    priority = random.permutation(len(candidates))
+    ahead = np.where((priority[pairs[:, 0]] < priority[pairs[:, 1]])[:, None], pairs, pairs[:, ::-1])
+    # As if one after the other: whoever has nobody undecided ahead is chosen, and rules out all behind.
+    chosen, undecided = np.zeros(len(candidates), bool), np.ones(len(candidates), bool)
+    while undecided.any():
+        waits = np.zeros(len(candidates), bool)
+        waits[ahead[:, 1]] = True
+        new = undecided & ~waits
+        chosen |= new
+        undecided &= ~new
+        undecided[ahead[new[ahead[:, 0]], 1]] = False
+        ahead = ahead[undecided[ahead].all(axis=1)]
+    return candidates[chosen]
+
+
+def _nearest_seeds(
+    cells: SurfaceCells, seeds: NDArray[np.int64], limit: float = np.inf
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Distance from the nearest seed, and which it is, (c,) each; infinite and any beyond a limit."""
+    distances, _, sources = dijkstra(
+        cells.graph, directed=True, indices=seeds, min_only=True, return_predecessors=True, limit=limit
+    )
+    number = np.zeros(cells.count, np.int64)
+    number[seeds] = np.arange(len(seeds))
+    return distances, number[np.maximum(sources, 0)]
