@@ -10,6 +10,7 @@ from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .followers import follow
 from .functional_maps import nearest_both_ways
+from .handle_cutting import evened_steps
 from .landmarks import placed_at_vertices
 from .laplacian import laplace_beltrami
 from .lifting import lift_steps
@@ -105,6 +106,7 @@ def densify_steps(
     """
     x = yield from within(_shape_steps(source, "source"), 0.0, 0.1)
     y = yield from within(_shape_steps(target, "target"), 0.1, 0.2)
+    x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
     yield from within(x.sample_steps(_SAMPLES), 0.2, 0.28)
     yield from within(y.sample_steps(_SAMPLES), 0.28, 0.34)

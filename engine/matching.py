@@ -13,6 +13,7 @@ from scipy.optimize import linear_sum_assignment
 from .dense_map import registered_pair_steps
 from .dense_match import DenseMatch, dense_match_steps
 from .errors import MatchError
+from .handle_cutting import evened_steps
 from .hierarchy import refine_steps
 from .landmarks import locate_landmarks, placed_at_vertices
 from .map_hypotheses import LandmarkStart
@@ -111,6 +112,7 @@ def match_steps(
     clock = _Clock()
     x = yield from within(_shape_steps(source, "source", excluded[0]), 0.0, 0.03)
     y = yield from within(_shape_steps(target, "target", excluded[1]), 0.03, 0.06)
+    x, y = yield from within(evened_steps(x, y), 0.06, 0.06)
     clock.lap("preparation")
     for shape, name in ((x, "source"), (y, "target")):
         if shape.mesh.vertex_count < settings.points:

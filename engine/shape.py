@@ -88,6 +88,13 @@ class Shape:
         shape._start((yield from prepared_steps(mesh, name, proxy_vertices, excluded)))
         return shape
 
+    @classmethod
+    def of(cls, surface: PreparedSurface) -> Shape:
+        """Make a shape of a surface that was prepared before."""
+        shape = object.__new__(cls)
+        shape._start(surface)
+        return shape
+
     def _start(self, surface: PreparedSurface) -> None:
         self.surface = surface
         self.original, self.mesh, self.vertices = surface.original, surface.mesh, surface.vertices

@@ -65,3 +65,34 @@ def _path(triangles, first, count):
         near.update(np.unique(around).tolist())
         path.append(int(following[0]))
     return np.array(path)
+
+
+def bridged(vertices, triangles, first, second):
+    """Join two places by a tube: the triangles around two vertices give way to a strip between their borders."""
+    one, other = (triangles[(triangles == vertex).any(axis=1)] for vertex in (first, second))
+    here, there = _ring(one, first), _ring(other, second)[::-1]
+    nearest = np.linalg.norm(vertices[there] - vertices[here[0]], axis=1).argmin()
+    there = np.roll(there, -nearest)
+    strip, i, j = [], 0, 0
+    while i < len(here) or j < len(there):
+        a, b, c, d = (ring[k % len(ring)] for ring, k in ((here, i), (here, i + 1), (there, j), (there, j + 1)))
+        if j == len(there) or (i < len(here) and (i + 1) * len(there) <= (j + 1) * len(here)):
+            strip.append((a, b, c))
+            i += 1
+        else:
+            strip.append((a, d, c))
+            j += 1
+    kept = ~np.isin(triangles, (first, second)).any(axis=1)
+    return vertices, np.concatenate([triangles[kept], np.array(strip)])
+
+
+def _ring(around, middle):
+    """Walk along the border of the triangles around a vertex, in their direction."""
+    following = {}
+    for triangle in around.tolist():
+        place = triangle.index(middle)
+        following[triangle[(place + 1) % 3]] = triangle[(place + 2) % 3]
+    ring = [min(following)]
+    while following[ring[-1]] != ring[0]:
+        ring.append(following[ring[-1]])
+    return np.array(ring)

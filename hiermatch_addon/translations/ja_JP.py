@@ -1160,6 +1160,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Only {0} of the target is reached: {1}": "ターゲットの{0}にしか届いていません。{1}",
     "Only {0} of the source has a partner: {1}": "ソースの{0}にしか対応する場所がありません。{1}",
     "parts of one shape seem to be missing on the other.": "一方の形状の一部がもう一方にないようです。",
+    "The {0} hangs together where the {1} does not: it was cut open there for matching.": (
+        "{0}には{1}にないつながりがあるため、マッチングのためにそこを切り開きました。"
+    ),
     "Matched {0} points of {1} in {2} s": "{1}の{0}個のポイントを{2}秒でマッチングしました",
     "Matched {0} points of {1} in {2} s. {3}": "{1}の{0}個のポイントを{2}秒でマッチングしました。{3}",
     '"{0}" and "{1}"': "「{0}」と「{1}」",

@@ -968,6 +968,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Only {0} of the target is reached: {1}": "只覆盖了目标的 {0}：{1}",
     "Only {0} of the source has a partner: {1}": "源只有 {0} 有对应位置：{1}",
     "parts of one shape seem to be missing on the other.": "一个形状的某些部分似乎在另一个上不存在。",
+    "The {0} hangs together where the {1} does not: it was cut open there for matching.": (
+        "{0}在{1}没有相连的地方连在一起：已为匹配将其切开。"
+    ),
     "Matched {0} points of {1} in {2} s": "在 {2} 秒内匹配了 {1} 的 {0} 个点",
     "Matched {0} points of {1} in {2} s. {3}": "在 {2} 秒内匹配了 {1} 的 {0} 个点。{3}",
     '"{0}" and "{1}"': "“{0}”和“{1}”",

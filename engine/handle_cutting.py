@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces cut open where they hang together and the ones that they are matched to do not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+
+from .boundary_loops import boundary_loops
+from .clean_surface import SurfacePart
+from .edge_pairs import group_half_edges, pair_half_edges
+from .handles import genus, shortest_handle_loop
+from .hole_filling import fill_holes
+from .mesh import TriangleMesh
+from .progress import Steps, within
+from .proxy import Proxy, proxy_steps
+from .shape import Shape
+from .vertex_fans import split_fans
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["cut_along", "evened_steps"]
+
+_MOST = 6
+"""Handles that are cut at most: a surface that has so many more, such as chain mail, has them on purpose."""
+
+
+def evened_steps(x: Shape, y: Shape) -> Steps[tuple[Shape, Shape]]:
+    """Cut the handles of one shape that the other has not.
+
+    A hand that touches the thigh, or feet that touch, are one with it in a scan: then distances along the surface take
+    a short cut, and none of them is that of the body in another pose.  Such a place is a handle.  The shortest loops
+    are cut: they go around where parts touch, as touching parts enclose more than they share.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The source and the target.
+
+    Returns
+    -------
+    x, y : Shape
+        The same, or cut, with a note that says so.
+    """
+    more = genus(x.mesh) - genus(y.mesh)
+    if more > 0:
+        x = yield from _without_handles_steps(x, more, "source", "target")
+    elif more < 0:
+        y = yield from _without_handles_steps(y, -more, "target", "source")
+    return x, y
+
+
+def _without_handles_steps(shape: Shape, count: int, name: str, other: str) -> Steps[Shape]:
+    """Cut a shape along the shortest loops of its handles, if there are not too many."""
+    if count > _MOST:
+        return shape
+    surface = shape.surface
+    for number in range(count):
+        loop = _on_dense(surface.proxy, surface.cleaned.mesh, shortest_handle_loop(surface.mesh))
+        main = cut_along(surface.cleaned.main, loop)
+        if main is None:
+            break
+        begin, end = number / count, (number + 1) / count
+        if surface.proxy.is_identity:
+            proxy = Proxy.identity(main.mesh)
+        else:
+            proxy = yield from within(proxy_steps(main.mesh, surface.mesh.vertex_count), begin, end, "Simplifying")
+        cleaned = replace(surface.cleaned, pieces=(main, *surface.cleaned.pieces[1:]))
+        surface = replace(surface, cleaned=cleaned, proxy=proxy)
+    if surface is shape.surface:
+        return shape
+    note = f"The {name} hangs together where the {other} does not: it was cut open there for matching."
+    cleaned = replace(surface.cleaned, notes=(*surface.cleaned.notes, note))
+    return Shape.of(replace(surface, cleaned=cleaned))
+
+
+def cut_along(part: SurfacePart, loop: NDArray[np.int64]) -> SurfacePart | None:
+    """Cut a surface open along a loop and close both sides.
+
+    Parameters
+    ----------
+    part : SurfacePart
+        The surface.
+    loop : (k,) array of int
+        Vertices of a loop of edges, each once; the surface hangs together without it.
+
+    Returns
+    -------
+    SurfacePart or None
+        The surface with a second copy of each vertex of the loop, and a fan of triangles in each of the two openings;
+        None if what is given is not such a loop.
+    """
+    mesh = part.mesh
+    groups = group_half_edges(mesh.triangles, mesh.vertex_count)
+    twins = pair_half_edges(mesh.vertices, mesh.triangles, groups)
+    tails, heads = mesh.triangles.ravel(), np.roll(mesh.triangles, -1, axis=1).ravel()
+    following = np.full(mesh.vertex_count, -1)
+    following[loop] = np.roll(loop, -1)
+    cut = np.flatnonzero(((following[tails] == heads) | (following[heads] == tails)) & (twins >= 0))
+    if len(loop) < 3 or len(cut) != 2 * len(loop):
+        return None
+    twins[cut] = -1
+    triangles, copied = split_fans(mesh.triangles, twins, mesh.vertex_count)
+    if len(copied) != len(loop):
+        return None
+    vertices = np.concatenate([mesh.vertices, mesh.vertices[copied]])
+    loops = boundary_loops(vertices, triangles, cut)
+    if loops.count != 2:
+        return None
+    centres, lids = fill_holes(loops, np.ones(2, bool), len(vertices))
+    cut_mesh = TriangleMesh(np.concatenate([vertices, centres]), np.concatenate([triangles, lids]))
+    if cut_mesh.component_count > 1:
+        return None
+    added = np.full(len(lids), -1)
+    return SurfacePart(
+        cut_mesh,
+        np.concatenate([part.original_vertices, part.original_vertices[copied], [-1, -1]]),
+        np.concatenate([part.original_triangles, added]),
+        np.concatenate([part.turned, np.zeros(len(lids), bool)]),
+        part.inverted,
+    )
+
+
+def _on_dense(proxy: Proxy, mesh: TriangleMesh, loop: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Find the loop of a dense mesh (k',) that goes where one of its proxy does; nothing if there is none."""
+    if proxy.is_identity:
+        return loop
+    ring = proxy.mesh.edges[np.isin(proxy.mesh.edges, loop).any(axis=1)]
+    band = np.flatnonzero(np.isin(proxy.points.nearest_vertices, ring))
+    number = np.full(mesh.vertex_count, -1)
+    number[band] = np.arange(len(band))
+    inside = (number[mesh.edges] >= 0).all(axis=1)
+    a, b = number[mesh.edges[inside]].T
+    graph = coo_array((mesh.edge_lengths[inside], (a, b)), shape=(len(band),) * 2).tocsr()
+    stops = number[proxy.vertices[loop]]
+    if (stops < 0).any():
+        return np.empty(0, np.int64)
+    distances, before = dijkstra(graph, directed=False, indices=stops, return_predecessors=True)
+    way: list[int] = []
+    for i, end in enumerate(np.roll(stops, -1)):
+        if not np.isfinite(distances[i, end]):
+            return np.empty(0, np.int64)
+        back = [int(end)]
+        while back[-1] != stops[i]:
+            back.append(int(before[i, back[-1]]))
+        way += back[:0:-1]
+    return band[_longest_simple(way)]
+
+
+def _longest_simple(way: list[int]) -> list[int]:
+    """Leave out of a closed way (a list of vertices) the short loops in it, so that each vertex comes once."""
+    simple: list[int] = []
+    for vertex in way:
+        if vertex in simple:
+            at = simple.index(vertex)
+            if 2 * (len(simple) - at) > len(way):
+                return simple[at:]
+            del simple[at:]
+        simple.append(vertex)
+    return simple

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Handles of a surface: how many there are, and the shortest loop around one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
+
+from .boundary_loops import boundary_loops
+from .edge_pairs import group_half_edges, pair_half_edges
+from .missing_parts import neighbour_means
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+
+__all__ = ["genus", "shortest_handle_loop"]
+
+_ROOTS = 48
+"""Most vertices of the first loops that shorter ones are looked for at."""
+
+_CREASE = 0.2
+"""What a unit of length counts for in a crease: around where two parts touch the surface is hollow, around a wrist it
+bulges."""
+
+_SMOOTHING = 1
+"""How often curvature is averaged over neighbours."""
+
+_LAST_ROOTS = 12
+"""The same of the shortest of those."""
+
+
+def genus(mesh: TriangleMesh) -> int:
+    """Count the handles of a connected, oriented manifold: 0 for a sphere or a disc, 1 for a torus."""
+    ends = _Ends(mesh).count
+    characteristic = mesh.vertex_count - len(mesh.edges) + mesh.triangle_count
+    return (2 - ends - characteristic) // 2
+
+
+def shortest_handle_loop(mesh: TriangleMesh) -> NDArray[np.int64]:
+    """Find a short loop of edges that goes around a handle, or through it, in a crease if there is one.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        A connected, oriented manifold of genus 1 or more.
+
+    Returns
+    -------
+    (k,) array of int
+        The vertices of the loop in turn, each once.  The surface hangs together when it is cut along it.
+
+    Notes
+    -----
+    A tree of shortest paths from a vertex, and a spanning tree of the triangles across the other edges, leave two edges
+    for each handle, each of which closes a loop; with the tree across the longest loops, the others are the shortest
+    of a basis at this vertex [1]_.  The shortest of all crosses some loop of any basis: so it is looked for at vertices
+    of those.
+
+    References
+    ----------
+    .. [1] J. Erickson, K. Whittlesey, "Greedy optimal homotopy and homology generators", SODA 2005.
+    """
+    loops = _Loops(mesh)
+    centre = np.average(mesh.vertices, axis=0, weights=mesh.vertex_areas)
+    first = loops.at(int(np.square(mesh.vertices - centre).sum(axis=1).argmax()))
+    best = first[0]
+    for others, most in ((first, _ROOTS), (None, _LAST_ROOTS)):
+        roots = np.unique(np.concatenate([loop for _, loop in others or [best]]))
+        for root in roots[:: -(-len(roots) // most)]:
+            best = min(best, loops.at(int(root), 1)[0], key=lambda found: found[0])
+    return best[1]
+
+
+class _Ends:
+    """The loops in which a surface ends."""
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        groups = group_half_edges(mesh.triangles, mesh.vertex_count)
+        twins = pair_half_edges(mesh.vertices, mesh.triangles, groups)
+        loops = boundary_loops(mesh.vertices, mesh.triangles, np.flatnonzero(twins < 0))
+        self.twins, self.half_edges, self.labels, self.count = twins, loops.half_edges, loops.labels, loops.count
+
+
+class _Loops:
+    """Finds the shortest loops through a vertex that no disc is spanned by."""
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        ends = _Ends(mesh)
+        tails = mesh.triangles.ravel()
+        heads = np.roll(mesh.triangles, -1, axis=1).ravel()
+        once = np.flatnonzero((ends.twins < 0) | (ends.twins > np.arange(len(tails))))
+        self._tails, self._heads = tails[once], heads[once]
+        lengths = np.linalg.norm(mesh.vertices[self._tails] - mesh.vertices[self._heads], axis=1)
+        hollow = _hollow(mesh)
+        in_crease = hollow[self._tails] & hollow[self._heads]
+        # An edge without length would be none to the search.
+        least = float(np.finfo(float).eps * lengths.max())
+        self._lengths = np.maximum(np.where(in_crease, _CREASE * lengths, lengths), least)
+        # On either side of an edge is a triangle, or what would close the loop that the surface ends in.
+        other = ends.twins // 3
+        other[ends.half_edges] = mesh.triangle_count + ends.labels
+        self._sides = np.sort(np.stack([once // 3, other[once]], axis=1), axis=1)
+        self._side_count = mesh.triangle_count + ends.count
+        n = mesh.vertex_count
+        self._graph = csr_array(coo_array((self._lengths, (self._tails, self._heads)), shape=(n, n)))
+
+    def at(self, root: int, most: int | None = None) -> list[tuple[float, NDArray[np.int64]]]:
+        """Find the shortest loops of a basis through a vertex: their lengths, and their vertices, shortest first."""
+        distances, before = dijkstra(self._graph, directed=False, indices=root, return_predecessors=True)
+        in_tree = (before[self._heads] == self._tails) | (before[self._tails] == self._heads)
+        rest = np.flatnonzero(~in_tree)
+        around = distances[self._tails[rest]] + distances[self._heads[rest]] + self._lengths[rest]
+        # Of several edges between the same two sides the one with the longest loop can be in the spanning tree.
+        order = np.lexsort((-around, self._sides[rest, 1], self._sides[rest, 0]))
+        sides = self._sides[rest[order]]
+        candidates = order[np.append(True, (sides[1:] != sides[:-1]).any(axis=1))]
+        candidates = candidates[np.argsort(-around[candidates], kind="stable")]
+        low, high = self._sides[rest[candidates]].T.astype(np.int32)
+        # The rank as weight: the tree that weighs least has the longest loops, and tells which they are.
+        ranks = coo_array((np.arange(1.0, len(candidates) + 1), (low, high)), shape=(self._side_count,) * 2)
+        chosen = minimum_spanning_tree(ranks.tocsr()).data.astype(np.int64) - 1
+        left = np.delete(np.arange(len(rest)), candidates[chosen])
+        left = left[np.argsort(around[left], kind="stable")][:most]
+        found = []
+        for edge in rest[left]:
+            loop = _closed(_way(before, int(self._tails[edge])), _way(before, int(self._heads[edge])))
+            steps = self._graph[loop, np.roll(loop, -1)] + self._graph[np.roll(loop, -1), loop]
+            found.append((float(np.asarray(steps).sum()), loop))
+        return sorted(found, key=lambda each: each[0])
+
+
+def _hollow(mesh: TriangleMesh) -> NDArray[np.bool_]:
+    """Tell at which vertices the surface bends outwards, (n,), by its mean curvature."""
+    corners = mesh.vertices[mesh.triangles]
+    curvature = np.zeros(mesh.vertex_count)
+    for corner in range(3):
+        # The area of a triangle grows the fastest if this corner moves so.
+        opposite = corners[:, (corner + 2) % 3] - corners[:, (corner + 1) % 3]
+        pull = np.cross(mesh.triangle_normals, opposite)
+        vertices = mesh.triangles[:, corner]
+        outwards = np.einsum("md,md->m", pull, mesh.vertex_normals[vertices])
+        curvature += np.bincount(vertices, outwards, mesh.vertex_count)
+    for _ in range(_SMOOTHING):
+        curvature = neighbour_means(mesh, curvature)
+    return curvature < 0
+
+
+def _way(before: NDArray[np.int32], vertex: int) -> list[int]:
+    """Follow a tree from a vertex to its root."""
+    way = [vertex]
+    while before[way[-1]] >= 0:
+        way.append(int(before[way[-1]]))
+    return way
+
+
+def _closed(one: list[int], other: list[int]) -> NDArray[np.int64]:
+    """Join two ways to the same root to a loop, without what they share."""
+    while len(one) > 1 and len(other) > 1 and one[-2] == other[-2]:
+        one, other = one[:-1], other[:-1]
+    return np.array(one + other[-2::-1], np.int64)
