@@ -20,12 +20,15 @@ if TYPE_CHECKING:
 
 __all__ = ["genus", "shortest_handle_loop"]
 
-_ROOTS = 48
+_ROOTS = 256
 """Most vertices of the first loops that shorter ones are looked for at."""
 
 _CREASE = 0.2
 """What a unit of length counts for in a crease: around where two parts touch the surface is hollow, around a wrist it
 bulges."""
+
+_SADDLE = 0.1
+"""By how much the angles around a vertex exceed a full turn, in radians, for a narrow place to count as a crease."""
 
 _SMOOTHING = 1
 """How often curvature is averaged over neighbours."""
@@ -96,8 +99,8 @@ class _Loops:
         once = np.flatnonzero((ends.twins < 0) | (ends.twins > np.arange(len(tails))))
         self._tails, self._heads = tails[once], heads[once]
         lengths = np.linalg.norm(mesh.vertices[self._tails] - mesh.vertices[self._heads], axis=1)
-        hollow = _hollow(mesh)
-        in_crease = hollow[self._tails] & hollow[self._heads]
+        creased = _creased(mesh)
+        in_crease = creased[self._tails] & creased[self._heads]
         # An edge without length would be none to the search.
         least = float(np.finfo(float).eps * lengths.max())
         self._lengths = np.maximum(np.where(in_crease, _CREASE * lengths, lengths), least)
@@ -134,20 +137,23 @@ class _Loops:
         return sorted(found, key=lambda each: each[0])
 
 
-def _hollow(mesh: TriangleMesh) -> NDArray[np.bool_]:
-    """Tell at which vertices the surface bends outwards, (n,), by its mean curvature."""
+def _creased(mesh: TriangleMesh) -> NDArray[np.bool_]:
+    """Tell at which vertices the surface is hollow, or bends like a saddle as around a narrow neck, (n,)."""
     corners = mesh.vertices[mesh.triangles]
-    curvature = np.zeros(mesh.vertex_count)
+    mean, excess = np.zeros(mesh.vertex_count), np.full(mesh.vertex_count, -2 * np.pi)
     for corner in range(3):
-        # The area of a triangle grows the fastest if this corner moves so.
-        opposite = corners[:, (corner + 2) % 3] - corners[:, (corner + 1) % 3]
-        pull = np.cross(mesh.triangle_normals, opposite)
         vertices = mesh.triangles[:, corner]
+        first, second = (corners[:, (corner + i) % 3] - corners[:, corner] for i in (1, 2))
+        # The area of a triangle grows the fastest if this corner moves so: the mean curvature, integrated.
+        pull = np.cross(mesh.triangle_normals, second - first)
         outwards = np.einsum("md,md->m", pull, mesh.vertex_normals[vertices])
-        curvature += np.bincount(vertices, outwards, mesh.vertex_count)
+        mean += np.bincount(vertices, outwards, mesh.vertex_count)
+        sines = np.linalg.norm(np.cross(first, second), axis=1)
+        angles = np.arctan2(sines, np.einsum("md,md->m", first, second))
+        excess += np.bincount(vertices, angles, mesh.vertex_count)
     for _ in range(_SMOOTHING):
-        curvature = neighbour_means(mesh, curvature)
-    return curvature < 0
+        mean, excess = neighbour_means(mesh, mean), neighbour_means(mesh, excess)
+    return (mean < 0) | (excess > _SADDLE)
 
 
 def _way(before: NDArray[np.int32], vertex: int) -> list[int]:
