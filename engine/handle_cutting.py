@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import dijkstra
 from .boundary_loops import boundary_loops
 from .clean_surface import SurfacePart
 from .edge_pairs import group_half_edges, pair_half_edges
-from .handles import genus, shortest_handle_loop
+from .handles import genus, shortest_handle_loop_steps
 from .hole_filling import fill_holes
 from .mesh import TriangleMesh
 from .progress import Steps, within
@@ -61,15 +61,16 @@ def _without_handles_steps(shape: Shape, count: int, name: str, other: str) -> S
         return shape
     surface = shape.surface
     for number in range(count):
-        loop = _on_dense(surface.proxy, surface.cleaned.mesh, shortest_handle_loop(surface.mesh))
+        begin, middle, end = number / count, (number + 0.5) / count, (number + 1) / count
+        found = yield from within(shortest_handle_loop_steps(surface.mesh), begin, middle)
+        loop = _on_dense(surface.proxy, surface.cleaned.mesh, found)
         main = cut_along(surface.cleaned.main, loop)
         if main is None:
             break
-        begin, end = number / count, (number + 1) / count
         if surface.proxy.is_identity:
             proxy = Proxy.identity(main.mesh)
         else:
-            proxy = yield from within(proxy_steps(main.mesh, surface.mesh.vertex_count), begin, end, "Simplifying")
+            proxy = yield from within(proxy_steps(main.mesh, surface.mesh.vertex_count), middle, end)
         cleaned = replace(surface.cleaned, pieces=(main, *surface.cleaned.pieces[1:]))
         surface = replace(surface, cleaned=cleaned, proxy=proxy)
     if surface is shape.surface:

@@ -12,13 +12,14 @@ from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 from .boundary_loops import boundary_loops
 from .edge_pairs import group_half_edges, pair_half_edges
 from .missing_parts import neighbour_means
+from .progress import Progress, Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh import TriangleMesh
 
-__all__ = ["genus", "shortest_handle_loop"]
+__all__ = ["genus", "shortest_handle_loop_steps"]
 
 _ROOTS = 256
 """Most vertices of the first loops that shorter ones are looked for at."""
@@ -44,7 +45,7 @@ def genus(mesh: TriangleMesh) -> int:
     return (2 - ends - characteristic) // 2
 
 
-def shortest_handle_loop(mesh: TriangleMesh) -> NDArray[np.int64]:
+def shortest_handle_loop_steps(mesh: TriangleMesh) -> Steps[NDArray[np.int64]]:
     """Find a short loop of edges that goes around a handle, or through it, in a crease if there is one.
 
     Parameters
@@ -72,10 +73,12 @@ def shortest_handle_loop(mesh: TriangleMesh) -> NDArray[np.int64]:
     centre = np.average(mesh.vertices, axis=0, weights=mesh.vertex_areas)
     first = loops.at(int(np.square(mesh.vertices - centre).sum(axis=1).argmax()))
     best = first[0]
-    for others, most in ((first, _ROOTS), (None, _LAST_ROOTS)):
+    for others, most, begin, end in ((first, _ROOTS, 0.0, 0.9), (None, _LAST_ROOTS, 0.9, 1.0)):
         roots = np.unique(np.concatenate([loop for _, loop in others or [best]]))
-        for root in roots[:: -(-len(roots) // most)]:
-            best = min(best, loops.at(int(root), 1)[0], key=lambda found: found[0])
+        roots = roots[:: -(-len(roots) // most)]
+        for number, root in enumerate(roots.tolist()):
+            best = min(best, loops.at(root, 1)[0], key=lambda found: found[0])
+            yield Progress(begin + (end - begin) * (number + 1) / len(roots), "Cutting parts open that touch")
     return best[1]
 
 

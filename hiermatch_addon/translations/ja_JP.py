@@ -1041,6 +1041,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Landmark {number}": "ランドマーク {number}",
     "Point {number}, distortion {distortion}": "ポイント {number}、歪み {distortion}",
     "Preparing what is written": "書き込む内容を準備しています",
+    "Cutting parts open that touch": "接した部分を切り開いています",
     "Simplifying the mesh": "メッシュを単純化しています",
     "There are no landmarks to refine the map around. Name at least one pair of vertices.": (
         "マップを改良するためのランドマークがありません。少なくとも一組の頂点を指定してください。"

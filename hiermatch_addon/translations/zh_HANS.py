@@ -862,6 +862,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Landmark {number}": "地标 {number}",
     "Point {number}, distortion {distortion}": "点 {number}，畸变 {distortion}",
     "Preparing what is written": "正在准备要写入的内容",
+    "Cutting parts open that touch": "正在切开相接的部分",
     "Simplifying the mesh": "正在简化网格",
     "There are no landmarks to refine the map around. Name at least one pair of vertices.": (
         "没有可用来改善映射的地标。请至少指定一对顶点。"

@@ -7,7 +7,7 @@ import pytest
 from engine import MatchSettings, Shape, TriangleMesh, match
 from engine.cleaning import clean
 from engine.handle_cutting import cut_along, evened_steps
-from engine.handles import genus, shortest_handle_loop
+from engine.handles import genus, shortest_handle_loop_steps
 from engine.progress import run
 from tests.engine.test_handles import with_handles
 from tests.messes import bridged
@@ -19,7 +19,7 @@ QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
 def test_a_cut_torus_is_a_tube_with_two_lids():
     mesh = TriangleMesh(*torus(48, 20))
     part = clean(mesh).main
-    loop = shortest_handle_loop(mesh)
+    loop = run(shortest_handle_loop_steps(mesh))
     cut = cut_along(part, loop)
     assert genus(cut.mesh) == 0
     assert cut.mesh.is_closed
