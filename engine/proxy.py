@@ -186,8 +186,10 @@ def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: NDArray[np.int64]
     samples, weights = samples[known], cells.areas[known]
     search = ClosestPoints(coarse)
     for fit in range(_FITS):
-        found = search.walk(mesh.vertices[samples], place[samples])
-        positions = _fitted_positions(search, found.triangles, found.barycentric, mesh.vertices[samples], weights)
+        part = slice(None, None, _FITS - fit)  # at first, fewer do
+        wanted = mesh.vertices[samples[part]]
+        found = search.walk(wanted, place[samples[part]])
+        positions = _fitted_positions(search, found.triangles, found.barycentric, wanted, weights[part])
         search = search.moved(positions)
         yield Progress(0.65 + 0.05 * fit, "Simplifying the mesh")
 

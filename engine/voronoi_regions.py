@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["VoronoiRegions", "spread_regions"]
 
 _SPACING = 0.75  # least distance of seeds, in units of sqrt(area / vertices)
-_CANDIDATES = 10.0  # cells that may become seeds, for each one that will
+_CANDIDATES = 8.0  # cells that may become seeds, for each one that will
 _LLOYD_STEPS = 2
 _REPAIRS = 24  # rounds; each may double the seeds where something is wrong
 _DISSOLVING = 6  # in every so many rounds regions that are still wrong fall apart into single vertices
