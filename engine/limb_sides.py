@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .extremities import limb_tips, mean_distances
 from .map_hypotheses import LandmarkStart
 
 if TYPE_CHECKING:
@@ -15,13 +16,7 @@ if TYPE_CHECKING:
     from .functional_maps import PointMaps
     from .shape import Shape
 
-__all__ = ["exchanged_limbs", "limb_tips", "repaired_start"]
-
-_REACH = 0.15
-"""Distance, in sqrt(area), in which a tip is farther from the rest of the surface than all else."""
-
-_MOST_TIPS = 16
-"""Tips that are looked at; of more, the farthest from the rest."""
+__all__ = ["exchanged_limbs", "repaired_start"]
 
 _CENTRAL = 0.5
 """Part of the samples that make up the middle of the body: those least far from all others."""
@@ -44,25 +39,6 @@ _FEWEST = 8
 
 _ANCHORS = 40
 """Places of the middle of the body that the rest is found anew from."""
-
-
-def limb_tips(shape: Shape) -> NDArray[np.int64]:
-    """Find the ends of limbs, of ears, of tails: samples that are farther from the rest than all around them.
-
-    Parameters
-    ----------
-    shape : Shape
-        With samples.
-
-    Returns
-    -------
-    (k,) array of int
-        Numbers of samples, those first whose mean distance from the rest is largest.
-    """
-    distances, means = shape.sample_distances, _mean_distances(shape)
-    largest = np.where(distances < _REACH, means, -np.inf).max(axis=1)
-    tips = np.flatnonzero(means >= largest)
-    return tips[np.argsort(-means[tips], kind="stable")][:_MOST_TIPS]
 
 
 def repaired_start(x: Shape, y: Shape, maps: PointMaps) -> LandmarkStart | None:
@@ -201,16 +177,10 @@ def _from_mean(sides: NDArray[np.float64], weights: NDArray[np.float64]) -> NDAr
 
 def _trusted_middle(x: Shape, there: NDArray[np.int64], back: NDArray[np.int64]) -> NDArray[np.int64]:
     """Choose the samples in the middle of the body that both maps agree on."""
-    means = _mean_distances(x)
+    means = mean_distances(x)
     middle = np.argsort(means, kind="stable")[: max(round(_CENTRAL * len(means)), 1)]
     returned = back[there[x.samples[middle]]]
     return middle[x.sample_rows[middle, returned] < _TRUSTED]
-
-
-def _mean_distances(shape: Shape) -> NDArray[np.float64]:
-    """Mean distance of each sample from the whole surface, (S,)."""
-    means: NDArray[np.float64] = shape.sample_distances @ shape.cell_areas
-    return means / shape.cell_areas.sum()
 
 
 def _distances_between(shape: Shape, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -83,11 +83,11 @@ class MapDomain:
         gradients *= self.shape.scale
         return gradients.reshape(len(self.vertices), 2, count).transpose(0, 2, 1)
 
-    def directions(self, count: int) -> NDArray[np.float64]:
-        """Take the unit directions at the coarse samples away from the first `count` samples, (coarse, count, 2)."""
+    def directions(self, samples: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Take the unit directions at the coarse samples away from the given ones (m,), (coarse, m, 2)."""
         operator = tangent_gradient(self.shape.mesh, self.shape.samples)
-        gradients = operator @ self.shape.sample_rows[:count].T.astype(np.float64)
-        planar = gradients.reshape(self.coarse_count, 2, count).transpose(0, 2, 1)
+        gradients = operator @ self.shape.sample_rows[samples].T.astype(np.float64)
+        planar = gradients.reshape(self.coarse_count, 2, len(samples)).transpose(0, 2, 1)
         lengths = np.linalg.norm(planar, axis=2, keepdims=True)
         return np.divide(planar, lengths, out=np.zeros_like(planar), where=lengths > 0)
 
@@ -140,12 +140,12 @@ class MapDomain:
         """Logarithms of wave kernel signatures at the fine samples, each of unit spread, (p, d)."""
         return self._log_signatures(len(self.values), _ENERGIES, self.vertices)
 
-    def extremity_descriptors(self, count: int) -> NDArray[np.float64]:
-        """Describe the first `count` samples by low waves, (count, d)."""
+    def extremity_descriptors(self, samples: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Describe some coarse samples, given by number (m,), by low waves, (m, d)."""
         pairs = min(_EXTREMITY_PAIRS, len(self.values))
-        signatures = self._log_signatures(pairs, _EXTREMITY_ENERGIES, self.shape.samples)[:count]
+        signatures = self._log_signatures(pairs, _EXTREMITY_ENERGIES, self.shape.samples)[samples]
         means = self.shape.sample_distances @ self.shape.cell_areas
-        return np.column_stack([signatures, 3 * means[:count] / (self.shape.cell_areas @ means)])
+        return np.column_stack([signatures, 3 * means[samples] / (self.shape.cell_areas @ means)])
 
     def _log_signatures(self, pairs: int, count: int, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
         spectrum = self.shape.spectrum

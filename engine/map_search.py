@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from .extremities import spread_extremities
 from .extremity_search import beam_matchings
 from .functional_maps import PointMaps, fit_functional_maps, nearest_both_ways, refine_bijective_steps, spectral_sizes
 from .map_scores import map_orientation, spectral_terms
@@ -23,9 +24,12 @@ if TYPE_CHECKING:
 
 __all__ = ["MapLead", "distinct_leads", "rough_maps_steps"]
 
-# Extremities of X and of Y that are matched, and how many matchings are carried over with the orientation kept, and
-# how many with it mirrored: the best ones only, as mirror images are matched as well as what they mirror.
-_SEARCHES = ((5, 9, 20, 8), (6, 10, 40, 12))
+# How many farthest points of X and of Y are matched, and how many matchings are carried over with the orientation kept
+# (1) and with it mirrored (-1): of these the best only, as mirror images are matched as well as what they mirror.
+_FARTHEST = ((5, 9, {1: 20, -1: 8}), (6, 10, {1: 40, -1: 12}))
+# The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
+_TIPS = (6, 9, {1: 20, -1: 8})
+_TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
 _SIGNED_WEIGHT = 1.0  # of signed areas beside distances, when matchings of extremities are carried over the surface
 _SIZES = spectral_sizes(15, 30, 5)  # not from fewer: those would turn even true matchings front to back
 _ORIENTED = 0.3  # how much more credible a map of one orientation throughout is
@@ -59,6 +63,19 @@ class MapLead:
     origin: str
 
 
+class _Search(NamedTuple):
+    """Samples of X by number, (m,), samples of Y to match them to, (n,), and how many matchings are followed up."""
+
+    of_x: NDArray[np.int64]
+    of_y: NDArray[np.int64]
+    kept: Mapping[int, int]
+
+    def possible(self, count_x: int, count_y: int) -> _Search:
+        """Leave out samples beyond those that there are, and points of X that are too many for those of Y."""
+        of_y = self.of_y[self.of_y < count_y]
+        return self._replace(of_x=self.of_x[self.of_x < count_x][: len(of_y)], of_y=of_y)
+
+
 def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1)) -> Steps[list[MapLead]]:
     """Propose maps between the coarse samples of two surfaces.
 
@@ -80,23 +97,28 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
         A few of each of the most credible groups of like maps, of either orientation.
     """
     leads: list[MapLead] = []
-    counts = {1: sum(keeping for *_, keeping, _ in _SEARCHES), -1: sum(mirroring for *_, mirroring in _SEARCHES)}
-    most = max(max(search[:2]) for search in _SEARCHES)
-    directions_x, directions_y = x.directions(min(most, x.coarse_count)), y.directions(min(most, y.coarse_count))
-    total, done = sum(counts[sign] for sign in signs), 0
-    for few, offered, keeping, mirroring in _SEARCHES:
-        n = min(offered, y.coarse_count)
-        m = min(few, x.coarse_count, n)
-        matchings = beam_matchings(
-            x.shape.sample_distances[:m, :m], y.shape.sample_distances[:n, :n], _dissimilarity(x, y, m, n), kept=keeping
-        )
-        rows_x = _lifting_rows(x, np.arange(m), directions_x, 1)
+    searches = _searches(x, y)
+    total, done = sum(kept[sign] for *_, kept in searches for sign in signs), 0
+    for of_x, of_y, kept in searches:
+        distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
+        matchings = beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=max(kept.values()))
+        directions_y = y.directions(of_y)
+        rows_x = _lifting_rows(x, of_x, x.directions(of_x), 1)
         for sign in signs:
-            for images in matchings.images[: keeping if sign > 0 else mirroring]:
-                points = nearest_both_ways(rows_x, _lifting_rows(y, images, directions_y, sign))
+            for images in matchings.images[: kept[sign]]:
+                points = nearest_both_ways(rows_x, _lifting_rows(y, of_y[images], directions_y[:, images], sign))
                 leads.append((yield from within(_refined_steps(x, y, points), done / total, (done + 1) / total)))
                 done += 1
     return _candidates(y, leads)
+
+
+def _searches(x: MapDomain, y: MapDomain) -> list[_Search]:
+    """Choose what is matched to what."""
+    few, offered, kept = _TIPS
+    apart_x, apart_y = _TIPS_APART
+    tips = spread_extremities(x.shape, few, apart_x), spread_extremities(y.shape, offered, apart_y)
+    searches = [_Search(np.arange(m), np.arange(n), counts) for m, n, counts in _FARTHEST]
+    return [search.possible(x.coarse_count, y.coarse_count) for search in (*searches, _Search(*tips, kept))]
 
 
 def distinct_leads(
@@ -172,9 +194,9 @@ def _refined_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[MapLe
     return MapLead(points, score, orientation, terms, "extremities")
 
 
-def _dissimilarity(x: MapDomain, y: MapDomain, m: int, n: int) -> NDArray[np.float64]:
-    """Compare the descriptors of the first m and n samples, (m, n), in units of the median."""
-    difference = x.extremity_descriptors(m)[:, None] - y.extremity_descriptors(n)
+def _dissimilarity(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Compare the descriptors of samples given by number, (m,) and (n,): (m, n), in units of the median."""
+    difference = x.extremity_descriptors(of_x)[:, None] - y.extremity_descriptors(of_y)
     root = np.sqrt(np.square(difference).mean(axis=2))
     return root / max(float(np.median(root)), np.finfo(float).tiny)
 
@@ -182,9 +204,9 @@ def _dissimilarity(x: MapDomain, y: MapDomain, m: int, n: int) -> NDArray[np.flo
 def _lifting_rows(
     domain: MapDomain, extremities: NDArray[np.int64], directions: NDArray[np.float64], sign: int
 ) -> NDArray[np.float64]:
-    """Describe the coarse samples by their distances to some extremities, and on which side of each pair they are."""
+    """Describe the coarse samples by their distances to extremities (m,), and on which side of each pair they are."""
     distances = domain.shape.sample_distances[:, extremities]
-    sides = signed_areas(directions[:, extremities])
+    sides = signed_areas(directions)
     columns = [distances / np.sqrt(distances.shape[1])]
     if sides.shape[1]:
         columns.append(sign * _SIGNED_WEIGHT * sides / np.sqrt(sides.shape[1]))

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh, run
 from engine.functional_maps import PointMaps
-from engine.limb_sides import exchanged_limbs, limb_tips, repaired_start
+from engine.limb_sides import exchanged_limbs, repaired_start
 from tests.bodies import mirrored_body
 from tests.shapes import icosphere
 
@@ -66,32 +66,6 @@ def pairs(start):
 def assert_true(x, y, start):
     here, there = pairs(start)
     assert np.linalg.norm(x.rest[here] - y.rest[there], axis=1).max() < 0.12 * x.size
-
-
-# --- tips
-
-
-@pytest.mark.parametrize("which", [0, 1])
-def test_the_ends_of_legs_and_tail_are_tips(bodies, which):
-    body = bodies[which]
-    rest = body.rest[body.shape.samples[limb_tips(body.shape)]]
-    ends = [body.rest[(body.rest * [side, sign, -2]).sum(axis=1).argmax()] for side in (1, -1) for sign in (1, -1)]
-    ends.append(body.rest[body.rest[:, 0].argmin()])
-    assert cKDTree(rest).query(ends)[0].max() < 0.1 * body.size
-
-
-def test_tips_are_few_and_the_farthest_come_first(bodies):
-    body = bodies[0].shape
-    means = body.sample_distances @ body.cell_areas
-    tips = limb_tips(body)
-    assert 5 <= len(tips) <= 12
-    assert (np.diff(means[tips]) <= 0).all()
-
-
-def test_tips_do_not_depend_on_units_or_place(bodies):
-    mesh = bodies[0].shape.mesh
-    moved = shape(1000 * mesh.vertices + [5.0, -3.0, 7.0], mesh.triangles)
-    assert (moved.samples[limb_tips(moved)] == bodies[0].shape.samples[limb_tips(bodies[0].shape)]).all()
 
 
 # --- maps that are right

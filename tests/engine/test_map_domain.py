@@ -62,9 +62,9 @@ def test_gradients_have_the_energy_of_the_eigenvalues():
     np.testing.assert_allclose(energy[1:20], ring.values[1:20], rtol=0.25)
 
 
-def test_directions_lead_away_from_the_first_samples():
+def test_directions_lead_away_from_samples():
     ball = domain(*icosphere(10), samples=100)
-    directions = ball.directions(3)
+    directions = ball.directions(np.array([0, 7, 2]))
     assert directions.shape == (100, 3, 2)
     lengths = np.linalg.norm(directions, axis=2)
     assert ((lengths > 0.999) | (lengths == 0)).all()
@@ -98,7 +98,8 @@ def test_descriptors_do_not_depend_on_place_scale_or_order(body, change):
     assert here.mean() > 0.9
     np.testing.assert_allclose(other.curvature[same[here]], body.curvature[here], atol=1e-3)
     np.testing.assert_allclose(other.signatures[same[here]], body.signatures[here], atol=0.05)
-    np.testing.assert_allclose(other.extremity_descriptors(6), body.extremity_descriptors(6), atol=0.05)
+    first = np.arange(6)
+    np.testing.assert_allclose(other.extremity_descriptors(first), body.extremity_descriptors(first), atol=0.05)
 
 
 def test_patches_are_means_over_the_surroundings(body):
