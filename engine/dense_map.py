@@ -47,6 +47,9 @@ _ELASTIC_WEIGHT = 4.0
 _SMOOTH = 40
 """Eigenfunctions that the source is placed by before it is registered."""
 
+_GUIDES = 10
+"""Eigenfunctions of the target that guide the soft registration."""
+
 _DETAILED = 100
 """The same before it is registered again."""
 
@@ -66,12 +69,15 @@ class Candidate:
     registration : Registration
         The source on the target.
     score : float
-        Smaller is more credible: the score of the hypothesis and the logarithm of what the deformation costs.
+        Smaller is more credible: the score of the registered map and the logarithm of what the deformation costs.
+    likeness : float
+        How much alike the surfaces are, if this is the map: the same with the score of the hypothesis, larger for more.
     """
 
     hypothesis: MapHypothesis
     registration: Registration
     score: float
+    likeness: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +118,7 @@ class RegisteredPair:
     @property
     def likeness(self) -> float | None:
         """How credible the best candidate was, whatever the others; None with landmarks, which know more."""
-        return None if self.landmarks is not None else -self.candidates[0].score
+        return None if self.landmarks is not None else self.candidates[0].likeness
 
 
 def registered_pair_steps(
@@ -135,8 +141,7 @@ def registered_pair_steps(
     search : bool
         Whether other starts are looked for as well.
     as_they_are : bool
-        Whether the starts are followed up without being refined by functional maps, too.  Then candidates are compared
-        by the maps that their registrations give.
+        Whether the starts are followed up without being refined by functional maps, too.
     landmarks : Landmarks, optional
         What is known to correspond, and is held together; the samples of the shapes begin with them.
 
@@ -165,7 +170,7 @@ def registered_pair_steps(
     plausible = [h for h in keeping if h.score < keeping[0].score + _AMBIGUOUS][:_MOST_CANDIDATES]
     if as_they_are:
         plausible += [unrefined_hypothesis(hypotheses[0].domains, start) for start in starts]
-    follow = _Follower(source, target, _functions(x, _SMOOTH), ties, by_registration=as_they_are)
+    follow = _Follower(source, target, _functions(x, _SMOOTH), ties)
     candidates = []
     for number, hypothesis in enumerate(plausible):
         begin, end = (0.42 + 0.26 * (number + i) / len(plausible) for i in (0, 1))
@@ -214,7 +219,6 @@ class _Follower:
     target: DeformableSurface
     smooth: NDArray[np.float64]
     ties: Ties | None
-    by_registration: bool
 
     def steps(self, hypothesis: MapHypothesis) -> Steps[Candidate]:
         """Register the source from where a hypothesis takes it, and judge what comes of it."""
@@ -222,14 +226,25 @@ class _Follower:
         images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
         start = smooth_start(source, target, images.on_y, self.smooth)
         first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
-        steps = register_steps(source, target, start, (SOFT,), first, ties=self.ties)
+        guides = self._guides(hypothesis, images)
+        steps = register_steps(source, target, start, (SOFT,), first, ties=self.ties, guides=guides)
         registration = yield from within(steps, 0.2, 1.0)
         cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
-        score = hypothesis.score
-        if self.by_registration:
-            score = score_everywhere(hypothesis.domains, self.vertex_maps(registration))
-        score += _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
-        return Candidate(hypothesis, registration, score)
+        elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
+        # A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.
+        score = score_everywhere(hypothesis.domains, self.vertex_maps(registration)) + elastic
+        return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic))
+
+    def _guides(self, hypothesis: MapHypothesis, images: PointMaps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Take the lowest eigenfunctions of the target to both surfaces: a tail is far from a leg in them, in any pose.
+
+        The higher ones count less, by the root of their eigenvalues: they err more, and say less about limbs.
+        """
+        domain, lowest = hypothesis.domains[1], slice(1, 1 + _GUIDES)
+        values = domain.values[lowest]
+        there = domain.functions[:, lowest] * np.sqrt(values[:1] / values)
+        here = self.smooth @ (self.smooth.T @ (self.source.mass[:, None] * there[images.on_y]))
+        return here, there
 
     def vertex_maps(self, registration: Registration) -> PointMaps:
         """Take the maps of a registration between all vertices."""

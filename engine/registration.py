@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from .deformable import DeformableSurface
     from .ties import Ties
 
+    Guides = tuple[NDArray[np.float64], NDArray[np.float64]]
+
 __all__ = [
     "CLOSE",
     "FINE",
@@ -61,6 +63,8 @@ class Stage:
     lead : float
         By what part of its way each round goes on in the same direction.  Closest points hold the surface where it is,
         so it would only creep to where it is less distorted.
+    guide_length : float
+        How many units of length a unit of difference of the guides counts, see `register_steps`.
     """
 
     weights: tuple[float, ...]
@@ -69,10 +73,12 @@ class Stage:
     rotation_radius: float = 0.03
     matched: Literal["vertices", "around", "anywhere"] = "anywhere"
     lead: float = 0.0
+    guide_length: float = 0.0
 
 
-SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2, matched="vertices")
-"""From a rough start: the normals and curvatures pull features together while the surface is stiff."""
+SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2, matched="vertices", guide_length=0.05)
+"""From a rough start: the normals and curvatures pull features together while the surface is stiff, and guides keep
+limbs apart that are near to each other in space."""
 
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
@@ -122,22 +128,29 @@ fast."""
 class _Matcher:
     """Finds for each point of one surface the point of the other that is most like it, and the other way round."""
 
-    def __init__(self, source: DeformableSurface, target: DeformableSurface, stage: Stage) -> None:
+    def __init__(
+        self, source: DeformableSurface, target: DeformableSurface, stage: Stage, guides: Guides | None
+    ) -> None:
         self.source, self.target, self.stage = source, target, stage
         # What does not count is left out: the searches take as long as there are coordinates.
-        self._source_curvatures, target_curvatures = (
-            stage.curvature_length * surface.curvatures[:, : None if stage.curvature_length else 0]
+        parts = [
+            [stage.curvature_length * surface.curvatures[:, : None if stage.curvature_length else 0]]
             for surface in (source, target)
-        )
+        ]
+        if guides is not None and stage.guide_length:
+            for part, guide in zip(parts, guides, strict=True):
+                part.append(stage.guide_length * guide)
+        # What does not change as the source is deformed.
+        self._source_features, target_features = (np.concatenate(part, axis=1) for part in parts)
         self.target_features = np.concatenate(
-            [target.vertices, stage.normal_length * target.normals, target_curvatures], axis=1
+            [target.vertices, stage.normal_length * target.normals, target_features], axis=1
         )
         self.target_search = target.search.moved(self.target_features)
 
     def source_search(self, positions: NDArray[np.float64]) -> tuple[ClosestPoints, NDArray[np.float64]]:
         """Search on the deformed source by features, and its normals (n_x, 3)."""
         normals = self.source.search.moved(positions).vertex_normals
-        features = np.concatenate([positions, self.stage.normal_length * normals, self._source_curvatures], axis=1)
+        features = np.concatenate([positions, self.stage.normal_length * normals, self._source_features], axis=1)
         return self.source.search.moved(features), normals
 
     def matches(self, source: ClosestPoints, *, last: bool = False) -> tuple[FoundPoints, FoundPoints]:
@@ -224,6 +237,7 @@ def register_steps(
     first: tuple[FoundPoints, FoundPoints] | None = None,
     *,
     ties: Ties | None = None,
+    guides: Guides | None = None,
 ) -> Steps[Registration]:
     r"""Deform a surface onto another, from a rough map.
 
@@ -244,6 +258,8 @@ def register_steps(
         Matches of the source's and of the target's vertices for the first round; by default the closest.
     ties : Ties, optional
         Points of the source that are held at places in the space of the target, in every round.
+    guides : pair of arrays of float, (n_x, g) and (n_y, g), optional
+        What corresponding vertices have in common by all that is known before; for stages that ask for guides.
 
     Yields
     ------
@@ -265,7 +281,7 @@ def register_steps(
     done = 0
     matches = first
     for stage in stages:
-        matcher = _Matcher(source, target, stage)
+        matcher = _Matcher(source, target, stage, guides)
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)
             if matches is None:

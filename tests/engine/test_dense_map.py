@@ -6,7 +6,8 @@ import pytest
 
 from engine import Shape, SurfacePoints, TriangleMesh, dense_map, run
 from engine.dense_map import EIGENPAIRS, registered_pair_steps
-from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps
+from engine.functional_maps import PointMaps
+from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere
 from tests.bodies import mirrored_body
 from tests.shapes import icosphere, rotation
 
@@ -83,9 +84,18 @@ def test_candidates_are_ordered_and_cost_what_their_registration_costs(registere
     scores = [candidate.score for candidate in registered.candidates]
     assert scores == sorted(scores)
     for candidate in registered.candidates:
-        cost = candidate.registration.energy + 20 * candidate.registration.misfit
-        assert candidate.score == pytest.approx(candidate.hypothesis.score + 4 * np.log(cost))
+        found, domains = candidate.registration, candidate.hypothesis.domains
+        maps = PointMaps(
+            *(
+                surface.triangles[points.triangles, points.barycentric.argmax(axis=1)]
+                for surface, points in ((registered.target, found.on_target), (registered.source, found.on_source))
+            )
+        )
+        cost = 4 * np.log(found.energy + 20 * found.misfit)
+        assert candidate.score == pytest.approx(score_everywhere(domains, maps) + cost)
+        assert candidate.likeness == pytest.approx(-candidate.hypothesis.score - cost)
         assert candidate.hypothesis.orientation > 0
+    assert registered.likeness == registered.candidates[0].likeness
     assert registered.margin is None or registered.margin > 0
 
 

@@ -226,3 +226,19 @@ def test_what_the_target_lacks_keeps_its_shape():
     assert away[tail].max() < 0.05
     back = run(register_steps(target, source, 1.03 * source.in_unit_size(cut.vertices), (FINE, CLOSE, LAST)))
     assert np.linalg.norm(back.positions - source.in_unit_size(cut.vertices), axis=1).max() < 0.02
+
+
+def test_guides_lead_to_what_is_far_in_space():
+    ball = deformable(*icosphere(6))
+    turned = ball.vertices @ rotation([0.0, 0.0, 1.0], 1.2).T
+    # A ball lies on itself whichever way it is turned: only guides can tell.
+    stage = Stage((5,) * 10, 0.0, 0.0, guide_length=1.0)
+    guides = ball.vertices, ball.vertices
+
+    def error(**options):
+        found = run(register_steps(ball, ball, turned, (stage,), **options))
+        return np.linalg.norm(found.positions - ball.vertices, axis=1).mean()
+
+    start = np.linalg.norm(turned - ball.vertices, axis=1).mean()
+    assert error(guides=guides) < 0.1 * start
+    assert error() > 0.8 * start
