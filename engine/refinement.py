@@ -14,7 +14,7 @@ from .errors import MatchError
 from .landmarks import locate_landmarks
 from .progress import run, within
 from .reflection import reflected_mesh
-from .registration import CLOSE, FINE, Stage, register_steps, restarted_steps
+from .registration import FINE, Stage, register_steps, restarted_steps
 from .shape import Shape
 from .surface import SurfacePoints
 from .ties import Ties
@@ -35,6 +35,9 @@ _DETAILED = 100
 
 _BRIEF = Stage((160, 640, 1280), 0.05, 0.0, matched="around")
 """How dense meshes are registered in full resolution: from a map that is nearly right, a quarter of the rounds do."""
+
+_CLOSE = Stage((640, 640, 1280, 1280, 1280, 1280), 0.05, 0.0, matched="around", lead=1.0)
+"""How the surfaces come to rest on each other: there is less way to slide than from a map that is rough."""
 
 _ANCHORS = 96
 """Points at most that the distances to others are measured from."""
@@ -102,10 +105,10 @@ def refine_map_steps(
     # Without the noise of the map, which the surface would keep as folds.
     start = functions @ (functions.T @ (moving.mass[:, None] * places))
     ties = _ties(x, y, fixed, known.source, known.target)
-    there = yield from within(register_steps(moving, fixed, start, (FINE, CLOSE), ties=ties), 0.2, 0.5)
+    there = yield from within(register_steps(moving, fixed, start, (FINE, _CLOSE), ties=ties), 0.2, 0.5)
     ties = _ties(y, x, moving, known.target, known.source)
     matches = there.on_source, there.on_target
-    steps = restarted_steps(fixed, moving, _functions(y), matches, stages=(FINE, CLOSE), ties=ties)
+    steps = restarted_steps(fixed, moving, _functions(y), matches, stages=(FINE, _CLOSE), ties=ties)
     back = yield from within(steps, 0.5, 0.75)
     pair = RegisteredPair(x, y, moving, fixed, there, back, (), None, known, mirrored)
     return (yield from within(dense_match_steps(pair, _BRIEF), 0.75, 1.0))

@@ -150,6 +150,31 @@ def test_a_lead_goes_on_in_the_same_direction(bodies, near_truth, functions):
     np.testing.assert_allclose(leading, 1.8 * plain, atol=1e-12)
 
 
+def test_momentum_adds_the_step_before(bodies, near_truth, functions):
+    source, target = bodies[:2]
+    start = smooth_start(source, target, near_truth, functions)
+    one, two, carried = (
+        run(register_steps(source, target, start, (Stage((20,) * rounds, 0.1, 0.0, momentum=momentum),))).positions
+        for rounds, momentum in ((1, 0.0), (2, 0.0), (2, 0.8))
+    )
+    np.testing.assert_allclose(carried, two + 0.8 * (one - start), atol=1e-12)
+
+
+def test_momentum_lets_a_surface_slide_back_sooner():
+    """A ball on itself, its points crowded towards one pole: nothing but what that costs says where they belong."""
+    ball = deformable(*icosphere(6))
+    radius = np.linalg.norm(ball.vertices, axis=1).mean()
+    crowded = ball.vertices + np.array([0, 0, 0.4 * radius])
+    start = radius * crowded / np.linalg.norm(crowded, axis=1, keepdims=True)
+    before = ball.elastic.energy(start, ball.elastic.rotations(start, CLOSE.rotation_radius))
+    plain, carried = (
+        run(register_steps(ball, ball, start, (Stage((1000,) * 16, 0.05, 0.0, momentum=momentum),)))
+        for momentum in (0.0, 0.8)
+    )
+    assert before - carried.energy > 2 * (before - plain.energy) > 0
+    assert carried.misfit < 1e-4
+
+
 def test_given_matches_pull_first(bodies, registered, near_truth):
     """Even from a place that tells nothing: all of the source in one small ball."""
     source, target, rest_x, rest_y = bodies
