@@ -13,7 +13,8 @@ FOLDER and the error of a map are described in `known_shapes`.  A row of the tab
     inside    mean error of source_to_target as it is, points inside triangles
     reverse   mean error of target_to_source, rounded to vertices
     margin, conf., orient.   what the match says of itself: result.quality.margin, .confidence and .orientation
-    trust     rank correlation of the errors of the samples with the confidence of the map there; useful if far below 0
+    trust     rank correlation of the errors behind `inside` with the confidence of the map there; useful if far below 0
+    over      mean confidence of the samples, less the part of them that lies within 3: how much is promised too much
     stretch   root mean squared edge stretch of source_to_target; the second such column is of target_to_source
     flipped   share of the source's area whose image is turned over; again the second of target_to_source
     seconds   from two meshes to both maps, with nothing computed before
@@ -50,6 +51,7 @@ from tests.benchmarks.variants import VARIANTS, as_is
 
 AS_IS = "as is"
 NAN = float("nan")
+NEAR = 3.0  # error that confidence promises
 
 
 @dataclass
@@ -76,6 +78,7 @@ class Row:
     coverage: float = NAN
     disagreement: float = NAN
     trust: float = NAN
+    over: float = NAN
     stretch: float = NAN
     flipped: float = NAN
     reverse_stretch: float = NAN
@@ -97,6 +100,7 @@ COLUMNS = (
     ("confidence", "conf.", "6.2f"),
     ("orientation", "orient.", "7.2f"),
     ("trust", "trust", "6.2f"),
+    ("over", "over", "6.2f"),
     ("stretch", "stretch", "7.3f"),
     ("flipped", "flipped", "7.2%"),
     ("reverse_stretch", "stretch", "7.3f"),
@@ -139,7 +143,9 @@ def measure(task):
     row.margin = NAN if quality.margin is None else quality.margin
     row.confidence, row.orientation, row.distortion = quality.confidence, quality.orientation, quality.distortion
     row.coverage, row.disagreement = quality.coverage, quality.disagreement
-    row.trust = correlation(forth.confidence[x.there.nearest_vertices[source.samples]], found.errors)
+    confidence = forth.confidence[x.there.nearest_vertices[source.samples]]
+    row.trust = correlation(confidence, found.inside_errors)
+    row.over = float(confidence.mean() - (found.inside_errors < NEAR).mean())
     row.stretch, row.flipped = forth.rms_edge_stretch(x.mesh, y.mesh), forth.flipped_faces(x.mesh, y.mesh)
     row.reverse_stretch, row.reverse_flipped = back.rms_edge_stretch(y.mesh, x.mesh), back.flipped_faces(y.mesh, x.mesh)
     if with_peer:

@@ -128,8 +128,8 @@ class MapScore:
         its mirror image: an arm or leg exchanged with the other.
     lost : float
         The same of the largest patch that is lost, to wherever it may be.
-    errors : (k,) array of float
-        Those behind `direct`.
+    errors, inside_errors : (k,) array of float
+        Those behind `direct` and `inside`.
     """
 
     direct: float
@@ -139,6 +139,7 @@ class MapScore:
     swapped: float
     lost: float
     errors: np.ndarray
+    inside_errors: np.ndarray
 
     @property
     def flip(self):
@@ -156,15 +157,17 @@ def score(source, target, points):
     """Score the images, points (k,) on `target`, of the samples of `source`."""
     errors = target.vertex_errors(points.nearest_vertices)
     mirrored = target.vertex_errors(points.nearest_vertices, mirrored=True)
+    inside = target.point_errors(points)
     lost = errors > LOST
     return MapScore(
         errors.mean(),
         mirrored.mean(),
         np.percentile(errors, 95),
-        target.point_errors(points).mean(),
+        inside.mean(),
         source.largest_patch(lost & (mirrored < errors / 2)),
         source.largest_patch(lost),
         errors,
+        inside,
     )
 
 
