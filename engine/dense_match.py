@@ -195,9 +195,9 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     yield Progress(0.8, "Judging the map")
     quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness)
     yield Progress(0.85, "Mapping every vertex")
-    forward = _followed(x, y, there, map_confidence(main_x, main_y, there, back))
+    forward = _followed(x, y, there, map_confidence(main_x, main_y, there, back, likeness=pair.likeness))
     yield Progress(0.9, "Mapping every vertex")
-    backward = _followed(y, x, back, map_confidence(main_y, main_x, back, there))
+    backward = _followed(y, x, back, map_confidence(main_y, main_x, back, there, likeness=pair.likeness))
     if pair.landmarks is not None:
         given, partners = pair.landmarks.source.original, pair.landmarks.target.original
         forward = _at_landmarks(forward, y.original, given, partners)

@@ -26,6 +26,10 @@ _TRUSTED_ROUND_TRIP = 0.02
 _TRUSTED_STRETCH = 1.0
 """Logarithm of the stretch of the surface around a point at which its confidence is halved."""
 
+_CLOSE, _CLOSE_SPREAD, _LEAST_CLOSENESS = 15.0, 1.4, 0.3
+"""Likeness of shapes of which half of what the maps agree on is as close to the truth as it seems, by how much more or
+less it changes, and what is left for shapes that are not alike at all.  Both maps may slide the same way."""
+
 _WHOLE = 0.995
 """Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths, and
 fingertips that another body has not are no more than this."""
@@ -85,19 +89,36 @@ class MatchQuality:
 
 
 def map_confidence(
-    source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints
+    source: TriangleMesh,
+    target: TriangleMesh,
+    there: SurfacePoints,
+    back: SurfacePoints,
+    *,
+    likeness: float | None = None,
 ) -> NDArray[np.float64]:
     """Judge each vertex's image by whether the way back leads home, and by how much the surface is stretched there.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    there, back : SurfacePoints
+        A point of the target for each vertex of the source, and the other way round.
+    likeness : float, optional
+        How credible the map is as a whole: of shapes that differ, less can be told.
 
     Returns
     -------
     (n,) array of float
-        From 0 to 1; a rough guide, averaged over neighbours: no measure tells a well-fitting wrong place.  Zero for
-        what has no partner on the target.
+        From 0 to 1, averaged over neighbours: about the part of such vertices whose images are not farther than three
+        hundredths of sqrt(area) from the true ones.  Zero for what has no partner on the target.
     """
     distances = round_trips(source, there, back) / np.sqrt(source.area)
     stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
     confidence = 1 / ((1 + np.square(distances / _TRUSTED_ROUND_TRIP)) * (1 + np.square(stretch / _TRUSTED_STRETCH)))
+    if likeness is not None:
+        closeness = float(expit((likeness - _CLOSE) / _CLOSE_SPREAD))
+        confidence *= _LEAST_CLOSENESS + (1 - _LEAST_CLOSENESS) * closeness
     return np.clip(neighbour_means(source, confidence), 0, 1) * with_partner(source, target, there, back)
 
 
