@@ -31,6 +31,9 @@ _OTHER_SPACINGS, _LEAST_GAP = 1.25, 0.02
 """How far from all that the other surface is mapped to a place is not reached: spacings of the other surface's
 vertices, and a part of sqrt(area)."""
 
+_DENSE = 20_000
+"""Vertices from which on they lie so close that the middles of their triangles reach no more."""
+
 _LEAST_CORE = 0.001
 """Least area that is not reached, as a part of the surface, for something to be missing: half a finger of a person."""
 
@@ -88,8 +91,10 @@ def _gaps(places: NDArray[np.float64], target: TriangleMesh, back: SurfacePoints
     """Distances from places (k, 3) to what the target is mapped to, (k,): its vertices and its triangles' middles."""
     if not len(places):
         return np.empty(0)
-    middles = back.positions[target.triangles].mean(axis=1)
-    tree = cKDTree(np.concatenate([back.positions, middles]), balanced_tree=False, compact_nodes=False)
+    reached = back.positions
+    if len(reached) < _DENSE:
+        reached = np.concatenate([reached, reached[target.triangles].mean(axis=1)])
+    tree = cKDTree(reached, balanced_tree=False, compact_nodes=False)
     distances: NDArray[np.float64] = tree.query(places)[0]
     return distances
 

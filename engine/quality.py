@@ -113,13 +113,22 @@ def map_confidence(
         From 0 to 1, averaged over neighbours: about the part of such vertices whose images are not farther than three
         hundredths of sqrt(area) from the true ones.  Zero for what has no partner on the target.
     """
+    known = with_partner(source, target, there, back)
+    return _confidence(source, target, there, back, known) * _closeness(likeness)
+
+
+def _confidence(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    there: SurfacePoints,
+    back: SurfacePoints,
+    known: NDArray[np.bool_],
+) -> NDArray[np.float64]:
+    """Judge each vertex's image, (n,), by where it is known to have a partner, (n,)."""
     distances = round_trips(source, there, back) / np.sqrt(source.area)
     stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
     confidence = 1 / ((1 + np.square(distances / _TRUSTED_ROUND_TRIP)) * (1 + np.square(stretch / _TRUSTED_STRETCH)))
-    if likeness is not None:
-        closeness = float(expit((likeness - _CLOSE) / _CLOSE_SPREAD))
-        confidence *= _LEAST_CLOSENESS + (1 - _LEAST_CLOSENESS) * closeness
-    return np.clip(neighbour_means(source, confidence), 0, 1) * with_partner(source, target, there, back)
+    return np.clip(neighbour_means(source, confidence), 0, 1) * known
 
 
 def assess_maps(
@@ -148,10 +157,11 @@ def assess_maps(
     lengths = np.square(source.edge_lengths)
     distortion = float(np.average(np.abs(_log_stretch(source, target, there)), weights=lengths))
     coverage = float(np.average(with_partner(target, source, back, there), weights=target.vertex_areas))
-    source_coverage = float(np.average(with_partner(source, target, there, back), weights=source.vertex_areas))
+    known = with_partner(source, target, there, back)
+    source_coverage = float(np.average(known, weights=source.vertex_areas))
     trips = round_trips(source, there, back) / np.sqrt(source.area)
     disagreement = float(np.average(trips, weights=source.vertex_areas))
-    confidence = float(np.average(map_confidence(source, target, there, back), weights=source.vertex_areas))
+    confidence = float(np.average(_confidence(source, target, there, back, known), weights=source.vertex_areas))
     confidence *= max(orientation, 0.0)
     if margin is not None:
         confidence *= 1 - 0.5 * float(np.exp(-margin / _CLEAR_MARGIN))
@@ -159,6 +169,13 @@ def assess_maps(
     numbers = orientation, distortion, coverage, disagreement, margin, confidence
     quality = MatchQuality(*numbers, "", source_coverage, likeness)
     return replace(quality, sentence=_sentence(quality))
+
+
+def _closeness(likeness: float | None) -> float:
+    """Estimate the part of what both maps agree on that is as near to the truth as it seems, 0 to 1."""
+    if likeness is None:
+        return 1.0
+    return _LEAST_CLOSENESS + (1 - _LEAST_CLOSENESS) * float(expit((likeness - _CLOSE) / _CLOSE_SPREAD))
 
 
 def _plausibility(likeness: float | None) -> float:

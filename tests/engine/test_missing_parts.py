@@ -97,7 +97,7 @@ def test_a_small_part_that_is_cut_off(share, size):
     assert not known[angles < np.arccos(1 - 2 * share) - 3 * spacing].any()
 
 
-@pytest.mark.parametrize("parts", [4, 10, 30])
+@pytest.mark.parametrize("parts", [4, 10, 30, 46])
 def test_it_does_not_depend_on_how_finely_the_other_is_meshed(ball, parts):
     """However few vertices the other sphere has, nothing is missing; without a fifth of it, that is."""
     other = TriangleMesh(*icosphere(parts))
