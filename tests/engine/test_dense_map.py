@@ -133,17 +133,17 @@ def test_of_two_starts_the_one_that_keeps_the_orientation_is_taken(bodies, start
     assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
 
 
-def fore_legs_exchanged(x, y, rest_x, rest_y):
-    """Start from pairs of vertices of which those on the fore legs are the mirror images of the true ones."""
+def hind_legs_exchanged(x, y, rest_x, rest_y):
+    """Start from pairs of vertices of which those on the hind legs are the mirror images of the true ones."""
     places = rest_x[x.samples].copy()
-    places[(places[:, 0] > 0.2) & (places[:, 2] < -0.4), 1] *= -1
+    places[(places[:, 0] < -0.2) & (places[:, 2] < -0.4), 1] *= -1
     images = np.linalg.norm(places[:, None] - rest_y, axis=2).argmin(axis=1)
     return start_from(x, y, x.samples, images, "exchanged")
 
 
 def test_limbs_that_the_best_hypothesis_exchanges_are_put_right(bodies, monkeypatch):
     x, y, rest_x, rest_y = bodies
-    wrong = fore_legs_exchanged(*bodies)
+    wrong = hind_legs_exchanged(*bodies)
     left = run(registered_pair_steps(x, y, [wrong], search=False))
     assert errors(left.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() > 0.15
 
