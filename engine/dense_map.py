@@ -14,7 +14,7 @@ from .functional_maps import PointMaps
 from .limb_sides import exchanged_limbs, repaired_start
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps, score_everywhere, unrefined_hypothesis
 from .progress import Steps, within
-from .registration import CLOSE, FINE, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
+from .registration import CLOSE, FINE, GUIDED, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
 from .steering import steered_hypotheses_steps
 from .surface import SurfacePoints
 from .ties import Ties
@@ -227,7 +227,7 @@ class _Follower:
         start = smooth_start(source, target, images.on_y, self.smooth)
         first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
         guides = self._guides(hypothesis, images)
-        steps = register_steps(source, target, start, (SOFT,), first, ties=self.ties, guides=guides)
+        steps = register_steps(source, target, start, (GUIDED, SOFT), first, ties=self.ties, guides=guides)
         registration = yield from within(steps, 0.2, 1.0)
         cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
         elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))

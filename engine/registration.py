@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CLOSE",
     "FINE",
+    "GUIDED",
     "LAST",
     "POLISH",
     "SOFT",
@@ -85,9 +86,11 @@ class Stage:
     momentum: float = 0.0
 
 
-SOFT = Stage((5, 5, 10, 10, 20, 20, 40, 40, 80, 80, 160, 160), 0.2, 0.2, matched="vertices", guide_length=0.05)
-"""From a rough start: the normals and curvatures pull features together while the surface is stiff, and guides keep
-limbs apart that are near to each other in space."""
+GUIDED = Stage((5, 5, 10, 10, 20, 20, 40, 40), 0.2, 0.2, matched="vertices", guide_length=0.05)
+"""From a rough start, while the surface is stiff: guides keep limbs apart that are near to each other in space."""
+
+SOFT = Stage((80, 80, 160, 160), 0.2, 0.2, matched="vertices")
+"""The normals and curvatures pull features together; guides err by as much as the map that they are from."""
 
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
@@ -242,7 +245,7 @@ def register_steps(
     source: DeformableSurface,
     target: DeformableSurface,
     start: NDArray[np.float64],
-    stages: tuple[Stage, ...] = (SOFT, FINE, CLOSE, LAST),
+    stages: tuple[Stage, ...] = (GUIDED, SOFT, FINE, CLOSE, LAST),
     first: tuple[FoundPoints, FoundPoints] | None = None,
     *,
     ties: Ties | None = None,
