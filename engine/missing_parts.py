@@ -10,13 +10,15 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from .neighbour_means import neighbour_means
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh import TriangleMesh
     from .surface import SurfacePoints
 
-__all__ = ["neighbour_means", "round_trips", "with_partner"]
+__all__ = ["round_trips", "with_partner"]
 
 _SPACINGS, _LEAST_TRIP = 3.0, 0.03
 """Length of a round trip from which on it does not lead home: vertex spacings, and a part of sqrt(area)."""
@@ -109,10 +111,3 @@ def _parts(mesh: TriangleMesh, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
 def _mostly(mesh: TriangleMesh, marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Tell whether the larger part of each vertex and its neighbours is marked, (n,)."""
     return neighbour_means(mesh, marked.astype(np.float64)) > _MOSTLY
-
-
-def neighbour_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean of values per vertex (n,) over each vertex and its neighbours."""
-    (first, second), n = mesh.edges.T, mesh.vertex_count
-    sums = values + np.bincount(first, values[second], n) + np.bincount(second, values[first], n)
-    return sums / (1 + np.bincount(first, minlength=n) + np.bincount(second, minlength=n))

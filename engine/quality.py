@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import expit
 
-from .missing_parts import neighbour_means, round_trips, with_partner
+from .missing_parts import round_trips, with_partner
+from .neighbour_means import neighbour_means
 from .surface_map import SurfaceMap
 
 if TYPE_CHECKING:
