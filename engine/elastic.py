@@ -44,6 +44,8 @@ class ElasticSurface:
         Rest positions v.
     laplace : LaplaceBeltrami
         The operator of the surface.
+    factors : (n,) array of float, optional
+        What the energy around each vertex is multiplied by, see `softened`.  The rotations are the same for all.
 
     Attributes
     ----------
@@ -55,8 +57,11 @@ class ElasticSurface:
     .. [1] O. Sorkine, M. Alexa, "As-rigid-as-possible surface modeling", SGP 2007.
     """
 
-    def __init__(self, vertices: NDArray[np.float64], laplace: LaplaceBeltrami) -> None:
+    def __init__(
+        self, vertices: NDArray[np.float64], laplace: LaplaceBeltrami, factors: NDArray[np.float64] | None = None
+    ) -> None:
         n = len(vertices)
+        self._vertices, self._laplace = vertices, laplace
         entries = coo_array(laplace.stiffness)
         between = entries.row < entries.col
         self._tails, self._heads = entries.row[between], entries.col[between]
@@ -67,18 +72,19 @@ class ElasticSurface:
         # Sums over the edges around each vertex: of what does not, and of what does change sign with the direction.
         self._around = csr_array((np.ones(2 * count), ends), shape=(n, count))
         divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
-        self.stiffness = csr_array(divergence @ diags_array(self._weights) @ divergence.T)
-        self._covariance = self._covariances(n)
-        self._pull = csr_array(self._covariance.T) / 2
+        self._resisting = self._weights if factors is None else self._weights * (self._around.T @ factors) / 2
+        self.stiffness = csr_array(divergence @ diags_array(self._resisting) @ divergence.T)
+        self._covariance = self._covariances(n, self._weights)
+        self._pull = csr_array(self._covariances(n, self._resisting).T) / 2
         one_way = csr_array((np.ones(count), (self._tails, self._heads)), shape=(n, n))
         neighbours = csr_array(one_way + one_way.T)
         degree = np.maximum(neighbours.sum(axis=1), 1)
         self._average = csr_array((diags_array(np.ones(n)) + diags_array(1 / degree) @ neighbours) / 2)
         self._edge_length = float(np.sqrt(np.square(self._edges).sum(axis=1).mean())) if count else 1.0
 
-    def _covariances(self, n: int) -> csr_array:
+    def _covariances(self, n: int, weights: NDArray[np.float64]) -> csr_array:
         """Matrix (3 n, n) that makes of positions the covariances (3, 3) of rest edges and edges around each vertex."""
-        weighted = self._weights[:, None] * self._edges  # (e, 3)
+        weighted = weights[:, None] * self._edges  # (e, 3)
         ends = self._tails, self._heads
         rows = np.stack([[3 * here[:, None] + np.arange(3)] * 2 for here in ends])  # (2, 2, e, 3)
         columns = np.broadcast_to(np.stack(ends)[:, :, None], rows.shape)
@@ -113,6 +119,39 @@ class ElasticSurface:
         logarithms = np.log(np.clip(ratio, _LEAST_RATIO, 1 / _LEAST_RATIO)) / 2
         return np.exp(self._averaged(logarithms, radius))
 
+    def softened(self, positions: NDArray[np.float64], radius: float) -> ElasticSurface:
+        r"""Take the surface as softer where a deformation strains it more.
+
+        Poses stretch skin where it bends, and bodies differ more in some parts than in others: elsewhere little is to
+        be strained.  With s the squared strain around a vertex and m its mean over the surface, the energy there is
+        multiplied by :math:`(1 + s / m)^{-1/2}`, which is a step of iteratively reweighted least squares [1]_ for the
+        robust energy :math:`\sum \sqrt{1 + s / m}`; then so that the mean stays one.  Rotations are fitted as before.
+
+        Parameters
+        ----------
+        positions : (n, 3) array of float
+            Deformed positions.
+        radius : float
+            Over what distance, in units of the rest positions, rotations and strains are averaged.
+
+        Returns
+        -------
+        ElasticSurface
+            The surface with other weights.
+
+        References
+        ----------
+        .. [1] P. W. Holland, R. E. Welsch, "Robust regression using iteratively reweighted least-squares",
+           Communications in Statistics 6(9), 1977.
+        """
+        misfit = self._misfit(positions, self.rotations(positions, radius))
+        lengths = self._around @ (self._weights * np.square(self._edges).sum(axis=1))
+        strains = (self._around @ (self._weights * misfit)) / np.maximum(lengths, np.finfo(float).tiny)
+        strains = self._averaged(strains, radius)
+        mass = self._laplace.mass
+        factors = 1 / np.sqrt(1 + strains / max(np.average(strains, weights=mass), np.finfo(float).tiny))
+        return ElasticSurface(self._vertices, self._laplace, factors / np.average(factors, weights=mass))
+
     def pull(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum of the rotated edges at each vertex, (n, 3): the right-hand side of the equilibrium."""
         pulled: NDArray[np.float64] = self._pull @ rotations.transpose(0, 2, 1).reshape(-1, 3)
@@ -120,8 +159,7 @@ class ElasticSurface:
 
     def energy(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> float:
         """Energy of a deformation, an area: a number without unit for a surface of unit area."""
-        misfit = positions[self._tails] - positions[self._heads] - self._rotated(rotations)
-        return float((self._weights * np.square(misfit).sum(axis=1)).sum())
+        return float(self._resisting @ self._misfit(positions, rotations))
 
     def _averaged(self, values: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
         """Average values (n, ...) over a neighbourhood."""
@@ -130,6 +168,11 @@ class ElasticSurface:
         for _ in range(min(max(rounds, 1), _MOST_ROUNDS)):
             values = self._average @ values
         return values
+
+    def _misfit(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Squared distance of each edge from what it would be by the rotations alone, (e,)."""
+        apart = positions[self._tails] - positions[self._heads] - self._rotated(rotations)
+        return np.square(apart).sum(axis=1)
 
     def _rotated(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Rest edges turned by the mean of the rotations at their ends, (e, 3)."""

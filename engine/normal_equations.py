@@ -55,12 +55,19 @@ class NormalEquations:
         entries, slots = np.unique(self._place[both[1]] * n + self._place[both[0]], return_inverse=True)
         columns, self._rows = np.divmod(entries, n)
         self._starts = np.searchsorted(columns, np.arange(n + 1))
-        of_stiffness, self._diagonal, of_triangles = np.split(slots, np.cumsum([len(known.row), n]))
+        self._of_stiffness, self._diagonal, of_triangles = np.split(slots, np.cumsum([len(known.row), n]))
         self._corners = of_triangles.reshape(-1, 9)
         self._triangles = triangles
-        self._stiffness = np.bincount(of_stiffness, known.data, len(entries))
+        self._stiffness = self._values(stiffness)
 
-    def solver(self, own: NDArray[np.float64], points: FoundPoints, weights: NDArray[np.float64]) -> Solve:
+    def solver(
+        self,
+        own: NDArray[np.float64],
+        points: FoundPoints,
+        weights: NDArray[np.float64],
+        *,
+        stiffness: csr_array | None = None,
+    ) -> Solve:
         """Factor the matrix for some points.
 
         Parameters
@@ -71,6 +78,8 @@ class NormalEquations:
             Points (k,) of the triangles.
         weights : (k,) array of float
             Their weights b.
+        stiffness : (n, n) csr_array of float, optional
+            Another K, with entries at the same places.
 
         Returns
         -------
@@ -79,7 +88,8 @@ class NormalEquations:
         """
         here = points.barycentric
         squares = (weights[:, None, None] * here[:, :, None] * here[:, None, :]).ravel()
-        values = self._stiffness + np.bincount(self._corners[points.triangles].ravel(), squares, len(self._stiffness))
+        known = self._stiffness if stiffness is None else self._values(stiffness)
+        values = known + np.bincount(self._corners[points.triangles].ravel(), squares, len(self._rows))
         values[self._diagonal] += own
         n = len(self._place)
         factor = splu(
@@ -97,6 +107,10 @@ class NormalEquations:
             return solution
 
         return solve
+
+    def _values(self, stiffness: csr_array) -> NDArray[np.float64]:
+        """Entries of a stiffness, in the order of all."""
+        return np.bincount(self._of_stiffness, coo_array(stiffness).data, len(self._rows)).astype(float, copy=False)
 
     def pull(self, points: FoundPoints, forces: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum forces (k, 3) at points (k,) of the triangles, over the vertices that they act on: (n, 3)."""

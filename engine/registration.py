@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from .closest_points import ClosestPoints, FoundPoints
     from .deformable import DeformableSurface
+    from .elastic import ElasticSurface
     from .ties import Ties
 
     Guides = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -69,6 +70,8 @@ class Stage:
     momentum : float
         What part of the way of the round before is gone once more [1]_, below one: steps that agree add up, so sliding
         takes a fraction of the rounds, also where fit counts most.
+    softened : bool
+        Whether the surface is softer where the stages before have strained it, see `ElasticSurface.softened`.
 
     References
     ----------
@@ -84,6 +87,7 @@ class Stage:
     lead: float = 0.0
     guide_length: float = 0.0
     momentum: float = 0.0
+    softened: bool = False
 
 
 GUIDED = Stage((5, 5, 10, 10, 20, 20, 40, 40), 0.2, 0.2, matched="vertices", guide_length=0.05)
@@ -95,10 +99,10 @@ SOFT = Stage((80, 80, 160, 160), 0.2, 0.2, matched="vertices")
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
-CLOSE = Stage((1280,) * 4 + (2560,) * 6, 0.05, 0.0, matched="around", lead=0.5, momentum=0.8)
+CLOSE = Stage((1280,) * 4 + (2560,) * 6, 0.05, 0.0, matched="around", lead=0.5, momentum=0.8, softened=True)
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
-LAST = Stage((2560, 2560), 0.05, 0.0)
+LAST = Stage((2560, 2560), 0.05, 0.0, softened=True)
 """At last to rest, from exact matches, which turn fewer triangles over."""
 
 POLISH = Stage((40, 40, 80, 80, 160, 160, 320, 320, 640, 640, 1280, 1280), 0.05, 0.0)
@@ -294,12 +298,15 @@ def register_steps(
     matches = first
     for stage in stages:
         matcher = _Matcher(source, target, stage, guides)
+        elastic = source.elastic
+        if stage.softened:
+            elastic = elastic.softened(positions, stage.rotation_radius)
         step = np.zeros_like(positions)
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)
             if matches is None:
                 matches = matcher.matches(search)
-            solved = _solved(matcher, positions, normals, matches, weight=weight, ties=ties)
+            solved = _solved(matcher, elastic, positions, normals, matches, weight=weight, ties=ties)
             step = (1 + stage.lead) * (solved - positions) + stage.momentum * step
             positions = positions + step
             matches = None
@@ -320,6 +327,7 @@ def _at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.fl
 
 def _solved(
     matcher: _Matcher,
+    elastic: ElasticSurface,
     positions: NDArray[np.float64],
     normals: NDArray[np.float64],
     matches: tuple[FoundPoints, FoundPoints],
@@ -338,16 +346,16 @@ def _solved(
     theirs = weight * target.mass * _agreement(_at(on_source, source.triangles, normals), target.normals)
     theirs[_beyond(target, on_source, source)] = 0
     equations = source.equations
-    solve = equations.solver(own, on_source, theirs)
+    solve = equations.solver(own, on_source, theirs, stiffness=elastic.stiffness)
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
     response = None if ties is None else ties.response(solve)
     for _ in range(_SOLVES):
-        rotations = source.elastic.rotations(positions, matcher.stage.rotation_radius)
+        rotations = elastic.rotations(positions, matcher.stage.rotation_radius)
         if len(beyond):
             # Harmonic extension: what has no partner turns with its surroundings, however it was squeezed before.
             extended = solve(own[:, None] * rotations.reshape(-1, 9))[beyond]
             rotations[beyond] = nearest_rotations(extended.reshape(-1, 3, 3))
-        positions = solve(source.elastic.pull(rotations) + right)
+        positions = solve(elastic.pull(rotations) + right)
         if ties is not None and response is not None:
             positions = ties.held(positions, response)
     return positions

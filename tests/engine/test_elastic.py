@@ -71,8 +71,11 @@ def test_the_energy_is_an_area(body):
 def test_the_equilibrium_is_where_the_energy_has_no_slope(body):
     """The gradient of the energy is twice the stiffness applied to the positions, less the pull."""
     vertices, _, elastic = body
+    assert_equilibrium(elastic, vertices, elastic.rotations(creature(0.7, 9)[0], NEAR))
+
+
+def assert_equilibrium(elastic, vertices, rotations):
     random = np.random.default_rng(1)
-    rotations = elastic.rotations(creature(0.7, 9)[0], NEAR)
     positions = vertices + 0.1 * random.normal(size=vertices.shape)
     direction = random.normal(size=vertices.shape)
     step = 1e-3  # central differences of a square are exact
@@ -143,3 +146,42 @@ def test_the_order_of_the_vertices_does_not_matter(body):
     rotations, there = elastic.rotations(bent, NEAR), other.rotations(bent_there, NEAR)
     np.testing.assert_allclose(there[new], rotations, atol=1e-8)
     assert other.energy(bent_there, there) == pytest.approx(elastic.energy(bent, rotations), rel=1e-8)
+
+
+def test_a_surface_strained_alike_everywhere_is_as_stiff_as_before(ball):
+    vertices, _, elastic = ball
+    softened = elastic.softened(1.3 * vertices, NEAR)
+    assert abs(softened.stiffness - elastic.stiffness).max() < 1e-9
+
+
+def test_the_strained_half_of_a_plane_is_softer_by_the_root_of_three():
+    """One half strained and one not: the strain is twice its mean there, and the factors have the mean one."""
+    vertices, triangles = plane(40)
+    size = np.ptp(vertices[:, 0])
+    middle = vertices[:, 0].min() + size / 2
+    beyond = np.maximum(vertices[:, 0] - middle, 0)
+    elastic = elastic_of(vertices, triangles)
+    stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
+    softened = elastic.softened(stretched, 0.05 * size)
+    ratio = softened.stiffness.diagonal() / elastic.stiffness.diagonal()
+    still, strained = vertices[:, 0] < middle - 0.2 * size, beyond > 0.2 * size
+    mean = (1 + 3**-0.5) / 2
+    np.testing.assert_allclose(ratio[still], 1 / mean, rtol=0.03)
+    np.testing.assert_allclose(ratio[strained], 3**-0.5 / mean, rtol=0.03)
+
+
+def test_a_softened_surface_has_its_own_equilibrium_and_the_same_rotations(body):
+    vertices, _, elastic = body
+    bent, other = creature(0.7, 9)[0], creature(0.3, 9)[0]
+    softened = elastic.softened(bent, NEAR)
+    rotations = softened.rotations(other, NEAR)
+    np.testing.assert_array_equal(rotations, elastic.rotations(other, NEAR))
+    assert_equilibrium(softened, vertices, rotations)
+    assert softened.energy(other, rotations) != pytest.approx(elastic.energy(other, rotations), rel=0.01)
+
+
+def test_size_does_not_decide_what_is_softer(body):
+    vertices, triangles, elastic = body
+    bent = creature(0.5, 9)[0]
+    large = elastic_of(50 * vertices, triangles).softened(50 * bent, 50 * NEAR)
+    assert abs(large.stiffness - elastic.softened(bent, NEAR).stiffness).max() < 1e-9

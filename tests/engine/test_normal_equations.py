@@ -63,3 +63,20 @@ def test_forces_are_shared_out_by_the_barycentric_coordinates(body):
     points = some_points(mesh, 50, 5)
     forces = np.random.default_rng(6).normal(size=(50, 3))
     np.testing.assert_allclose(equations.pull(points, forces), evaluation(mesh, points).T @ forces, atol=1e-12)
+
+
+def test_another_stiffness_at_the_same_places(body):
+    mesh, stiffness, equations = body
+    points = some_points(mesh, 200, 5)
+    own, weights = np.full(mesh.vertex_count, 0.5), np.full(200, 2.0)
+    entries = stiffness.tocoo()
+    factors = np.random.default_rng(5).uniform(0.2, 3, mesh.vertex_count)
+    other = csr_array((entries.data * factors[entries.row] * factors[entries.col], (entries.row, entries.col)))
+    evaluate = evaluation(mesh, points).toarray()
+    full = other.toarray() + np.diag(own) + evaluate.T @ (weights[:, None] * evaluate)
+    solved = equations.solver(own, points, weights, stiffness=other)(mesh.vertices)
+    np.testing.assert_allclose(solved, np.linalg.solve(full, mesh.vertices), rtol=1e-8, atol=1e-10)
+    # The equations themselves are as they were.
+    full += stiffness.toarray() - other.toarray()
+    solved = equations.solver(own, points, weights)(mesh.vertices)
+    np.testing.assert_allclose(solved, np.linalg.solve(full, mesh.vertices), rtol=1e-8, atol=1e-10)
