@@ -179,13 +179,13 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     polished = None
     if max(main_x.vertex_count, main_y.vertex_count) <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
         polished = _Polish(main_x, main_y, pair.landmarks, polish)
-    there = yield from within(_lifted_steps(x, y, pair.target, pair.registration), 0.0, 0.2)
+    there = yield from within(_lifted_steps(x, y, pair.target, pair.registration, untangled=polished is None), 0.0, 0.2)
     if polished is not None:
         there = yield from within(polished.steps(there, 0), 0.2, 0.4)
     if involution:
         back = reflected_points(main_x, there)
     else:
-        back = yield from within(_lifted_steps(y, x, pair.source, pair.reverse), 0.4, 0.6)
+        back = yield from within(_lifted_steps(y, x, pair.source, pair.reverse, untangled=polished is None), 0.4, 0.6)
         if polished is not None:
             back = yield from within(polished.steps(back, 1), 0.6, 0.8)
     if pair.landmarks is not None:
@@ -237,7 +237,7 @@ class _Polish:
 
 
 def _lifted_steps(
-    x: PreparedSurface, y: PreparedSurface, target: DeformableSurface, registration: Registration
+    x: PreparedSurface, y: PreparedSurface, target: DeformableSurface, registration: Registration, *, untangled: bool
 ) -> Steps[SurfacePoints]:
     """Map every vertex of the main part of one mesh to that of the other."""
     return lift_steps(
@@ -248,6 +248,7 @@ def _lifted_steps(
         target_proxy=y.proxy,
         proxy_map=_nearest(registration.on_target, y.mesh),
         search=y.dense_search,
+        untangled=untangled,
     )
 
 

@@ -46,6 +46,7 @@ def lift_steps(
     target_proxy: Proxy | None = None,
     proxy_map: NDArray[np.int64] | None = None,
     search: ClosestPoints | None = None,
+    untangled: bool = True,
 ) -> Steps[SurfacePoints]:
     """Map every vertex of a dense mesh to another, given how its proxy lies on it.
 
@@ -67,6 +68,8 @@ def lift_steps(
         hands of folded arms, are not taken for one another.
     search : ClosestPoints, optional
         The search on the target, if there is one already.
+    untangled : bool
+        Whether triangles that are turned over are put right at last.
 
     Yields
     ------
@@ -140,7 +143,8 @@ def lift_steps(
             starts[part], positions[part], lift.turned(motion, part)
         )
     yield Progress(0.9, _LABEL)
-    untangle(source, target, triangles, barycentric, search=lift.search)
+    if untangled:
+        untangle(source, target, triangles, barycentric, search=lift.search)
     return SurfacePoints.from_barycentric(target, triangles, barycentric)
 
 

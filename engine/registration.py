@@ -105,7 +105,7 @@ CLOSE = Stage((1280,) * 4 + (2560,) * 6, 0.05, 0.0, matched="around", lead=0.5, 
 LAST = Stage((2560, 2560), 0.05, 0.0, softened=True)
 """At last to rest, from exact matches, which turn fewer triangles over."""
 
-POLISH = Stage((40, 40, 80, 80, 160, 160, 320, 320, 640, 640, 1280, 1280), 0.05, 0.0)
+POLISH = Stage((80, 160, 320, 1280, 2560), 0.05, 0.0, matched="around")
 """From a registration of coarser meshes."""
 
 

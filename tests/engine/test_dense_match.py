@@ -194,10 +194,11 @@ def test_a_coarse_stand_in_gives_nearly_the_same_map(result, bodies):
         errors(other.source_to_target, rest_x, rest, source),
         errors(other.target_to_source, rest, rest_x, fine),
     )
-    assert there.mean() < 1.15 * errors(result.source_to_target, rest_x, rest_y, source).mean() + 5e-4
-    assert back.mean() < 1.15 * errors(result.target_to_source, rest_y, rest_x, target).mean() + 5e-4
+    # Registered in full resolution at last, it is nearer to the truth than what the coarse meshes lead to.
+    assert there.mean() < errors(result.source_to_target, rest_x, rest_y, source).mean()
+    assert back.mean() < errors(result.target_to_source, rest_y, rest_x, target).mean()
     gaps = np.linalg.norm(other.source_to_target.positions - result.source_to_target.positions, axis=1)
-    assert gaps.mean() < 0.2 * target.edge_lengths.mean()
+    assert gaps.mean() < 0.25 * target.edge_lengths.mean()
     assert other.source_to_target.flipped_faces(source, fine) < 0.02
     assert np.isfinite(other.target_points.positions).all()
 
