@@ -23,9 +23,9 @@ __all__ = ["ClosestPoints", "FoundPoints", "closest_in_triangles"]
 _BLOCK = 10_000
 """Points that are searched side by side; the last steps, of few points each, are then shared by many."""
 
-_CHUNK = 600
-"""Points around which triangles are tried at once: with about six each, no array is large enough for the allocator to
-ask the system for memory, which takes as long as the computation."""
+_CHUNK = 2500
+"""Points around which triangles are tried at once: with about six each, the arrays are long enough for the calls to
+cost little, and short enough to stay in the cache."""
 
 _STARTS = 2
 """Nearest vertices from which a search everywhere sets out: the nearest alone misses several times as often, and the
