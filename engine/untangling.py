@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array
 
 from .symmetric_factor import symmetric_factor
 
@@ -145,11 +145,11 @@ class _Image:
         areas: NDArray[np.float64] = np.einsum("fd,fd->f", np.cross(b - a, c - a), self.normals) / 2
         return areas
 
-    def slopes(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Differentiate the areas by the positions of the three corners, (f, 3, 3)."""
-        a, b, c = positions[self.corners].transpose(1, 0, 2)
+    def slopes(self, positions: NDArray[np.float64], chosen: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Differentiate the areas of some triangles (l,) by the positions of their corners, (l, 3, 3)."""
+        a, b, c = positions[self.corners[chosen]].transpose(1, 0, 2)
         opposite = np.stack([b - c, c - a, a - b], axis=1)
-        slopes: NDArray[np.float64] = np.cross(opposite, self.normals[:, None]) / 2
+        slopes: NDArray[np.float64] = np.cross(opposite, self.normals[chosen, None]) / 2
         return slopes
 
     def average(self, chosen: NDArray[np.bool_]) -> None:
@@ -245,20 +245,24 @@ def _opened(image: _Image, rest: NDArray[np.float64], free: NDArray[np.int64]) -
     rest = np.maximum(rest, _SMALLEST * float(rest.mean()))
     number = np.full(len(image.vertices), -1)
     number[free] = np.arange(len(free))
-    now = image.positions.copy()
+    now, unknowns = image.positions.copy(), np.arange(3 * len(free))
     for _ in range(_ITERATIONS):
         lack = np.maximum(_LEAST_AREA - image.areas(now) / rest, 0)
         lacking = np.flatnonzero(lack)
         rows, corners = np.nonzero(number[image.corners[lacking]] >= 0)
-        slopes = image.slopes(now)[lacking[rows], corners] / np.sqrt(rest[lacking[rows], None])  # (e, 3)
+        slopes = image.slopes(now, lacking)[rows, corners] / np.sqrt(rest[lacking[rows], None])  # (e, 3)
         columns = 3 * number[image.corners[lacking[rows], corners]][:, None] + np.arange(3)
-        entries = (slopes.ravel(), (rows.repeat(3), columns.ravel()))
-        jacobian = csr_array(entries, shape=(len(lacking), 3 * len(free)))
         # Areas are products of positions: beside the Jacobian, what they lack bounds by how much they can change.
         around = np.bincount(columns[:, 0] // 3, lack[lacking[rows]], len(free)).repeat(3)
-        system = jacobian.T @ jacobian + diags_array(_TETHER + around)
-        pull = jacobian.T @ (lack * np.sqrt(rest))[lacking] - _TETHER * (now - image.positions)[free].ravel()
-        now[free] += symmetric_factor(system).solve(pull).reshape(-1, 3)
+        held = np.sqrt(_TETHER + around)
+        # The rows of the triangles, then one for each unknown, which adds the square of `held` to the diagonal.
+        ends = np.cumsum(np.append(0, 3 * np.bincount(rows, minlength=len(lacking))))
+        starts = np.concatenate([ends, ends[-1] + 1 + unknowns])
+        entries = (np.append(slopes, held), np.append(columns, unknowns), starts)
+        jacobian = csr_array(entries, shape=(len(starts) - 1, len(unknowns)))
+        back = _TETHER * (image.positions - now)[free].ravel() / held
+        pull = jacobian.T @ np.append((lack * np.sqrt(rest))[lacking], back)
+        now[free] += symmetric_factor(jacobian.T @ jacobian).solve(pull).reshape(-1, 3)
     return now[free]
 
 
