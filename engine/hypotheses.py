@@ -31,7 +31,9 @@ Result = TypeVar("Result")
 _DISTINCT = 0.2  # two coarse matchings are distinct if half the points lie farther apart than this, in sqrt(area)
 _SCREEN_POINTS = 20  # all hypotheses are refined up to this many points,
 _DECISION_POINTS = 64  # the best of them up to this many, unless a dense map is to decide,
-_KEPT = 4  # which are so many of each orientation.
+_KEPT = 4  # which are so many of each orientation,
+_KEPT_DENSE = 2  # and fewer if a dense map is to decide:
+_DENSE_SHARE = 2  # it has starts of its own, so that one in so many coarse matchings is enough.
 _DISTINCT_SHARE = 0.1  # part of the points that has to differ (by half of _DISTINCT) for two refined ones to be kept
 _CURVATURE_WEIGHT = 6.0
 _SYMMETRIES = 2  # so many self-matchings of the source, beside the identity, are tried for the mirror image
@@ -121,8 +123,9 @@ def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
     settings = pair.settings
     points = min(settings.coarse_points, settings.points)
     candidates = coarse_candidates(pair)
-    variants = pair.variants(settings.hypotheses)
-    each = -(-settings.hypotheses // len(variants))
+    count = -(-settings.hypotheses // _DENSE_SHARE) if settings.dense else settings.hypotheses
+    variants = pair.variants(count)
+    each = -(-count // len(variants))
     found = []
     for number, variant in enumerate(variants):
         search = distinct_matchings_steps(
@@ -155,15 +158,16 @@ def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
             levels = yield from _at(here, refine_steps(start.pair, start.matching.assignment, screen, term))
             cost = start.pair.problem(screen[-1], extra=term[: screen[-1]]).cost(levels[-1].assignment)
             screened.append(_Lead(start, term, levels, cost))
-        leads += _best_distinct(screened)
+        leads += _best_distinct(screened, _KEPT_DENSE if settings.dense else _KEPT)
     hypotheses: list[Hypothesis] = []
     for number, lead in enumerate(leads):
         here = Progress(0.5 + 0.35 * number / len(leads), "Comparing matchings")
         hypotheses.append((yield from _at(here, _follow_steps(lead, further))))
     hypotheses.sort(key=lambda hypothesis: hypothesis.score)
     if not coarse[0].pair.landmarks:  # which no symmetry of the source would respect
-        reflected = yield from _at(Progress(0.85, "Comparing matchings"), _reflected_steps(hypotheses, sizes))
-        hypotheses += reflected
+        missing = [sign for sign in (1, -1) if not any(h.orientation * sign > 0 for h in hypotheses)]
+        steps = _reflected_steps(hypotheses, sizes, missing if settings.dense else [-1, 1])
+        hypotheses += yield from _at(Progress(0.85, "Comparing matchings"), steps)
     return two_answers(hypotheses)
 
 
@@ -204,12 +208,14 @@ def _follow_steps(lead: _Lead, further: list[int]) -> Steps[Hypothesis]:
     return assess(lead.coarse, levels[:-1] + last)
 
 
-def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int]) -> Steps[list[Hypothesis]]:
-    """Make of the best matching of each orientation its mirror image, by the symmetries of the source.
+def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int], wanted: list[int]) -> Steps[list[Hypothesis]]:
+    """Make matchings of the wanted orientations, from the best of the other one, by the symmetries of the source.
 
     A symmetry of the source, followed by a matching, is another matching.  So where only one of the true and the
     mirrored one is among the best coarse matchings, the other is found from it.
     """
+    if not wanted:
+        return []
     pair = hypotheses[0].coarse.pair
     mirror = Pair(pair.source, pair.source, pair.settings)
     problem = mirror.problem(sizes[0], min(pair.settings.coarse_candidates, len(hypotheses[0].assignment)))
@@ -218,13 +224,13 @@ def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int]) -> Steps[li
         problem, 1 + _SYMMETRIES, _DISTINCT, node_limit=pair.settings.node_limit
     )
     found = []
-    for sign in (1, -1):
-        best = next((h for h in hypotheses if h.orientation * sign > 0), None)
+    for sign in wanted:
+        best = next((h for h in hypotheses if h.orientation * sign < 0), None)
         if best is None:
             continue
         for symmetry in selves[1:]:
             start = best.assignment[symmetry.assignment]
-            term = best.coarse.pair.orientation_term(start, -sign)
+            term = best.coarse.pair.orientation_term(start, sign)
             levels = yield from refine_steps(best.coarse.pair, start, sizes[:1], term)
             found.append((yield from _follow_steps(_Lead(best.coarse, term, levels, 0.0), sizes[1:])))
     return found
@@ -235,7 +241,7 @@ def _at(here: Progress, steps: Steps[Result]) -> Steps[Result]:
     return (yield from within(steps, here.fraction, here.fraction, here.label))
 
 
-def _best_distinct(leads: list[_Lead]) -> list[_Lead]:
+def _best_distinct(leads: list[_Lead], most: int) -> list[_Lead]:
     """Keep the best few, leaving out those that have become the same as a better one."""
     kept: list[_Lead] = []
     for lead in sorted(leads, key=lambda lead: lead.cost):
@@ -243,7 +249,7 @@ def _best_distinct(leads: list[_Lead]) -> list[_Lead]:
         moves = [target.sample_distances[lead.assignment, other.assignment] for other in kept]
         if all((move > _DISTINCT / 2).mean() > _DISTINCT_SHARE for move in moves):
             kept.append(lead)
-        if len(kept) == _KEPT:
+        if len(kept) == most:
             break
     return kept
 

@@ -178,7 +178,9 @@ def _dense_steps(
     pair = answers[0].coarse.pair
     x, y = pair.source, pair.target
     starts = []
-    for answer in answers:
+    # Mirrored maps serve only landmarks that ask for one.
+    followed = answers if landmarks is not None else [a for a in answers if a.orientation > 0] or answers
+    for answer in followed:
         places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
         starts.append(LandmarkStart(x.sample_rows[: len(places)], y.sample_rows[places], "hierarchy"))
     registered = yield from within(registered_pair_steps(x, y, starts, landmarks=landmarks), 0.0, 0.75)

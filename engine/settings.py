@@ -152,7 +152,7 @@ class MatchSettings:
         1,
         32,
         "How many distinct coarse matchings are followed up before the best is chosen. "
-        "Nearly symmetric shapes have several that are almost equally good",
+        "Nearly symmetric shapes have several that are almost equally good. With a dense map half as many are taken",
     )
     histogram_bins: int = _setting(
         32, "Histogram Bins", 4, 256, "Number of bins of the distance histograms that describe a point"

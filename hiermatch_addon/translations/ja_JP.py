@@ -169,10 +169,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Hypotheses": "仮説",
     (
         "How many distinct coarse matchings are followed up before the best is chosen. Nearly symmetric shapes "
-        "have several that are almost equally good"
+        "have several that are almost equally good. With a dense map half as many are taken"
     ): (
         "最良のものを選ぶまでに追跡する、異なる粗いマッチングの数。ほぼ対称な形状には、ほとんど同じくらいよいも"
-        "のが複数あります"
+        "のが複数あります。密なマップがあると、その半分を取ります"
     ),
     "Histogram Bins": "ヒストグラムのビン",
     "Number of bins of the distance histograms that describe a point": "ポイントを記述する距離ヒストグラムのビンの数",

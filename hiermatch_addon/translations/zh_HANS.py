@@ -142,8 +142,8 @@ MESSAGES: Final[dict[str, str]] = {
     "Hypotheses": "假设",
     (
         "How many distinct coarse matchings are followed up before the best is chosen. Nearly symmetric shapes "
-        "have several that are almost equally good"
-    ): "在选出最佳结果之前，继续求解多少个不同的粗匹配。近似对称的形状有若干几乎同样好的结果",
+        "have several that are almost equally good. With a dense map half as many are taken"
+    ): "在选出最佳结果之前，继续求解多少个不同的粗匹配。近似对称的形状有若干几乎同样好的结果。使用稠密映射时取其一半",
     "Histogram Bins": "直方图柱数",
     "Number of bins of the distance histograms that describe a point": "描述一个点的距离直方图的柱数",
     "Eigenfunctions": "特征函数",
