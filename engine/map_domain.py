@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["MapDomain"]
 
 _COARSE = 512  # samples on which many hypotheses are compared
-_FINE = 1200  # samples on which few are refined
+_FINE = 800  # samples on which few are refined
 _ORIENTING = 30  # eigenfunctions whose gradients tell the orientation
 _HEAT_TIME = 1e-3  # over which curvature is smoothed, in units of the area: some fingers wide on a person
 _PATCH = 0.1  # standard deviation of the patches that are compared as rigid bodies: a hand or a foot, on a person

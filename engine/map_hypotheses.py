@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["LandmarkStart", "MapHypothesis", "map_hypotheses_steps", "score_everywhere", "unrefined_hypothesis"]
 
 _FINE_SIZES = spectral_sizes(15, 80, 9)
-_DENSE_SIZES = spectral_sizes(80, 110, 3)
+_SMOOTHED = 110  # eigenfunctions that patches are smoothed by before they are compared as rigid bodies
 _DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
 _RETURNED = {1: 4, -1: 2}  # most hypotheses that keep the orientation, and that mirror it
 _HOPELESS = 3.0  # excess of the score over the best of the same orientation
@@ -223,18 +223,16 @@ def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Map
     maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, size)
     terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
     terms["distances"] = distance_term(x, y, points)
-    terms["rigidity"] = rigidity_term(x, y, points, _DENSE_SIZES[-1])
+    terms["rigidity"] = rigidity_term(x, y, points, _SMOOTHED)
     score = sum(weight * np.log(max(terms[name], _LEAST_TERM)) for name, weight in _WEIGHTS.items())
     return MapLead(points, float(score), map_orientation(x, y, points, maps)[0], terms, origin)
 
 
 def _between_all_vertices_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:
     """Extend maps between the fine samples to all vertices."""
-    points = yield from within(refine_bijective_steps(x.fine_basis, y.fine_basis, points, _DENSE_SIZES), 0.0, 0.3)
-    maps = fit_functional_maps(
-        x.fine_basis, y.fine_basis, points, min(_DENSE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
-    )
-    return (yield from within(points_from_functions_steps(maps, x.functions, y.functions), 0.3, 1.0))
+    size = min(_FINE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
+    maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, size)
+    return (yield from points_from_functions_steps(maps, x.functions, y.functions))
 
 
 def _check(start: LandmarkStart, x: Shape, y: Shape) -> None:

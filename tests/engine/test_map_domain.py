@@ -22,7 +22,7 @@ def body():
 
 def test_fine_samples_begin_with_the_coarse_ones_and_are_distinct(body):
     np.testing.assert_array_equal(body.vertices[: body.coarse_count], body.shape.samples)
-    assert len(np.unique(body.vertices)) == len(body.vertices) == 1200
+    assert len(np.unique(body.vertices)) == len(body.vertices) == 800
 
 
 def test_fine_samples_leave_no_large_gaps(body):
