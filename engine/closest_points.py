@@ -389,11 +389,13 @@ class _Walk:
         # A search from a corner of the best triangle would end there.
         active = np.flatnonzero((self.corners != starts).all(axis=0))
         vertices = starts[active]
-        for _ in range(steps):
+        for number in range(steps):
             if not len(active):
                 break
             for first in range(0, len(active), _CHUNK):
                 self._try_around(active[first : first + _CHUNK], vertices[first : first + _CHUNK])
+            if number == steps - 1:  # what follows only says where to go on
+                break
             self.visited[1:, active] = self.visited[:-1, active]
             self.visited[0, active] = vertices
             corners = self.corners.take(active, axis=1)
