@@ -4,8 +4,63 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 __all__ = ["CleaningCounts", "cleaning_notes"]
+
+_SENTENCES: Final = {
+    "welded": (
+        "The {0} had {1} duplicate vertex along open seams: it was welded for matching.",
+        "The {0} had {1} duplicate vertices along open seams: they were welded for matching.",
+    ),
+    "degenerate": (
+        "The {0} had {1} degenerate face: it was left out.",
+        "The {0} had {1} degenerate faces: they were left out.",
+    ),
+    "repeated": (
+        "The {0} had {1} repeated face: it was left out.",
+        "The {0} had {1} repeated faces: they were left out.",
+    ),
+    "crowded": (
+        "The {0} had {1} non-manifold edge: it was opened for matching.",
+        "The {0} had {1} non-manifold edges: they were opened for matching.",
+    ),
+    "touching": (
+        "The {0} had {1} place where sheets touch in one vertex: it was separated for matching.",
+        "The {0} had {1} places where sheets touch in one vertex: they were separated for matching.",
+    ),
+    "left_out": (
+        "The {0} had {1} face of sheets that share an edge: it was left out.",
+        "The {0} had {1} faces of sheets that share an edge: they were left out.",
+    ),
+    "turned": (
+        "The {0} had {1} face with normals against its neighbours: it was read the other way round.",
+        "The {0} had {1} faces with normals against their neighbours: they were read the other way round.",
+    ),
+    "spikes": (
+        "The {0} had {1} spike of one vertex: it was pulled in for matching.",
+        "The {0} had {1} spikes of one vertex: they were pulled in for matching.",
+    ),
+    "filled": (
+        "The {0} had {1} small hole: it was closed for matching.",
+        "The {0} had {1} small holes: they were closed for matching.",
+    ),
+    "one_sided": ("The {0} had a surface with only one side: it was cut open for matching.",),
+    "inverted": ("The normals of the {0} point inwards: they were read the other way round.",),
+    "left_open": (
+        "The {0} has {1} large opening: the surface ends there.",
+        "The {0} has {1} large openings: the surface ends there.",
+    ),
+    "parts": (
+        "The {0} has {1} smaller part: it follows its surroundings.",
+        "The {0} has {1} smaller parts: they follow their surroundings.",
+    ),
+    "loose": (
+        "The {0} has {1} loose vertex: it follows its surroundings.",
+        "The {0} has {1} loose vertices: they follow their surroundings.",
+    ),
+}
+"""For each fault what is said of one, and of several.  Whole sentences, since that is what can be translated."""
 
 
 @dataclass
@@ -71,31 +126,5 @@ def cleaning_notes(name: str, counts: CleaningCounts) -> tuple[str, ...]:
     tuple of str
         The sentences; none for a clean mesh.
     """
-    # How many, what one and several are called, where, and what was done.
-    past = (
-        (counts.welded, "duplicate vertex", "duplicate vertices", "along open seams", "welded for matching"),
-        (counts.degenerate, "degenerate face", "degenerate faces", "", "left out"),
-        (counts.repeated, "repeated face", "repeated faces", "", "left out"),
-        (counts.crowded, "non-manifold edge", "non-manifold edges", "", "opened for matching"),
-        (counts.touching, "place", "places", "where sheets touch in one vertex", "separated for matching"),
-        (counts.left_out, "face", "faces", "of sheets that share an edge", "left out"),
-        (counts.turned, "face", "faces", "with normals against their neighbours", "read the other way round"),
-        (counts.spikes, "spike", "spikes", "of one vertex", "pulled in for matching"),
-        (counts.filled, "small hole", "small holes", "", "closed for matching"),
-    )
-    notes = []
-    for count, one, many, where, done in past:
-        if count:
-            things = f"{count:,} {one if count == 1 else many}" + (f" {where}" if where else "")
-            notes.append(f"The {name} had {things}: {'it was' if count == 1 else 'they were'} {done}.")
-    if counts.one_sided:
-        notes.append(f"The {name} had a surface with only one side: it was cut open for matching.")
-    if counts.inverted:
-        notes.append(f"The normals of the {name} point inwards: they were read the other way round.")
-    present = (
-        (counts.left_open, "large opening: the surface ends there", "large openings: the surface ends there"),
-        (counts.parts, "smaller part: it follows its surroundings", "smaller parts: they follow their surroundings"),
-        (counts.loose, "loose vertex: it follows its surroundings", "loose vertices: they follow their surroundings"),
-    )
-    notes += [f"The {name} has {count:,} {one if count == 1 else many}." for count, one, many in present if count]
-    return tuple(notes)
+    found = ((int(getattr(counts, fault)), sentences) for fault, sentences in _SENTENCES.items())
+    return tuple(sentences[0 if count == 1 else -1].format(name, f"{count:,}") for count, sentences in found if count)

@@ -63,7 +63,7 @@ def remember_transfer(context: bpy.types.Context, carried: list[Carried]) -> Non
     done = []
     for one in carried:
         parts = [part.done for part in one.reports if part.done]
-        done.append(f"{one.target}: {', '.join(parts) if parts else 'nothing'}")
+        done.append(f'Carried to "{one.target}": {", ".join(parts) if parts else "nothing"}')
     report.done = "\n".join(done)
     report.notes = "\n".join(note for one in carried for part in one.reports for note in part.notes)
     report.seconds = carried[-1].seconds if carried else 0.0

@@ -32,18 +32,26 @@ def translated(text: str) -> str:
     -------
     str
         Its translation; the text itself if there is none, or none is wanted.  What is filled in is translated, too,
-        unless it stands in quotation marks: that is a name.
+        unless it stands in quotation marks: that is a name.  So are the parts of a list, if all of them are known.
     """
     translations: Any = bpy.app.translations  # whose functions Blender's stubs declare to return nothing
     said: str = translations.pgettext_iface(text)
     if said != text or translations.locale not in LANGUAGES:
         return said
+    parts = text.split(", ")
+    if len(parts) > 1 and all(_is_known(part) for part in parts):
+        return "、".join(translated(part) for part in parts)
     template, values = _taken_apart(text)
     said = translations.pgettext_iface(template)
     if said == template:
         return text
     filled = {name: value if f'"{{{name}}}"' in template else translated(value) for name, value in values}
     return re.sub(r"\{(\w+)\}", lambda field: filled[field[1]], said)
+
+
+def _is_known(text: str) -> bool:
+    """Tell whether the tables have a text, as it is or as a pattern."""
+    return text in next(iter(LANGUAGES.values())) or bool(_taken_apart(text)[1])
 
 
 @lru_cache(maxsize=1024)
@@ -59,11 +67,15 @@ def _taken_apart(text: str) -> tuple[str, tuple[tuple[str, str], ...]]:
 
 @cache
 def _patterns() -> tuple[tuple[str, re.Pattern[str]], ...]:
-    """List the sentences with gaps, those that say most first, and what matches them."""
+    """List the sentences with gaps, and what matches them.
+
+    Those that start with a gap come last, since they say least about what they match, else those that say most first.
+    """
     patterns = []
     for text in next(iter(LANGUAGES.values())):
         parts = list(Formatter().parse(text))
         if any(name is not None for _, name, _, _ in parts):
             wanted = "".join(re.escape(said) + (f"(?P<_{name}>.+?)" if name else "") for said, name, _, _ in parts)
-            patterns.append((sum(len(said) for said, *_ in parts), text, re.compile(wanted, re.DOTALL)))
-    return tuple((text, pattern) for _, text, pattern in sorted(patterns, key=lambda each: -each[0]))
+            letters = sum(len(said) for said, *_ in parts)
+            patterns.append(((text.startswith("{"), -letters), text, re.compile(wanted, re.DOTALL)))
+    return tuple((text, pattern) for _, text, pattern in sorted(patterns, key=lambda each: each[0]))

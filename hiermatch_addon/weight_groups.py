@@ -57,10 +57,14 @@ def chosen_groups(source: bpy.types.Object, choice: str) -> list[str]:
     bones = deforming_bones(source) if choice == "DEFORM" else _selected_bones(armature)
     found = [name for name in names if name in bones]
     if not found:
-        kind = "deforms" if choice == "DEFORM" else "is selected"
+        if choice == "DEFORM":
+            raise ObjectError(
+                f'No bone of "{armature.name}" that deforms has a vertex group on "{source.name}". Carry All groups, '
+                "or turn Deform on for its bones."
+            )
         raise ObjectError(
-            f'No bone of "{armature.name}" that {kind} has a vertex group on "{source.name}". Carry All groups, or '
-            + ("turn Deform on for its bones." if choice == "DEFORM" else "select others of its bones in Pose Mode.")
+            f'No bone of "{armature.name}" that is selected has a vertex group on "{source.name}". Carry All groups, '
+            "or select others of its bones in Pose Mode."
         )
     return found
 

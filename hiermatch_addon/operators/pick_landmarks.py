@@ -145,7 +145,7 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
             else:
                 (other,) = (name for name in self._names if name != self._pending[0])
                 what = f'Click on the corresponding place of "{other}"'
-            said = f"{what}    {self._added} landmarks added    Enter: done    Esc: back"
+            said = f"{what}    Landmarks added: {self._added}    Enter: done    Esc: back"
             workspace.status_text_set(translated(said))
         redraw_views(window_manager_of(context))
 

@@ -27,6 +27,7 @@ from ..attribute_io import (
 )
 from ..errors import ObjectError
 from ..material_slots import assign_materials, read_materials
+from ..phrases import counted
 from ..transfer import TransferReport
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ class AttributeTransfer:
             carried = yield from within(steps, number / count, (number + 1) / count)
             self._values[layout] = carried.values
             if carried.lost:
-                lines = "1 line" if carried.lost == 1 else f"{carried.lost} lines"
+                lines = counted(carried.lost, "line")
                 self._notes.append(f'{lines} of "{layout.name}" run where the target has no faces, and were left out.')
         yield Progress(1 - 1 / count, "Carrying materials and normals")
         if self._materials is not None:
@@ -139,11 +140,11 @@ class AttributeTransfer:
             else:
                 write_attribute(mesh, layout, values)
         if self._values:
-            done.append(_counted(len(self._values), "attribute"))
+            done.append(counted(len(self._values), "attribute"))
             self._show_colors(mesh)
         if self._materials is not None:
             materials = read_materials(source)[0]
-            done.append(_counted(assign_materials(target, materials, self._materials), "material"))
+            done.append(counted(assign_materials(target, materials, self._materials), "material"))
         if self._normals is not None:
             write_corner_normals(mesh, _unit(self._normals))
             done.append("custom normals")
@@ -171,7 +172,3 @@ def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Scale vectors (k, 3) to length one, leaving zero vectors alone."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

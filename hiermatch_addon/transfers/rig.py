@@ -18,6 +18,7 @@ from ..bone_constraints import adapt_constraints, displaced_bones
 from ..errors import ObjectError
 from ..key_drivers import counterparts
 from ..pair import check_writable
+from ..phrases import counted, listed
 from ..rest_action import keep_pose, pose_bases
 from ..transfer import TransferReport
 
@@ -32,9 +33,6 @@ if TYPE_CHECKING:
     from .rig_options import RigSettings
 
 __all__ = ["RigTransfer"]
-
-_LISTED = 3
-"""So many names are written out in a note."""
 
 
 class RigTransfer:
@@ -81,7 +79,7 @@ class RigTransfer:
         others = [other.name for other in moving_armatures(source) if other != armature]
         if others:
             self._notes.append(
-                f'"{source.name}" is moved by {_listed(others)} as well as by "{armature.name}". Only the latter was '
+                f'"{source.name}" is moved by {listed(others)} as well as by "{armature.name}". Only the latter was '
                 "fitted."
             )
         self._names = rig.names
@@ -118,11 +116,11 @@ class RigTransfer:
         if made is None:
             kept = repoint(armature, counterparts(source, target, model, armature))
             if kept:
-                self._notes.append(f'Constraints or drivers of "{armature.name}" still point to {_listed(kept)}.')
+                self._notes.append(f'Constraints or drivers of "{armature.name}" still point to {listed(kept)}.')
             _move_to_collections(context, armature, target)
             mark_made(armature, model)
         elif missing:
-            self._notes.append(f'"{armature.name}", which was made before, lacks {_listed(missing)}.')
+            self._notes.append(f'"{armature.name}", which was made before, lacks {listed(missing)}.')
         adapt_constraints(model, armature)
         if self._settings.bind:
             self._notes += bind(target, armature, source)
@@ -130,19 +128,21 @@ class RigTransfer:
         displaced = displaced_bones(armature) if made is None else []
         if displaced:
             self._notes.append(
-                f'Constraints or drivers move {_listed(displaced)} of "{armature.name}" away from rest, and the target '
+                f'Constraints or drivers move {listed(displaced)} of "{armature.name}" away from rest, and the target '
                 "with them. Check them."
             )
         if not set(target.vertex_groups.keys()) & set(self._names):
             self._notes.append(
                 f'"{target.name}" has no weights for the bones of "{armature.name}" yet. Transfer the weights as well.'
             )
-        bones = "1 bone" if len(self._names) == 1 else f"{len(self._names)} bones"
-        done = f'the rig "{armature.name}" with {bones}'
+        bones = counted(len(self._names), "bone")
+        done = [f'the rig "{armature.name}" with {bones}']
         if self._rest is not None:
             action = self._keep_rest(armature)
-            done += f' and the rest pose "{action}"'
-        return TransferReport(done + (", updated" if made else ""), tuple(self._notes))
+            done = [f'the rig "{armature.name}" with {bones} and the rest pose "{action}"']
+        if made:
+            done.append("updated")
+        return TransferReport(", ".join(done), tuple(self._notes))
 
     def _keep_rest(self, armature: bpy.types.Object) -> str:
         """Keep the rest pose as an action."""
@@ -181,9 +181,3 @@ def _rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
     """Find the rotation nearest to a matrix (3, 3)."""
     left, _, right = np.linalg.svd(matrix)
     return left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
-
-
-def _listed(names: list[str]) -> str:
-    """Write names out, or the first of many."""
-    shown = ", ".join(f'"{name}"' for name in names[:_LISTED])
-    return shown if len(names) <= _LISTED else f"{shown} and {len(names) - _LISTED} more"

@@ -13,6 +13,7 @@ from ..armatures import find_armature
 from ..errors import ObjectError
 from ..key_actions import share_key_action
 from ..key_drivers import copy_key_drivers, counterparts
+from ..phrases import counted, listed
 from ..shape_key_io import (
     KeySettings,
     add_keys,
@@ -67,11 +68,11 @@ class ShapeKeyTransfer:
             skipped = [name for name in chosen if name in present]
             chosen = [name for name in chosen if name not in present]
             if skipped:
-                self._notes.append(f'"{target.name}" already has {_listed(skipped)}, which was skipped.')
+                self._notes.append(f'"{target.name}" already has {listed(skipped)}, which was skipped.')
         locked = [name for name in chosen if name in locked_keys(target)]
         chosen = [name for name in chosen if name not in locked]
         if locked:
-            self._notes.append(f'Locked shape keys of "{target.name}" were left alone: {_listed(locked)}.')
+            self._notes.append(f'Locked shape keys of "{target.name}" were left alone: {listed(locked)}.')
         keys = cast("bpy.types.Key", keys_of(source))
         absolute = not keys.use_relative and can_be_absolute(target, chosen)
         check_keys_writable(target, chosen, absolute=absolute)
@@ -113,11 +114,11 @@ class ShapeKeyTransfer:
         missing = sorted({key.vertex_group for key in self._keys} - {"", *target.vertex_groups.keys()})
         if missing:
             self._notes.append(
-                f'"{target.name}" has no vertex group {_listed(missing)}, by which shape keys of "{source.name}" are '
+                f'"{target.name}" has no vertex group {listed(missing)}, by which shape keys of "{source.name}" are '
                 "limited. Carry the weights over first."
             )
-        done = [_counted(len(self._keys), "shape key"), *self._animate(source, target)]
-        return TransferReport(" and ".join([", ".join(done[:-1]), done[-1]] if done[1:] else done), tuple(self._notes))
+        done = [counted(len(self._keys), "shape key"), *self._animate(source, target)]
+        return TransferReport(", ".join(done), tuple(self._notes))
 
     def _chosen(self, source: bpy.types.Object) -> list[str]:
         """Names of the keys to carry, in the order of the source."""
@@ -136,7 +137,7 @@ class ShapeKeyTransfer:
                 raise ObjectError("No shape key is named. Enter the Names of some, separated by commas.")
             unknown = [name for name in self._settings.names if name not in names]
             if unknown:
-                raise ObjectError(f'"{source.name}" has no shape key {_listed(unknown)}. Check the Names.')
+                raise ObjectError(f'"{source.name}" has no shape key {listed(unknown)}. Check the Names.')
             return [name for name in names if name in self._settings.names]
         return list(names)
 
@@ -149,9 +150,9 @@ class ShapeKeyTransfer:
             places = counterparts(source, target, find_armature(source), find_armature(target))
             count, kept = copy_key_drivers(mine, theirs, paths, places)
             if count:
-                done.append(_counted(count, "driver"))
+                done.append(counted(count, "driver"))
             if kept:
-                points = _listed(sorted(kept))
+                points = listed(sorted(kept))
                 self._notes.append(f'Drivers of the shape keys of "{target.name}" still point to {points}.')
         if self._settings.action:
             shared, note = share_key_action(source, target, paths)
@@ -160,13 +161,3 @@ class ShapeKeyTransfer:
             if note:
                 self._notes.append(note)
         return done
-
-
-def _listed(names: list[str]) -> str:
-    """Names for a sentence: three at most."""
-    quoted = [f'"{name}"' for name in names]
-    return ", ".join(quoted) if len(quoted) <= 3 else f"{', '.join(quoted[:3])} and {len(quoted) - 3} more"
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

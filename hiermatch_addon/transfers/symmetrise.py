@@ -20,6 +20,7 @@ from ..deform_layer import check_weights_writable, read_weights, write_weights
 from ..errors import ObjectError
 from ..mesh_io import corner_vertices, position_digest, read_mesh, topology, vertex_positions
 from ..pair import check_object
+from ..phrases import counted
 from ..shape_key_io import (
     KeySettings,
     add_keys,
@@ -153,7 +154,7 @@ class _Weights:
     def write(self, obj: bpy.types.Object) -> str:
         """Write them."""
         write_weights(obj, self.names, self._weights)
-        return _counted(len(self.names), "vertex group")
+        return counted(len(self.names), "vertex group")
 
 
 class _Keys:
@@ -192,7 +193,7 @@ class _Keys:
         before = [KeySettings.of(blocks[name], self.names) for name in self.names]
         new = [replace(one, name=flipped_name(one.name), vertex_group=_flipped_group(one)) for one in self._missing]
         add_keys(obj, [*before, *new], np.concatenate([self._offsets, self._made]))
-        return _counted(len(before) + len(new), "shape key")
+        return counted(len(before) + len(new), "shape key")
 
 
 class _Colors:
@@ -223,11 +224,7 @@ class _Colors:
         for name, (_, values) in self._values.items():
             write_attribute(mesh, attribute_layouts(mesh)[name], values)
         mesh.update()
-        return _counted(len(self.names), "color attribute")
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+        return counted(len(self.names), "color attribute")
 
 
 def _state(obj: bpy.types.Object) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from ..attribute_io import (
     write_seams,
 )
 from ..errors import ObjectError
+from ..phrases import counted
 from ..transfer import TransferReport
 
 if TYPE_CHECKING:
@@ -109,8 +110,7 @@ class UVTransfer:
             leading = self._active if self._active in self._carried else next(iter(self._carried))
             write_seams(mesh, self._carried[leading].seams)
         mesh.update()
-        count = len(self._carried)
-        return TransferReport("1 UV map" if count == 1 else f"{count} UV maps", tuple(self._notes))
+        return TransferReport(counted(len(self._carried), "UV map"), tuple(self._notes))
 
     def _chosen(self, source: bpy.types.Object) -> list[str]:
         """Names of the layers to carry, in the order of the source."""

@@ -15,6 +15,7 @@ from .. import mesh_io
 from ..access import mesh_of
 from ..deform_layer import check_weights_writable, read_weights, write_weights
 from ..errors import ObjectError
+from ..phrases import counted, listed
 from ..side_names import flipped_name
 from ..transfer import TransferReport
 from ..weight_groups import chosen_groups, deforming_bones, locked_groups
@@ -79,13 +80,12 @@ class WeightTransfer:
         if taken:
             chosen = [name for name in chosen if name not in taken]
             self._notes.append(
-                f'{_listed(taken)} of "{source.name}" was left out: on "{target.name}" a match wrote what has that '
-                "name."
+                f'{listed(taken)} of "{source.name}" was left out: on "{target.name}" a match wrote what has that name.'
             )
         locked = locked_groups(target)
         stay = [name for name in chosen if name in locked]
         if stay:
-            self._notes.append(f'Locked vertex groups of "{target.name}" were left alone: {_listed(stay)}.')
+            self._notes.append(f'Locked vertex groups of "{target.name}" were left alone: {listed(stay)}.')
         if len(stay) == len(chosen):
             raise ObjectError(
                 f'All vertex groups to carry are locked on "{target.name}". Unlock some of them, or carry others.'
@@ -130,12 +130,11 @@ class WeightTransfer:
             self._write_mark(target)
         filled = int(self._torn.sum())
         if filled:
-            many = "1 vertex" if filled == 1 else f"{filled} vertices"
             self._notes.append(
-                f'Weights of {many} of "{target.name}" were filled in from the neighbors, far from whose places on '
-                f'"{source.name}" the map had led.'
+                f'Weights of {counted(filled, "vertex")} of "{target.name}" were filled in from the neighbors, far '
+                f'from whose places on "{source.name}" the map had led.'
             )
-        return TransferReport(_counted(int((columns.new & ~columns.locked).sum())), tuple(self._notes))
+        return TransferReport(counted(int((columns.new & ~columns.locked).sum()), "vertex group"), tuple(self._notes))
 
     @property
     def _read_task(self) -> _Task:
@@ -228,13 +227,3 @@ def _is_whole(weights: csr_array) -> bool:
     """Tell whether the weights of each vertex that has any are shares of a whole."""
     sums = row_sums(weights)
     return bool((sums > 0).any() and (abs(sums[sums > 0] - 1) < _WHOLE_SUM).all())
-
-
-def _listed(names: list[str]) -> str:
-    """Names for a sentence: three at most."""
-    quoted = [f'"{name}"' for name in names]
-    return ", ".join(quoted) if len(quoted) <= 3 else f"{', '.join(quoted[:3])} and {len(quoted) - 3} more"
-
-
-def _counted(count: int) -> str:
-    return "1 vertex group" if count == 1 else f"{count} vertex groups"

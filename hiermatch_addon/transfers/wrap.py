@@ -111,8 +111,10 @@ class WrapTransfer:
         names = self._names(other.name)
         add_keys(made, self._key_settings(made, names), self._offsets(made))
         _drive(cast("bpy.types.Key", keys_of(made)), names)
-        what = f'the shape key "{names[0]}" on "{made.name}"'
-        return TransferReport(f"{what}, a new object" if made != moved else what, tuple(self._notes))
+        done = [f'the shape key "{names[0]}" on "{made.name}"']
+        if made != moved:
+            done.append("a new object")
+        return TransferReport(", ".join(done), tuple(self._notes))
 
     def _roles(self, source: bpy.types.Object, target: bpy.types.Object) -> tuple[bpy.types.Object, bpy.types.Object]:
         """Tell which one is laid onto which."""

@@ -1153,7 +1153,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Exact search, {0} nodes": "厳密探索、{0}ノード",
     "Matching {0} points": "{0}個のポイントをマッチング中",
     "Moving {0} points over the surface": "{0}個のポイントを表面上で移動中",
-    "{0}    {1} landmarks added    Enter: done    Esc: back": (
+    "{0}    Landmarks added: {1}    Enter: done    Esc: back": (
         "{0}    追加したランドマーク：{1}    Enter：完了    Esc：戻る"
     ),
     'Click on a place of "{0}" or "{1}"': "「{0}」か「{1}」の場所をクリック",
@@ -1635,5 +1635,176 @@ MESSAGES: Final[dict[str, str]] = {
     "Simplifying": "単純化中",
     "Lowering the largest difference": "最大の差を減らしています",
     "Fitting the rig": "リグを合わせています",
+    "The {0} had {1} duplicate vertex along open seams: it was welded for matching.": (
+        "{0}には開いた継ぎ目に沿って重複頂点が{1}個ありました。マッチングのために結合しました。"
+    ),
+    "The {0} had {1} duplicate vertices along open seams: they were welded for matching.": (
+        "{0}には開いた継ぎ目に沿って重複頂点が{1}個ありました。マッチングのために結合しました。"
+    ),
+    "The {0} had {1} degenerate face: it was left out.": "{0}には縮退した面が{1}個ありました。除外しました。",
+    "The {0} had {1} degenerate faces: they were left out.": "{0}には縮退した面が{1}個ありました。除外しました。",
+    "The {0} had {1} repeated face: it was left out.": "{0}には重複した面が{1}個ありました。除外しました。",
+    "The {0} had {1} repeated faces: they were left out.": "{0}には重複した面が{1}個ありました。除外しました。",
+    "The {0} had {1} non-manifold edge: it was opened for matching.": (
+        "{0}には非多様体の辺が{1}本ありました。マッチングのために切り開きました。"
+    ),
+    "The {0} had {1} non-manifold edges: they were opened for matching.": (
+        "{0}には非多様体の辺が{1}本ありました。マッチングのために切り開きました。"
+    ),
+    "The {0} had {1} place where sheets touch in one vertex: it was separated for matching.": (
+        "{0}には面どうしが一つの頂点で接している場所が{1}か所ありました。マッチングのために切り離しました。"
+    ),
+    "The {0} had {1} places where sheets touch in one vertex: they were separated for matching.": (
+        "{0}には面どうしが一つの頂点で接している場所が{1}か所ありました。マッチングのために切り離しました。"
+    ),
+    "The {0} had {1} face of sheets that share an edge: it was left out.": (
+        "{0}には一つの辺を共有する面の重なりに属する面が{1}個ありました。除外しました。"
+    ),
+    "The {0} had {1} faces of sheets that share an edge: they were left out.": (
+        "{0}には一つの辺を共有する面の重なりに属する面が{1}個ありました。除外しました。"
+    ),
+    "The {0} had {1} face with normals against its neighbours: it was read the other way round.": (
+        "{0}には法線が隣の面と逆向きの面が{1}個ありました。裏返して読み込みました。"
+    ),
+    "The {0} had {1} faces with normals against their neighbours: they were read the other way round.": (
+        "{0}には法線が隣の面と逆向きの面が{1}個ありました。裏返して読み込みました。"
+    ),
+    "The {0} had {1} spike of one vertex: it was pulled in for matching.": (
+        "{0}には頂点一つだけのとげが{1}個ありました。マッチングのために引き戻しました。"
+    ),
+    "The {0} had {1} spikes of one vertex: they were pulled in for matching.": (
+        "{0}には頂点一つだけのとげが{1}個ありました。マッチングのために引き戻しました。"
+    ),
+    "The {0} had {1} small hole: it was closed for matching.": (
+        "{0}には小さな穴が{1}個ありました。マッチングのためにふさぎました。"
+    ),
+    "The {0} had {1} small holes: they were closed for matching.": (
+        "{0}には小さな穴が{1}個ありました。マッチングのためにふさぎました。"
+    ),
+    "The {0} had a surface with only one side: it was cut open for matching.": (
+        "{0}には表裏の区別がない面がありました。マッチングのために切り開きました。"
+    ),
+    "The normals of the {0} point inwards: they were read the other way round.": (
+        "{0}の法線は内側を向いています。裏返して読み込みました。"
+    ),
+    "The {0} has {1} large opening: the surface ends there.": (
+        "{0}には大きな開口部が{1}個あります。表面はそこで終わるものとします。"
+    ),
+    "The {0} has {1} large openings: the surface ends there.": (
+        "{0}には大きな開口部が{1}個あります。表面はそこで終わるものとします。"
+    ),
+    "The {0} has {1} smaller part: it follows its surroundings.": (
+        "{0}には小さなパーツが{1}個あります。周囲に従います。"
+    ),
+    "The {0} has {1} smaller parts: they follow their surroundings.": (
+        "{0}には小さなパーツが{1}個あります。周囲に従います。"
+    ),
+    "The {0} has {1} loose vertex: it follows its surroundings.": (
+        "{0}には孤立した頂点が{1}個あります。周囲に従います。"
+    ),
+    "The {0} has {1} loose vertices: they follow their surroundings.": (
+        "{0}には孤立した頂点が{1}個あります。周囲に従います。"
+    ),
+    '"{0}" already has something else called "{1}", so that attribute was left out. Rename one of them.': (
+        "「{0}」には「{1}」という別のものがすでにあるため、その属性は除外しました。一方の名前を変えてください。"
+    ),
+    'The attribute "{0}" of "{1}" is of the type {2}, and was left out.': (
+        "「{1}」の属性「{0}」は{2}型のため、除外しました。"
+    ),
+    ('"{0}" is moved by the armature "{1}" as well. Remove that Armature modifier unless both are meant to move it.'): (
+        "「{0}」はアーマチュア「{1}」でも動きます。両方で動かすつもりでなければ、そのアーマチュアモディファイアーを"
+        "削除してください。"
+    ),
+    '"{0}" keeps its parent "{1}".': "「{0}」の親は「{1}」のままです。",
+    'The NLA tracks of the shape keys of "{0}" were left out.': "「{0}」のシェイプキーのNLAトラックは除外しました。",
+    'The shape keys of "{0}" keep their own action "{1}".': "「{0}」のシェイプキーのアクションは「{1}」のままです。",
+    "The imported match has no dense map: only its points were written, without colors and distortion.": (
+        "読み込んだマッチングには密なマップがないため、ポイントだけを書き込みました。色と歪みはありません。"
+    ),
+    '{0} of "{1}" run where the target has no faces, and were left out.': (
+        "「{1}」の{0}はターゲットに面のない場所を通るため、除外しました。"
+    ),
+    "1 line": "1本の線",
+    "{0} lines": "{0}本の線",
+    '"{0}" is moved by {1} as well as by "{2}". Only the latter was fitted.': (
+        "「{0}」は「{2}」のほかに{1}でも動きます。「{2}」だけを合わせました。"
+    ),
+    "The target seems to be in its rest pose already, so none was made. If it is posed, set Pose to Posed.": (
+        "ターゲットはすでにレストポーズのようなので、レストポーズは作成しませんでした。ポーズが付いている場合は、ポ"
+        "ーズを「ポーズあり」にしてください。"
+    ),
+    '"{0}", which was made before, lacks {1}.': "以前に作成した「{0}」には{1}がありません。",
+    'Constraints or drivers move {0} of "{1}" away from rest, and the target with them. Check them.': (
+        "コンストレイントかドライバーが「{1}」の{0}を、ターゲットとともにレスト位置からずらしています。確認してくだ"
+        "さい。"
+    ),
+    'The shape keys of "{0}" are absolute; on "{1}", which has others, they are relative.': (
+        "「{0}」のシェイプキーは絶対ですが、ほかのキーがある「{1}」では相対になります。"
+    ),
+    '"{0}" has no vertex group {1}, by which shape keys of "{2}" are limited. Carry the weights over first.': (
+        "「{2}」のシェイプキーを制限する頂点グループ{1}が「{0}」にありません。先にウェイトを引き継いでください。"
+    ),
+    'Drivers of the shape keys of "{0}" still point to {1}.': (
+        "「{0}」のシェイプキーのドライバーがまだ{1}を指しています。"
+    ),
+    (
+        '"{0}" already has a vertex group or another attribute called "{1}", so that UV map was left out. Rename one '
+        "of them."
+    ): (
+        "「{0}」には「{1}」という頂点グループか別の属性がすでにあるため、そのUVマップは除外しました。一方の名前を変"
+        "えてください。"
+    ),
+    ('{0} of {1} islands of "{2}" lie where "{3}" has no faces, such as the inside of a mouth that only "{4}" has.'): (
+        "「{2}」のアイランド{1}個のうち{0}個は、「{4}」にしかない口の中のように、「{3}」に面のない場所にあります。"
+    ),
+    '{0} of {1} islands of "{2}" lie where the match has no confidence. Check them on "{3}".': (
+        "「{2}」のアイランド{1}個のうち{0}個は、マッチングの信頼度がない場所にあります。「{3}」で確認してください。"
+    ),
+    '{0} of "{1}" was left out: on "{2}" a match wrote what has that name.': (
+        "「{1}」の{0}は除外しました。「{2}」ではマッチングが同じ名前のものを書き込んでいます。"
+    ),
+    "1 vertex": "1個の頂点",
+    "{0} vertices": "{0}個の頂点",
+    "{0} of the vertices have no place on the other mesh and follow their surroundings.": (
+        "頂点の{0}はもう一方のメッシュに対応する場所がなく、周囲に従います。"
+    ),
+    "The wrapped surface is folded in places, {0} of it.": (
+        "ラップした表面はところどころ折れ重なっています（全体の{0}）。"
+    ),
+    "{0} and {1} more": "{0}ほか{1}個",
+    'Carried to "{0}": {1}': "「{0}」に引き継ぎました：{1}",
+    'the rig "{0}" with {1} and the rest pose "{2}"': "リグ「{0}」（{1}）とレストポーズ「{2}」",
+    "updated": "更新済み",
+    "a new object": "新しいオブジェクト",
+    'the shape key "{0}" on "{1}"': "「{1}」のシェイプキー「{0}」",
+    'the action "{0}"': "アクション「{0}」",
+    "custom normals": "カスタム法線",
+    "1 attribute": "1個の属性",
+    "{0} attributes": "{0}個の属性",
+    "1 material": "1個のマテリアル",
+    "{0} materials": "{0}個のマテリアル",
+    "1 shape key": "1個のシェイプキー",
+    "{0} shape keys": "{0}個のシェイプキー",
+    "1 driver": "1個のドライバー",
+    "{0} drivers": "{0}個のドライバー",
+    "1 color attribute": "1個のカラー属性",
+    "{0} color attributes": "{0}個のカラー属性",
+    "Unlocked {0}": "{0}のロックを解除しました",
+    "Removed {0}": "{0}を削除しました",
+    "Landmark {0} is {1}": "ランドマーク{0}を{1}にしました",
+    "on": "オン",
+    "off": "オフ",
+    "nothing": "なし",
+    ('No bone of "{0}" that deforms has a vertex group on "{1}". Carry All groups, or turn Deform on for its bones.'): (
+        "「{0}」の変形するボーンには「{1}」に頂点グループを持つものがありません。すべてのグループを引き継ぐか、ボー"
+        "ンの変形をオンにしてください。"
+    ),
+    (
+        'No bone of "{0}" that is selected has a vertex group on "{1}". Carry All groups, or select others of its '
+        "bones in Pose Mode."
+    ): (
+        "「{0}」の選択中のボーンには「{1}」に頂点グループを持つものがありません。すべてのグループを引き継ぐか、ポー"
+        "ズモードでほかのボーンを選択してください。"
+    ),
 }
 """The translation of each English text."""

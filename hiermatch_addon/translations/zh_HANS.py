@@ -963,7 +963,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Exact search, {0} nodes": "精确搜索，{0} 个节点",
     "Matching {0} points": "正在匹配 {0} 个点",
     "Moving {0} points over the surface": "正在表面上移动 {0} 个点",
-    "{0}    {1} landmarks added    Enter: done    Esc: back": "{0}    已添加 {1} 个地标    Enter：完成    Esc：返回",
+    "{0}    Landmarks added: {1}    Enter: done    Esc: back": "{0}    已添加地标：{1}    Enter：完成    Esc：返回",
     'Click on a place of "{0}" or "{1}"': "点击“{0}”或“{1}”上的一处",
     'Click on the corresponding place of "{0}"': "点击“{0}”上的对应位置",
     "Only {0} of the target is reached: {1}": "只覆盖了目标的 {0}：{1}",
@@ -1312,5 +1312,134 @@ MESSAGES: Final[dict[str, str]] = {
     "Simplifying": "正在简化",
     "Lowering the largest difference": "正在减小最大差异",
     "Fitting the rig": "正在适配绑定",
+    "The {0} had {1} duplicate vertex along open seams: it was welded for matching.": (
+        "{0}在开放的接缝处有 {1} 个重复顶点：已为匹配将其焊接。"
+    ),
+    "The {0} had {1} duplicate vertices along open seams: they were welded for matching.": (
+        "{0}在开放的接缝处有 {1} 个重复顶点：已为匹配将其焊接。"
+    ),
+    "The {0} had {1} degenerate face: it was left out.": "{0}有 {1} 个退化面：已将其排除。",
+    "The {0} had {1} degenerate faces: they were left out.": "{0}有 {1} 个退化面：已将其排除。",
+    "The {0} had {1} repeated face: it was left out.": "{0}有 {1} 个重复面：已将其排除。",
+    "The {0} had {1} repeated faces: they were left out.": "{0}有 {1} 个重复面：已将其排除。",
+    "The {0} had {1} non-manifold edge: it was opened for matching.": "{0}有 {1} 条非流形边：已为匹配将其切开。",
+    "The {0} had {1} non-manifold edges: they were opened for matching.": "{0}有 {1} 条非流形边：已为匹配将其切开。",
+    "The {0} had {1} place where sheets touch in one vertex: it was separated for matching.": (
+        "{0}有 {1} 处面片在一个顶点上相接：已为匹配将其分开。"
+    ),
+    "The {0} had {1} places where sheets touch in one vertex: they were separated for matching.": (
+        "{0}有 {1} 处面片在一个顶点上相接：已为匹配将其分开。"
+    ),
+    "The {0} had {1} face of sheets that share an edge: it was left out.": (
+        "{0}有 {1} 个面属于共用一条边的面片：已将其排除。"
+    ),
+    "The {0} had {1} faces of sheets that share an edge: they were left out.": (
+        "{0}有 {1} 个面属于共用一条边的面片：已将其排除。"
+    ),
+    "The {0} had {1} face with normals against its neighbours: it was read the other way round.": (
+        "{0}有 {1} 个面的法线与相邻面相反：已按反方向读取。"
+    ),
+    "The {0} had {1} faces with normals against their neighbours: they were read the other way round.": (
+        "{0}有 {1} 个面的法线与相邻面相反：已按反方向读取。"
+    ),
+    "The {0} had {1} spike of one vertex: it was pulled in for matching.": (
+        "{0}有 {1} 个单顶点的尖刺：已为匹配将其收回。"
+    ),
+    "The {0} had {1} spikes of one vertex: they were pulled in for matching.": (
+        "{0}有 {1} 个单顶点的尖刺：已为匹配将其收回。"
+    ),
+    "The {0} had {1} small hole: it was closed for matching.": "{0}有 {1} 个小孔：已为匹配将其封闭。",
+    "The {0} had {1} small holes: they were closed for matching.": "{0}有 {1} 个小孔：已为匹配将其封闭。",
+    "The {0} had a surface with only one side: it was cut open for matching.": "{0}有一个单侧曲面：已为匹配将其切开。",
+    "The normals of the {0} point inwards: they were read the other way round.": "{0}的法线朝内：已按反方向读取。",
+    "The {0} has {1} large opening: the surface ends there.": "{0}有 {1} 个大开口：表面到此为止。",
+    "The {0} has {1} large openings: the surface ends there.": "{0}有 {1} 个大开口：表面到此为止。",
+    "The {0} has {1} smaller part: it follows its surroundings.": "{0}有 {1} 个较小的部分：随周围移动。",
+    "The {0} has {1} smaller parts: they follow their surroundings.": "{0}有 {1} 个较小的部分：随周围移动。",
+    "The {0} has {1} loose vertex: it follows its surroundings.": "{0}有 {1} 个孤立顶点：随周围移动。",
+    "The {0} has {1} loose vertices: they follow their surroundings.": "{0}有 {1} 个孤立顶点：随周围移动。",
+    '"{0}" already has something else called "{1}", so that attribute was left out. Rename one of them.': (
+        "“{0}”已有另一个名为“{1}”的内容，因此该属性被排除。请重命名其中之一。"
+    ),
+    'The attribute "{0}" of "{1}" is of the type {2}, and was left out.': "“{1}”的属性“{0}”属于 {2} 类型，已排除。",
+    ('"{0}" is moved by the armature "{1}" as well. Remove that Armature modifier unless both are meant to move it.'): (
+        "“{0}”也受骨架“{1}”驱动。除非有意由两者驱动，否则请移除那个骨架修改器。"
+    ),
+    '"{0}" keeps its parent "{1}".': "“{0}”保留其父级“{1}”。",
+    'The NLA tracks of the shape keys of "{0}" were left out.': "“{0}”的形态键的 NLA 轨道已排除。",
+    'The shape keys of "{0}" keep their own action "{1}".': "“{0}”的形态键保留自己的动作“{1}”。",
+    "The imported match has no dense map: only its points were written, without colors and distortion.": (
+        "导入的匹配没有稠密映射：只写入了它的点，没有颜色和畸变。"
+    ),
+    '{0} of "{1}" run where the target has no faces, and were left out.': "“{1}”的{0}经过目标没有面的地方，已排除。",
+    "1 line": "1 条线",
+    "{0} lines": "{0} 条线",
+    '"{0}" is moved by {1} as well as by "{2}". Only the latter was fitted.': (
+        "“{0}”除“{2}”外还受{1}驱动。只适配了“{2}”。"
+    ),
+    "The target seems to be in its rest pose already, so none was made. If it is posed, set Pose to Posed.": (
+        "目标似乎已处于静置姿态，因此没有创建。如果它摆了姿势，请将姿态设为“已摆姿态”。"
+    ),
+    '"{0}", which was made before, lacks {1}.': "之前创建的“{0}”缺少{1}。",
+    'Constraints or drivers move {0} of "{1}" away from rest, and the target with them. Check them.': (
+        "约束或驱动器使“{1}”的{0}连同目标偏离静置位置。请检查。"
+    ),
+    'The shape keys of "{0}" are absolute; on "{1}", which has others, they are relative.': (
+        "“{0}”的形态键是绝对的；在已有其他形态键的“{1}”上则为相对的。"
+    ),
+    '"{0}" has no vertex group {1}, by which shape keys of "{2}" are limited. Carry the weights over first.': (
+        "“{0}”没有用来限制“{2}”的形态键的顶点组{1}。请先传递权重。"
+    ),
+    'Drivers of the shape keys of "{0}" still point to {1}.': "“{0}”的形态键的驱动器仍指向{1}。",
+    (
+        '"{0}" already has a vertex group or another attribute called "{1}", so that UV map was left out. Rename one '
+        "of them."
+    ): ("“{0}”已有名为“{1}”的顶点组或其他属性，因此该 UV 贴图被排除。请重命名其中之一。"),
+    ('{0} of {1} islands of "{2}" lie where "{3}" has no faces, such as the inside of a mouth that only "{4}" has.'): (
+        "“{2}”的 {1} 个孤岛中有 {0} 个位于“{3}”没有面的地方，例如只有“{4}”才有的口腔内部。"
+    ),
+    '{0} of {1} islands of "{2}" lie where the match has no confidence. Check them on "{3}".': (
+        "“{2}”的 {1} 个孤岛中有 {0} 个位于匹配没有置信度的地方。请在“{3}”上检查。"
+    ),
+    '{0} of "{1}" was left out: on "{2}" a match wrote what has that name.': (
+        "“{1}”的{0}已排除：“{2}”上同名的内容是由匹配写入的。"
+    ),
+    "1 vertex": "1 个顶点",
+    "{0} vertices": "{0} 个顶点",
+    "{0} of the vertices have no place on the other mesh and follow their surroundings.": (
+        "{0} 的顶点在另一个网格上没有对应位置，随周围移动。"
+    ),
+    "The wrapped surface is folded in places, {0} of it.": "包裹后的表面有些地方发生折叠，占其 {0}。",
+    "{0} and {1} more": "{0} 等另外 {1} 个",
+    'Carried to "{0}": {1}': "已传递到“{0}”：{1}",
+    'the rig "{0}" with {1} and the rest pose "{2}"': "绑定“{0}”（{1}）和静置姿态“{2}”",
+    "updated": "已更新",
+    "a new object": "新物体",
+    'the shape key "{0}" on "{1}"': "“{1}”上的形态键“{0}”",
+    'the action "{0}"': "动作“{0}”",
+    "custom normals": "自定义法线",
+    "1 attribute": "1 个属性",
+    "{0} attributes": "{0} 个属性",
+    "1 material": "1 个材质",
+    "{0} materials": "{0} 个材质",
+    "1 shape key": "1 个形态键",
+    "{0} shape keys": "{0} 个形态键",
+    "1 driver": "1 个驱动器",
+    "{0} drivers": "{0} 个驱动器",
+    "1 color attribute": "1 个颜色属性",
+    "{0} color attributes": "{0} 个颜色属性",
+    "Unlocked {0}": "已解锁 {0}",
+    "Removed {0}": "已移除 {0}",
+    "Landmark {0} is {1}": "地标 {0} 已{1}",
+    "on": "启用",
+    "off": "停用",
+    "nothing": "无",
+    ('No bone of "{0}" that deforms has a vertex group on "{1}". Carry All groups, or turn Deform on for its bones.'): (
+        "“{0}”的形变骨骼在“{1}”上都没有顶点组。请传递所有组，或为其骨骼打开形变。"
+    ),
+    (
+        'No bone of "{0}" that is selected has a vertex group on "{1}". Carry All groups, or select others of its '
+        "bones in Pose Mode."
+    ): ("“{0}”的选中骨骼在“{1}”上都没有顶点组。请传递所有组，或在姿态模式下选择其他骨骼。"),
 }
 """The translation of each English text."""

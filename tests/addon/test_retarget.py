@@ -109,7 +109,7 @@ def test_the_target_follows_its_own_bones(pair):
 @pytest.mark.usefixtures("pair")
 def test_the_report_is_remembered():
     report = bpy.context.scene.hiermatch_retarget.report
-    assert report.done.startswith("Target: ")
+    assert report.done.startswith('Carried to "Target": ')
     for word in ("vertex groups", "rig", "shape key", "UV map"):
         assert word in report.done
     assert report.seconds > 0

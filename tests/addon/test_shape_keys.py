@@ -162,7 +162,7 @@ def test_drivers_by_bones_point_to_the_armature_of_the_target():
     variable.targets[0].id, variable.targets[0].bone_target = mine, "neck"
     passage = true_passage(source, target)
     report = run_transfer(source, target, passage)
-    assert report.done == "1 shape key and 1 driver"
+    assert report.done == "1 shape key, 1 driver"
     assert "still point to" in report.notes[0]
     theirs = mine.copy()
     bpy.context.scene.collection.objects.link(theirs)
