@@ -11,7 +11,7 @@ from .access import layout_of, state_of
 from .pair import selected_meshes
 from .panel_text import draw_text
 from .preset_menu import HIERMATCH_PT_presets
-from .progress_bar import draw_progress
+from .progress_bar import draw_progress, draw_starter
 from .properties import copy_options
 from .setting_groups import APART, shown_groups
 from .setups import current_setup
@@ -182,7 +182,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         split.label(text=name)
         split.label(text=text, translate=False)  # a name such as "Source" stays as it is
     if summary.has_mirrored:
-        box.operator("hiermatch.flip", icon="MOD_MIRROR", depress=summary.mirrored)
+        draw_starter(box, context, "hiermatch.flip", "Use Mirrored Match", "MOD_MIRROR", depress=summary.mirrored)
     for note in summary.notes.splitlines():
         draw_text(box, context, note, "ERROR")
 

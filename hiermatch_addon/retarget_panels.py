@@ -9,7 +9,7 @@ import bpy
 
 from .access import layout_of
 from .panel_text import draw_text
-from .progress_bar import draw_progress
+from .progress_bar import draw_progress, draw_starter
 from .retarget_options import KINDS, option_names
 from .retarget_properties import copy_named, retarget_of
 from .transfers.symmetrise_options import SymmetriseOptions
@@ -45,8 +45,8 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         state: Any = retarget_of(context)
-        for switch, kind in KINDS.items():
-            _draw_kind(layout, state, switch, option_names(kind))
+        for switch in KINDS:
+            _draw_kind(layout, context, state, switch)
         layout.prop(state, "refine")
         if draw_progress(layout, context, self.bl_idname):
             return
@@ -55,7 +55,7 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         button = row.operator("hiermatch.retarget", icon="OUTLINER_OB_ARMATURE")
         names = [name for kind in KINDS.values() for name in option_names(kind)]
         copy_named(state, button, [*KINDS, *names, "refine"])
-        _draw_wrap(layout, state)
+        _draw_wrap(layout, context, state)
         _draw_report(layout, context, state.report)
 
 
@@ -82,20 +82,24 @@ class HIERMATCH_PT_symmetry(bpy.types.Panel):
             copy_named(state, layout.operator("hiermatch.symmetrise", icon="MOD_MIRROR"), names)
 
 
-def _draw_kind(layout: bpy.types.UILayout, state: HIERMATCH_PG_retarget, switch: str, names: tuple[str, ...]) -> None:
+def _draw_kind(
+    layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget, switch: str
+) -> None:
     """Draw the switch of a kind, a button that carries it alone, and its options to unfold."""
+    names = option_names(KINDS[switch])
     header, body = cast("Any", layout).panel(f"hiermatch_{switch}", default_closed=True)
     header.use_property_split = False
     header.prop(state, switch)
-    button = header.operator(_ALONE[switch], text="", icon="PLAY")
-    copy_named(state, button, [*names, "refine"])
+    button = draw_starter(header, context, _ALONE[switch], "", "PLAY")
+    if button is not None:
+        copy_named(state, button, [*names, "refine"])
     if body is not None:
         body.active = getattr(state, switch)
         for name in names:
             body.prop(state, name)
 
 
-def _draw_wrap(layout: bpy.types.UILayout, state: HIERMATCH_PG_retarget) -> None:
+def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
     """Draw the options of a wrap and its button."""
     header, body = cast("Any", layout).panel("hiermatch_wrap", default_closed=True)
     header.label(text="Wrap and Morph")
@@ -103,7 +107,9 @@ def _draw_wrap(layout: bpy.types.UILayout, state: HIERMATCH_PG_retarget) -> None
         names = option_names(WrapOptions)
         for name in names:
             body.prop(state, name)
-        copy_named(state, body.operator("hiermatch.wrap", icon="MOD_SHRINKWRAP"), [*names, "refine"])
+        button = draw_starter(body, context, "hiermatch.wrap", "Wrap", "MOD_SHRINKWRAP")
+        if button is not None:
+            copy_named(state, button, [*names, "refine"])
 
 
 def _draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: HIERMATCH_PG_report) -> None:

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from .access import layout_of, mesh_of, state_of
+from .access import layout_of, mesh_of, state_of, window_manager_of
+from .job_operator import JobOperator
+from .progress_bar import draw_progress
+from .running import running_panel
 from .steering_lists import steered_pair
 from .steering_properties import steering_of
 from .views import VIEW_ITEMS, attribute_of
@@ -88,7 +91,7 @@ class HIERMATCH_PT_landmarks(bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the list of landmarks, and what can be done with all of them."""
+        """Draw the list of landmarks, what can be done with all of them, and the button that refines the match."""
         layout: Any = layout_of(self)
         steering = steering_of(context)
         layout.active = state_of(context).use_landmarks
@@ -106,6 +109,8 @@ class HIERMATCH_PT_landmarks(bpy.types.Panel):
         row.operator("hiermatch.save_landmarks", text="", icon="EXPORT")
         row.operator("hiermatch.load_landmarks", text="", icon="IMPORT")
         row.operator("hiermatch.clear_landmarks", text="", icon="TRASH")
+        if len(steering.pairs):
+            _draw_refine(layout, context)
 
 
 class HIERMATCH_PT_overlay(bpy.types.Panel):
@@ -155,6 +160,14 @@ class HIERMATCH_PT_pairs(bpy.types.Panel):
             layout.label(text="There is no match yet", icon="INFO")
             return
         layout.template_list("HIERMATCH_UL_pairs", "", steering, "pairs", steering, "pair_index", rows=4, maxrows=12)
+        _draw_refine(layout, context)
+
+
+def _draw_refine(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the button that refines the match, or how far that is."""
+    if running_panel(window_manager_of(context)) == JobOperator.panel:
+        draw_progress(layout, context, JobOperator.panel)
+    else:
         layout.operator("hiermatch.refine", icon="MOD_SMOOTH")
 
 

@@ -8,11 +8,15 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from hiermatch.hiermatch_addon import panels
+from hiermatch.hiermatch_addon import panels, retarget_panels
 from hiermatch.hiermatch_addon.properties import OPTION_NAMES, SETTING_NAMES
 from hiermatch.hiermatch_addon.setting_groups import shown_groups
 
 from tests.addon.scenes import QUICK, add_pair, snapshot
+
+KINDS = ("weights", "shape_keys", "uvs", "attributes")
+ELSEWHERE = {f"hiermatch.{name}" for name in ("swap", "clear", "add_demo_pair", "export_match", "import_match")}
+"""Buttons of what is done at once."""
 
 
 class Layout:
@@ -192,6 +196,25 @@ def test_while_something_else_runs_the_bar_is_where_it_was_started(context):
     assert not [entry for entry in drawn if entry[0] == "progress" or entry == ("operator", "hiermatch.cancel")]
     assert "HierMatch is at work" in texts(drawn)
     assert ("operator", "hiermatch.match") in drawn
+
+
+def test_a_button_that_starts_a_job_is_its_name_while_one_runs(context):
+    """Else Blender draws it as disabled afterwards, as long as the mouse stays on it."""
+    context.scene.hiermatch.summary.points, context.scene.hiermatch.summary.has_mirrored = 5, True
+
+    def starters():
+        drawn = draw(context)
+        retarget_panels.HIERMATCH_PT_retarget.draw(
+            SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_retarget"), context
+        )
+        return {name for kind, name, *_ in drawn if kind in ("operator", "switch")} - ELSEWHERE
+
+    jobs = {"fit_rig", "flip", "retarget", "wrap", *(f"transfer_{kind}" for kind in KINDS)}
+    assert starters() == {f"hiermatch.{job}" for job in (*jobs, "match")}
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_flip", panel="HIERMATCH_PT_match")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
+    assert starters() == {"hiermatch.retarget", "hiermatch.cancel"}
 
 
 @pytest.mark.parametrize("name", ["HIERMATCH_OT_pick_landmarks", "HIERMATCH_OT_export_match"])

@@ -39,7 +39,11 @@ class ListLayout(Layout):
 @pytest.fixture
 def context():
     shading = SimpleNamespace(type="SOLID", color_type="VERTEX")
-    return SimpleNamespace(scene=bpy.context.scene, space_data=SimpleNamespace(shading=shading))
+    return SimpleNamespace(
+        scene=bpy.context.scene,
+        window_manager=bpy.context.window_manager,
+        space_data=SimpleNamespace(shading=shading),
+    )
 
 
 def draw(name, context):
@@ -74,7 +78,20 @@ def test_landmarks(context):
         "hiermatch.save_landmarks",
         "hiermatch.load_landmarks",
         "hiermatch.clear_landmarks",
+        "hiermatch.refine",
     ]
+
+
+@pytest.mark.usefixtures("pair")
+@pytest.mark.parametrize("panel", ["HIERMATCH_PT_landmarks", "HIERMATCH_PT_pairs"])
+def test_while_the_match_is_refined_there_are_a_bar_and_a_way_out(context, panel):
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_refine", panel="HIERMATCH_PT_match")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
+    drawn = draw(panel, context)
+    assert ("progress", "Measuring", 0.4) in drawn
+    assert operators(drawn)[-1] == "hiermatch.cancel"
+    assert "hiermatch.refine" not in operators(drawn)
 
 
 @pytest.mark.usefixtures("pair")
