@@ -25,7 +25,14 @@ from .reports import Report, add_report_options, run_reported
 if TYPE_CHECKING:
     import argparse
 
-__all__ = ["add_commands", "add_pair_arguments", "add_result_options", "load_pair", "save_results"]
+__all__ = [
+    "add_commands",
+    "add_pair_arguments",
+    "add_result_options",
+    "load_pair",
+    "save_results",
+    "warn_if_nothing_is_written",
+]
 
 
 def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
@@ -65,6 +72,12 @@ def add_result_options(parser: argparse.ArgumentParser, what: str = "the target"
     group.add_argument(
         "--map", type=Path, metavar="FILE", help="Write the correspondence into an .npz or .json as well."
     )
+
+
+def warn_if_nothing_is_written(parsed: argparse.Namespace, console: Console) -> None:
+    """Say before the work that nothing will be left of it."""
+    if not (parsed.output or parsed.map or parsed.report):
+        console.say("Nothing will be written: name a file by --output, --map or --report.")
 
 
 def load_pair(parsed: argparse.Namespace, report: Report) -> tuple[bpy.types.Object, bpy.types.Object]:
@@ -107,6 +120,7 @@ def save_results(
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Match and write."""
+    warn_if_nothing_is_written(parsed, console)
 
     def work(report: Report) -> None:
         options = chosen_options("match", given_options("match", parsed))

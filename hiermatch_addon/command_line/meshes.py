@@ -12,6 +12,7 @@ import bpy
 
 from ..access import mesh_of, view_layer_of
 from ..errors import ObjectError
+from .operator_errors import said_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -131,7 +132,7 @@ def _start(opened: Path | None) -> None:
         # No script of a file is to run on a machine that works through many.
         bpy.ops.wm.open_mainfile(filepath=str(opened.resolve()), load_ui=False, use_scripts=False)
     except RuntimeError as error:
-        raise ObjectError(f'"{opened}" cannot be opened: {_said(error)}') from error
+        raise ObjectError(f'"{opened}" cannot be opened: {said_by(error)}') from error
 
 
 def _scene_meshes() -> list[bpy.types.Object]:
@@ -151,7 +152,7 @@ def _import(path: Path) -> list[bpy.types.Object]:
     try:
         getattr(getattr(bpy.ops, group), operator)(filepath=str(path.resolve()))
     except RuntimeError as error:
-        raise ObjectError(f'"{path}" cannot be read: {_said(error)}') from error
+        raise ObjectError(f'"{path}" cannot be read: {said_by(error)}') from error
     added = [obj for obj in bpy.data.objects if obj not in before]
     return [obj for obj in added if obj.type == "MESH" and len(mesh_of(obj).polygons)]
 
@@ -164,7 +165,7 @@ def _append(argument: MeshArgument) -> bpy.types.Object:
             names = [name for name in there.objects if argument.name in ("", name)]
             here.objects = list(names)
     except (OSError, RuntimeError) as error:
-        raise ObjectError(f'"{argument.path}" cannot be opened: {_said(error)}') from error
+        raise ObjectError(f'"{argument.path}" cannot be opened: {said_by(error)}') from error
     if argument.name and not names:
         raise ObjectError(f'"{argument.path}" has no object called "{argument.name}".')
     loaded = cast("list[bpy.types.Object | None]", here.objects)
@@ -232,9 +233,3 @@ def _open_choice(argument: MeshArgument, names: Sequence[str]) -> str:
     if argument.name:
         return f'{file} has no mesh called "{argument.name}". It has {listed}.'
     return f"{file} holds {len(names)} meshes. Name one behind a colon: {listed}."
-
-
-def _said(error: Exception) -> str:
-    """Return what Blender said, without the word in front of it, as one line with one full stop."""
-    text = " ".join(str(error).split()).removeprefix("Error: ")
-    return f"{text.rstrip('.')}."

@@ -14,6 +14,7 @@ from ..access import view_layer_of
 from ..errors import ObjectError
 from ..file_writing import beside
 from .meshes import has_operator
+from .operator_errors import said_by
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,8 +68,7 @@ def save(path: Path, obj: bpy.types.Object) -> None:
             _select(obj)
             _export(path)
     except RuntimeError as error:
-        said = " ".join(str(error).split()).removeprefix("Error: ")
-        raise ObjectError(f'"{path}" cannot be written: {said}') from error
+        raise ObjectError(f'"{path}" cannot be written: {said_by(error)}') from error
 
 
 def _select(obj: bpy.types.Object) -> None:

@@ -16,7 +16,7 @@ from ..summary import remember
 from ..transfer_job import TransferJob, TransferOptions
 from .console import drive
 from .exit_codes import EXIT_CODES
-from .match import add_pair_arguments, add_result_options, load_pair, save_results
+from .match import add_pair_arguments, add_result_options, load_pair, save_results, warn_if_nothing_is_written
 from .options import add_options, chosen_options, given_options
 from .reports import add_report_options, run_reported
 
@@ -52,6 +52,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Retarget and write."""
+    warn_if_nothing_is_written(parsed, console)
 
     def work(report: Report) -> None:
         options = chosen_options("retarget", given_options("retarget", parsed))

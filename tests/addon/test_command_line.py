@@ -14,6 +14,7 @@ from hiermatch.engine import MatchSettings, symmetry_map_steps
 from hiermatch.hiermatch_addon import command_line
 from hiermatch.hiermatch_addon.command_line import console, match, options, symmetry
 from hiermatch.hiermatch_addon.command_line.meshes import MeshArgument, load_meshes, mesh_argument
+from hiermatch.hiermatch_addon.command_line.operator_errors import said_by
 from hiermatch.hiermatch_addon.command_line.outputs import save
 from hiermatch.hiermatch_addon.command_line.program import main
 from hiermatch.hiermatch_addon.errors import ObjectError
@@ -134,6 +135,21 @@ def test_damaged_files_are_told_and_reported(folder, tmp_path, capsys):
         assert f"damaged.{suffix}" in capsys.readouterr().err
         assert report_of(report)["status"] == "failed"
         assert f"damaged.{suffix}" in report_of(report)["error"]
+        assert "Traceback" not in report_of(report)["error"]
+
+
+def test_of_an_operator_that_breaks_down_only_what_happened_last_is_told():
+    calls = 'File "/x/io.py", line 109, in load_glb\n    a, b = unpack(content)\n           ^^^^^^\n'
+    said = f"Error: Python: Traceback (most recent call last):\n  {calls}struct.error: too short\nLocation: /y/ops.py:1"
+    assert said_by(RuntimeError(said)) == "Blender's add-on for such files broke down (struct.error: too short)."
+    assert said_by(RuntimeError("Error: No\nspace.\n")) == "No space."
+
+
+def test_it_is_told_at_once_if_nothing_is_to_be_written(pair, tmp_path, capsys):
+    assert main(["match", *pair, *flags(QUICK)]) == 0
+    assert "Nothing will be written" in capsys.readouterr().err
+    assert main(["match", *pair, *flags(QUICK), f"--report={tmp_path / 'r.json'}"]) == 0
+    assert "Nothing will be written" not in capsys.readouterr().err
 
 
 def test_interruption_is_told(pair, tmp_path, monkeypatch):
