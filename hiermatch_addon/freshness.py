@@ -2,7 +2,7 @@
 """Whether the match that the panel shows is still one of the meshes as they are.
 
 To find that out takes a look at every vertex.  So nothing is looked at while the panel is drawn, but a moment after a
-mesh that carries a match was edited, after undo and redo, and after a file was opened.
+mesh that carries a match was edited, after objects came or went, after undo and redo, and after a file was opened.
 """
 
 from __future__ import annotations
@@ -85,7 +85,13 @@ def _handlers() -> tuple[tuple[list[Any], Any], ...]:
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Look soon if a mesh with a match was edited.  Posing, moving and selecting objects edits no mesh."""
+    """Look soon if a mesh with a match was edited, or objects came or went.
+
+    Posing, moving and selecting objects edits no mesh and no collection.
+    """
+    if depsgraph.id_type_updated("COLLECTION"):
+        _look_soon()
+        return
     for update in depsgraph.updates:
         changed = update.id
         if update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed):

@@ -93,7 +93,7 @@ class TransferOperator(JobOperator):
         if not can_start(operator, context):
             return False
         if sum(obj.type == "MESH" for obj in view_layer_of(context).objects) < 2:
-            operator.poll_message_set(translated("Two mesh objects are needed"))
+            operator.poll_message_set(translated("Two mesh objects are needed in this view layer"))
             return False
         return True
 

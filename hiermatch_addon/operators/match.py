@@ -59,7 +59,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         if not can_start(cls, context):
             return False
         if sum(obj.type == "MESH" for obj in view_layer_of(context).objects) < 2:
-            cls.poll_message_set(translated("Two mesh objects are needed"))
+            cls.poll_message_set(translated("Two mesh objects are needed in this view layer"))
             return False
         return True
 

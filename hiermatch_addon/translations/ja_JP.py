@@ -919,7 +919,7 @@ MESSAGES: Final[dict[str, str]] = {
     "No file is named. Choose where the landmarks are kept.": (
         "ファイルが指定されていません。ランドマークの保存場所を選んでください。"
     ),
-    "Two mesh objects are needed": "二つのメッシュオブジェクトが必要です",
+    "Two mesh objects are needed in this view layer": "このビューレイヤーに二つのメッシュオブジェクトが必要です",
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "クリックできるものがありません。二つの頂点を指定してhiermatch.add_landmarkを使ってください。"
     ),

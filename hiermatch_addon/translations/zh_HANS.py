@@ -755,7 +755,7 @@ MESSAGES: Final[dict[str, str]] = {
         "没有可切换的匹配。请先匹配两个网格，或指定一个带有匹配的网格。"
     ),
     "No file is named. Choose where the landmarks are kept.": "未指定文件。请选择保存地标的位置。",
-    "Two mesh objects are needed": "需要两个网格物体",
+    "Two mesh objects are needed in this view layer": "此视图层中需要两个网格物体",
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "没有可点击的对象。请用两个顶点调用 hiermatch.add_landmark。"
     ),

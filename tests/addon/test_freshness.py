@@ -224,6 +224,14 @@ class TestWatching:
         bpy.context.view_layer.update()
         assert waiting()
 
+    def test_deleting_an_object(self, quiet):
+        activate(quiet[1])
+        settle()
+        bpy.ops.object.delete()
+        assert waiting()
+        freshness._look()  # noqa: SLF001
+        assert '"Target" was deleted' in summary().stale
+
     def test_posing_moving_and_selecting_cost_nothing(self, quiet):
         bpy.ops.object.armature_add()
         rig = bpy.context.object

@@ -273,7 +273,7 @@ def test_edit_mode_is_refused_by_the_button(pair):
 
 def test_one_mesh_is_refused_by_the_button():
     add_blob("Alone")
-    with pytest.raises(RuntimeError, match="Two mesh objects are needed"):
+    with pytest.raises(RuntimeError, match="Two mesh objects are needed in this view layer"):
         match()
 
 
