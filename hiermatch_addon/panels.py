@@ -10,6 +10,7 @@ import bpy
 from .access import layout_of, state_of
 from .pair import selected_meshes
 from .panel_text import draw_text
+from .phrases import counted
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress, draw_starter
 from .properties import copy_options
@@ -183,8 +184,19 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         split.label(text=text, translate=False)  # a name such as "Source" stays as it is
     if summary.has_mirrored:
         draw_starter(box, context, "hiermatch.flip", "Use Mirrored Match", "MOD_MIRROR", depress=summary.mirrored)
-    for note in summary.notes.splitlines():
-        draw_text(box, context, note, "ERROR")
+    _draw_notes(layout, context, summary.notes.splitlines())
+
+
+def _draw_notes(layout: bpy.types.UILayout, context: bpy.types.Context, notes: list[str]) -> None:
+    """Draw what should be known about the match, to unfold: of a messy scan that is much, and few need it."""
+    if not notes:
+        return
+    header, body = cast("Any", layout).panel("hiermatch_notes", default_closed=True)
+    header.label(text=translated(counted(len(notes), "note")), translate=False)
+    if body is not None:
+        column = body.column()
+        for note in notes:
+            draw_text(column, context, note, "INFO")
 
 
 def _coarse_text(summary: HIERMATCH_PG_summary) -> str:

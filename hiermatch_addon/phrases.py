@@ -17,6 +17,7 @@ _THINGS: Final = {
     "driver": ("1 driver", "{0} drivers"),
     "line": ("1 line", "{0} lines"),
     "material": ("1 material", "{0} materials"),
+    "note": ("1 note", "{0} notes"),
     "shape key": ("1 shape key", "{0} shape keys"),
     "UV map": ("1 UV map", "{0} UV maps"),
     "vertex": ("1 vertex", "{0} vertices"),

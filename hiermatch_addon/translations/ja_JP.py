@@ -1806,5 +1806,7 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」の選択中のボーンには「{1}」に頂点グループを持つものがありません。すべてのグループを引き継ぐか、ポー"
         "ズモードでほかのボーンを選択してください。"
     ),
+    "1 note": "注記1件",
+    "{0} notes": "注記{0}件",
 }
 """The translation of each English text."""

@@ -1441,5 +1441,7 @@ MESSAGES: Final[dict[str, str]] = {
         'No bone of "{0}" that is selected has a vertex group on "{1}". Carry All groups, or select others of its '
         "bones in Pose Mode."
     ): ("“{0}”的选中骨骼在“{1}”上都没有顶点组。请传递所有组，或在姿态模式下选择其他骨骼。"),
+    "1 note": "1 条说明",
+    "{0} notes": "{0} 条说明",
 }
 """The translation of each English text."""

@@ -242,7 +242,10 @@ def test_what_is_not_proven_and_what_is_mirrored(context):
     summary = context.scene.hiermatch.summary
     summary.points, summary.proven, summary.gap, summary.orientation = 5, False, 0.25, -0.8
     summary.notes = "The source has two parts.\nMind the gap."
-    shown = texts(draw(context))
+    drawn = draw(context)
+    shown = texts(drawn)
+    assert ("panel", "hiermatch_notes", True) in drawn
+    assert "2 notes" in shown
     assert "within 25% of the best" in shown
     assert "exchanged (-0.80)" in shown
     assert "The source has two parts." in shown
