@@ -10,9 +10,9 @@ import numpy as np
 
 from .extremities import spread_extremities
 from .extremity_search import beam_matchings
-from .functional_maps import PointMaps, fit_functional_maps, nearest_both_ways, refine_bijective_steps, spectral_sizes
-from .map_scores import map_orientation, spectral_terms
-from .orientation import signed_areas
+from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
+from .lifted_matchings import LiftedMatchings
+from .map_scores import curvature_terms, map_orientation, rigidity_term, score_of, spectral_terms
 from .progress import Progress, Steps, within
 
 if TYPE_CHECKING:
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 __all__ = ["MapLead", "distinct_leads", "rough_maps_steps"]
 
-# How many farthest points of X and of Y are matched, and how many matchings are carried over with the orientation kept
-# (1) and with it mirrored (-1): of these the best only, as mirror images are matched as well as what they mirror.
-_FARTHEST = ((5, 9, {1: 20, -1: 8}), (6, 10, {1: 40, -1: 12}))
+# How many farthest points of X and of Y are matched, and how many matchings are followed up that keep the orientation
+# (1) and that mirror it (-1).
+_FARTHEST = ((5, 9, {1: 12, -1: 8}), (6, 10, {1: 14, -1: 8}))
 # The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
-_TIPS = (6, 9, {1: 20, -1: 8})
+_TIPS = (6, 9, {1: 12, -1: 8})
 _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
-_SIGNED_WEIGHT = 1.0  # of signed areas beside distances, when matchings of extremities are carried over the surface
+_OFFERED = 400  # matchings that are carried over the surfaces to choose those that are followed up
 _SIZES = spectral_sizes(15, 30, 5)  # not from fewer: those would turn even true matchings front to back
-_ORIENTED = 0.3  # how much more credible a map of one orientation throughout is
-_VARIANTS = {1: (3, 2, 1, 1), -1: (2, 1)}  # how many of each group of like maps are followed up, by orientation
+_VARIANTS = {1: (3, 2, 1, 1, 1, 1), -1: (2, 1)}  # how many of each group of like maps are followed up, by orientation
+_HOPELESS = 2.5  # excess of the score over the best of the same orientation
 _CLUSTER = 0.15  # mean distance between the images of maps of different groups, in sqrt(area)
 _VARIANT = 0.04  # the same for those of one group: a limb may be crossed in the best of them
 
@@ -98,18 +98,30 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     """
     leads: list[MapLead] = []
     searches = _searches(x, y)
-    total, done = sum(kept[sign] for *_, kept in searches for sign in signs), 0
-    for of_x, of_y, kept in searches:
-        distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
-        matchings = beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=max(kept.values()))
-        directions_y = y.directions(of_y)
-        rows_x = _lifting_rows(x, of_x, x.directions(of_x), 1)
-        for sign in signs:
-            for images in matchings.images[: kept[sign]]:
-                points = nearest_both_ways(rows_x, _lifting_rows(y, of_y[images], directions_y[:, images], sign))
-                leads.append((yield from within(_refined_steps(x, y, points), done / total, (done + 1) / total)))
-                done += 1
+    for number, search in enumerate(searches):
+        begin, end = ((number + i) / len(searches) for i in (0, 1))
+        leads += yield from within(_followed_steps(x, y, search, signs), begin, end)
     return _candidates(y, leads)
+
+
+def _followed_steps(x: MapDomain, y: MapDomain, search: _Search, signs: tuple[int, ...]) -> Steps[list[MapLead]]:
+    """Follow up the matchings of one kind that fit the whole surfaces best."""
+    leads: list[MapLead] = []
+    matchings = _matchings(x, y, search.of_x, search.of_y)
+    lifted = LiftedMatchings(x, y, search.of_x, search.of_y)
+    total = sum(search.kept[sign] for sign in signs)
+    for sign in signs:
+        for images in lifted.best(matchings, sign, search.kept[sign]):
+            steps = _refined_steps(x, y, lifted.maps(images, sign))
+            leads.append((yield from within(steps, len(leads) / total, (len(leads) + 1) / total)))
+    return leads
+
+
+def _matchings(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Match coarse samples (m,) to coarse samples (n,) in many ways: positions of images (r, m)."""
+    distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
+    unlike = _dissimilarity(x, y, of_x, of_y)
+    return beam_matchings(distances_x, distances_y, unlike, kept=_OFFERED, width=_OFFERED).images
 
 
 def _searches(x: MapDomain, y: MapDomain) -> list[_Search]:
@@ -161,6 +173,8 @@ def _candidates(y: MapDomain, leads: list[MapLead]) -> list[MapLead]:
     for sign, variants in _VARIANTS.items():
         groups: list[list[MapLead]] = []
         for lead in _of_orientation(leads, sign):
+            if groups and lead.score > groups[0][0].score + _HOPELESS:
+                break
             place = next((i for i, group in enumerate(groups) if _move(y, lead, group[0]) <= _CLUSTER), None)
             if place is None:
                 if len(groups) < len(variants):
@@ -187,11 +201,10 @@ def _refined_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[MapLe
     maps = fit_functional_maps(
         x.coarse_basis, y.coarse_basis, points, min(_SIZES[-1], x.coarse_basis.size, y.coarse_basis.size)
     )
-    terms = spectral_terms(x, y, maps)
-    orientation = map_orientation(x, y, points, maps)[0]
-    score = terms["bijectivity"] - _ORIENTED * abs(orientation)
+    terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
+    terms["rigidity"] = rigidity_term(x, y, points, len(maps.onto_x))
     yield Progress(1.0, "Comparing maps")
-    return MapLead(points, score, orientation, terms, "extremities")
+    return MapLead(points, score_of(terms), map_orientation(x, y, points, maps)[0], terms, "extremities")
 
 
 def _dissimilarity(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -199,15 +212,3 @@ def _dissimilarity(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: ND
     difference = x.extremity_descriptors(of_x)[:, None] - y.extremity_descriptors(of_y)
     root = np.sqrt(np.square(difference).mean(axis=2))
     return root / max(float(np.median(root)), np.finfo(float).tiny)
-
-
-def _lifting_rows(
-    domain: MapDomain, extremities: NDArray[np.int64], directions: NDArray[np.float64], sign: int
-) -> NDArray[np.float64]:
-    """Describe the coarse samples by their distances to extremities (m,), and on which side of each pair they are."""
-    distances = domain.shape.sample_distances[:, extremities]
-    sides = signed_areas(directions)
-    columns = [distances / np.sqrt(distances.shape[1])]
-    if sides.shape[1]:
-        columns.append(sign * _SIGNED_WEIGHT * sides / np.sqrt(sides.shape[1]))
-    return np.column_stack(columns)
