@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from .map_hypotheses import LandmarkStart
     from .shape import Shape
 
-__all__ = ["EIGENPAIRS", "Candidate", "RegisteredPair", "registered_pair_steps"]
+__all__ = ["EIGENPAIRS", "Candidate", "RegisteredPair", "are_distinct", "registered_pair_steps"]
 
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""
@@ -41,6 +41,9 @@ _CONTRADICTED = 4.0
 
 _DISTINCT = 0.07
 """Mean distance, in sqrt(area), from which on two registrations are different maps."""
+
+_ELSEWHERE, _LIMB = 0.15, 0.02
+"""Or they are different maps if they take so large a part of the source so far, in sqrt(area), from each other."""
 
 _MOST_CANDIDATES = 3
 _ELASTIC_WEIGHT = 4.0
@@ -190,7 +193,7 @@ def registered_pair_steps(
     matches = reverse.on_source, reverse.on_target
     steps = restarted_steps(source, target, _functions(x, _DETAILED), matches, stages=_STAGES, ties=ties)
     final = yield from within(steps, 0.85, 1.0)
-    margin = _margin(best, candidates, () if as_they_are else hypotheses)
+    margin = _margin(best, candidates, () if as_they_are else hypotheses, source.mass)
     return RegisteredPair(x, y, source, target, final, reverse, tuple(candidates), margin, landmarks, mirrored)
 
 
@@ -271,9 +274,13 @@ def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> Fou
     return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))
 
 
-def _margin(best: Candidate, candidates: list[Candidate], hypotheses: Sequence[MapHypothesis]) -> float | None:
+def _margin(
+    best: Candidate, candidates: list[Candidate], hypotheses: Sequence[MapHypothesis], areas: NDArray[np.float64]
+) -> float | None:
     """By how much the second choice is less credible; hypotheses that were not registered count by their own score."""
-    others = [candidate for candidate in candidates if _apart(candidate, best) > _DISTINCT]
+    taken = [candidate.registration.positions for candidate in candidates]
+    distinct = [are_distinct(best.registration.positions, positions, areas) for positions in taken]
+    others = [candidate for candidate, other in zip(candidates, distinct, strict=True) if other]
     gaps = [candidate.score - best.score for candidate in others]
     tried = {id(candidate.hypothesis) for candidate in candidates}
     gaps += [h.score - best.hypothesis.score for h in hypotheses if id(h) not in tried and h.orientation > 0]
@@ -281,6 +288,16 @@ def _margin(best: Candidate, candidates: list[Candidate], hypotheses: Sequence[M
     return max(float(min(gaps)), 0.0) if gaps else None
 
 
-def _apart(first: Candidate, second: Candidate) -> float:
-    """Mean distance between where two candidates take the source, in sqrt(area)."""
-    return float(np.linalg.norm(first.registration.positions - second.registration.positions, axis=1).mean())
+def are_distinct(first: NDArray[np.float64], second: NDArray[np.float64], areas: NDArray[np.float64]) -> bool:
+    """Say whether two registrations are different maps, as a whole or in where they take a limb.
+
+    Parameters
+    ----------
+    first, second : (n, 3) array of float
+        Where they take the vertices of the source, in units of the square root of the target's area.
+    areas : (n,) array of float
+        Areas of these vertices, in any unit.
+    """
+    apart = np.linalg.norm(first - second, axis=1)
+    elsewhere = areas[apart > _ELSEWHERE].sum() / areas.sum()
+    return bool(apart.mean() > _DISTINCT or elsewhere > _LIMB)

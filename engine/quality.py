@@ -197,7 +197,7 @@ def _doubt(quality: MatchQuality) -> str:
     if _plausibility(quality.likeness) < _PLAUSIBLE:
         return "The shapes have too little in common: leave out what only one of them has, or try landmarks."
     if margin is not None and margin < _CLEAR_MARGIN:
-        return "Another map was almost as likely, such as one that swaps left and right: check the sides."
+        return "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong."
     return ""
 
 

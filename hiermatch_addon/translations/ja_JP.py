@@ -1114,8 +1114,8 @@ MESSAGES: Final[dict[str, str]] = {
     "The shapes have too little in common: leave out what only one of them has, or try landmarks.": (
         "形状の共通点が少なすぎます。片方にしかない部分を除外するか、ランドマークを試してください。"
     ),
-    "Another map was almost as likely, such as one that swaps left and right: check the sides.": (
-        "左右が入れ替わったものなど、別のマップもほぼ同じくらい有力でした。左右を確認してください。"
+    "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong.": (
+        "別のマップもほぼ同じくらい有力でした。左右と手足を確認し、誤っていればランドマークを追加してください。"
     ),
     "The shapes differ much: the map is a good guess that keeps left and right, but details may slide.": (
         "形状が大きく異なります。マップは左右を保ったよい推測ですが、細部はずれているかもしれません。"

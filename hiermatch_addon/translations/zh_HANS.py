@@ -928,8 +928,8 @@ MESSAGES: Final[dict[str, str]] = {
     "The shapes have too little in common: leave out what only one of them has, or try landmarks.": (
         "两个形状的共同点太少：请排除只有其中一个才有的部分，或尝试使用地标。"
     ),
-    "Another map was almost as likely, such as one that swaps left and right: check the sides.": (
-        "另一个映射几乎同样可能，例如左右互换的映射：请检查左右。"
+    "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong.": (
+        "另一个映射几乎同样可能：请检查左右和各个肢体，如果有误，请添加一个地标。"
     ),
     "The shapes differ much: the map is a good guess that keeps left and right, but details may slide.": (
         "形状差异很大：映射是一个保持左右的良好估计，但细节可能滑移。"

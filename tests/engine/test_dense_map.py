@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import Shape, SurfacePoints, TriangleMesh, dense_map, run
-from engine.dense_map import EIGENPAIRS, registered_pair_steps
+from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
 from engine.functional_maps import PointMaps
 from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere
 from tests.bodies import mirrored_body
@@ -183,3 +183,15 @@ def test_meshes_with_fewer_vertices_than_eigenpairs_are_registered_too():
     points = pair.registration.on_target
     images = SurfacePoints.from_barycentric(y.mesh, points.triangles, points.barycentric).positions
     assert np.linalg.norm(images / 1.1 - vertices, axis=1).mean() < 0.05 * x.scale
+
+
+def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_little_everywhere_are_not():
+    rng = np.random.default_rng(0)
+    areas, places = rng.uniform(1, 2, 400), rng.standard_normal((400, 3))
+    limb = np.zeros((400, 3))
+    limb[:12, 0] = 0.4
+    offset = np.full(3, 0.02)
+    assert not are_distinct(places, places + offset, areas)
+    assert are_distinct(places, places + limb, areas)
+    assert not are_distinct(places, places + limb * (np.arange(400) < 4)[:, None], areas)
+    assert are_distinct(places, places + 4 * offset, areas)
