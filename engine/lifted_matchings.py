@@ -91,6 +91,35 @@ class LiftedMatchings:
                 kept.append(int(number))
         return matchings[kept]
 
+    def exchanged(self, images: NDArray[np.int64], sign: int) -> NDArray[np.int64]:
+        """Exchange two images of a matching, as often as it fits better then, always those that help the most.
+
+        Of limbs that are alike, as the arms of an octopus, there are too many matchings to try all of them.
+
+        Parameters
+        ----------
+        images : (m,) array of int
+            See `maps`.
+        sign : int
+            As in `maps`.
+
+        Returns
+        -------
+        (m,) array of int
+            The best that was found.
+        """
+        first, second = np.triu_indices(len(images), 1)
+        rows = np.arange(len(first))
+        least = self._assessed(images[None], sign)[0][0]
+        while len(rows):
+            offered = np.repeat(images[None], len(rows), axis=0)
+            offered[rows, first], offered[rows, second] = images[second], images[first]
+            misfits = self._assessed(offered, sign)[0]
+            if misfits.min() >= least:
+                break
+            images, least = offered[misfits.argmin()], misfits.min()
+        return images
+
     def _assessed(self, matchings: NDArray[np.int64], sign: int) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
         """Mean squared difference of descriptions of scouts and of what they go to, (r,), and where those of X go."""
         rows_x = self._rows_x.astype(np.float32)

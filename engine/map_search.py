@@ -26,10 +26,11 @@ __all__ = ["MapLead", "distinct_leads", "rough_maps_steps"]
 
 # How many farthest points of X and of Y are matched, and how many matchings are followed up that keep the orientation
 # (1) and that mirror it (-1).
-_FARTHEST = ((5, 9, {1: 12, -1: 8}), (6, 10, {1: 14, -1: 8}))
+_FARTHEST = ((5, 9, {1: 10, -1: 8}), (6, 10, {1: 12, -1: 8}))
 # The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
-_TIPS = (6, 9, {1: 12, -1: 8})
+_TIPS = (6, 9, {1: 10, -1: 8})
 _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
+_EXCHANGES = 6  # other ways to match the tips to what the best map takes there, of limbs that are alike
 _OFFERED = 400  # matchings that are carried over the surfaces to choose those that are followed up
 _SIZES = spectral_sizes(15, 30, 5)  # not from fewer: those would turn even true matchings front to back
 _VARIANTS = {1: (3, 2, 1, 1, 1, 1), -1: (2, 1)}  # how many of each group of like maps are followed up, by orientation
@@ -98,9 +99,14 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     """
     leads: list[MapLead] = []
     searches = _searches(x, y)
+    parts = len(searches) + 1
     for number, search in enumerate(searches):
-        begin, end = ((number + i) / len(searches) for i in (0, 1))
-        leads += yield from within(_followed_steps(x, y, search, signs), begin, end)
+        steps = _followed_steps(x, y, search, signs)
+        leads += yield from within(steps, number / parts, (number + 1) / parts)
+    for number, sign in enumerate(signs):
+        begin, end = (1 - (1 - (number + i) / len(signs)) / parts for i in (0, 1))
+        for lead in _of_orientation(leads, sign)[:1]:
+            leads += yield from within(_exchanged_steps(x, y, lead, sign), begin, end)
     return _candidates(y, leads)
 
 
@@ -114,6 +120,24 @@ def _followed_steps(x: MapDomain, y: MapDomain, search: _Search, signs: tuple[in
         for images in lifted.best(matchings, sign, search.kept[sign]):
             steps = _refined_steps(x, y, lifted.maps(images, sign))
             leads.append((yield from within(steps, len(leads) / total, (len(leads) + 1) / total)))
+    return leads
+
+
+def _exchanged_steps(x: MapDomain, y: MapDomain, lead: MapLead, sign: int) -> Steps[list[MapLead]]:
+    """Follow up other ways to match what a map takes to the tips of limbs of Y."""
+    tips = spread_extremities(y.shape, _TIPS[1], _TIPS_APART[1])
+    of_x, first = np.unique(lead.points.on_x[tips], return_index=True)
+    of_y = tips[first]
+    lifted = LiftedMatchings(x, y, of_x, of_y)
+    starts = lifted.best(_matchings(x, y, of_x, of_y), sign, _EXCHANGES)
+    better = []
+    for images in starts:
+        better.append(lifted.exchanged(images, sign))
+        yield Progress(0.5 * len(better) / len(starts), "Comparing maps")
+    leads: list[MapLead] = []
+    for images in lifted.best(np.array(better), sign, _EXCHANGES):
+        begin, end = (0.5 + 0.5 * (len(leads) + i) / len(starts) for i in (0, 1))
+        leads.append((yield from within(_refined_steps(x, y, lifted.maps(images, sign)), begin, end)))
     return leads
 
 

@@ -78,3 +78,14 @@ def test_what_says_the_same_is_chosen_once(pair, rest, all_matchings):
 def test_no_more_are_chosen_than_there_are(pair, rest):
     found = lifted(*pair, rest)
     assert found.best(np.arange(COUNT)[None], 1, 9).shape == (1, COUNT)
+
+
+def test_exchanges_lead_from_wrong_matchings_to_the_truth(pair, rest):
+    found = lifted(*pair, rest)
+    for wrong in ([1, 0, 2, 3, 4], [1, 2, 0, 3, 4], [3, 1, 4, 0, 2]):
+        np.testing.assert_array_equal(found.exchanged(np.array(wrong), 1), np.arange(COUNT))
+
+
+def test_a_single_pair_has_nothing_to_exchange(pair):
+    single = np.zeros(1, np.int64)
+    np.testing.assert_array_equal(LiftedMatchings(*pair, single, single).exchanged(single, 1), single)
