@@ -187,12 +187,15 @@ def registered_pair_steps(
             hypotheses = [h for h in hypotheses if h is not candidates[0].hypothesis]
             candidates[0] = repaired
     best = candidates[0]
-    matches = best.registration.on_source, best.registration.on_target
+    first = yield from within(
+        register_steps(source, target, best.registration.positions, (FINE,), ties=ties), 0.7, 0.76
+    )
+    matches = first.on_source, first.on_target
     steps = restarted_steps(target, source, _functions(y, _DETAILED), matches, stages=_STAGES, ties=ties_back)
-    reverse = yield from within(steps, 0.7, 0.85)
+    reverse = yield from within(steps, 0.76, 0.88)
     matches = reverse.on_source, reverse.on_target
     steps = restarted_steps(source, target, _functions(x, _DETAILED), matches, stages=_STAGES, ties=ties)
-    final = yield from within(steps, 0.85, 1.0)
+    final = yield from within(steps, 0.88, 1.0)
     margin = _margin(best, candidates, () if as_they_are else hypotheses, source.mass)
     return RegisteredPair(x, y, source, target, final, reverse, tuple(candidates), margin, landmarks, mirrored)
 
