@@ -208,9 +208,11 @@ def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple
     y, count = pair.target, len(images)
     far = [float(np.linalg.norm(a.points.positions - images.positions, axis=1).mean()) / y.scale for a in answers]
     order = np.argsort(far)
-    direct = answers[order[0]]
-    mirrored = next((answers[i] for i in order[1:] if answers[i].orientation <= 0), None)
-    if far[order[0]] > _AGREEING:
+    # Without landmarks the map keeps the orientation: an answer that mirrors is at best near to it here and there.
+    nearest = order[0] if pair.landmarks else next((i for i in order if answers[i].orientation > 0), order[0])
+    direct = answers[nearest]
+    mirrored = next((answers[i] for i in order if i != nearest and answers[i].orientation <= 0), None)
+    if far[nearest] > _AGREEING:
         rows = y.sample_rows[:, images.nearest_vertices]
         start = _distinct_samples(rows, pair.landmarks)
         levels = yield from refine_steps(pair, start, [count])

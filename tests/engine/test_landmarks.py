@@ -242,7 +242,7 @@ def test_landmarks_are_located_on_seams_and_proxies(bodies):
     assert distances.max() < 4 * y.mesh.edge_lengths.mean()
 
 
-def appended(mesh, at, length=0.9, radius=0.08):
+def appended(mesh, at, length=1.8, radius=0.08):
     """Grow a long appendage out of a body around a vertex: the mesh, and which vertices are of it."""
     near, distances = vicinity(mesh, at, 2 * radius)
     vertices = mesh.vertices.copy()
