@@ -12,6 +12,7 @@ from .closest_points import ClosestPoints
 from .errors import MatchError
 from .progress import Progress, Steps
 from .surface import SurfacePoints
+from .torn_patches import NearVertices, with_patches_mended
 from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle
 
 if TYPE_CHECKING:
@@ -153,12 +154,12 @@ class _Lift:
 
     def __init__(self, source: TriangleMesh, proxy: Proxy, target: TriangleMesh, search: ClosestPoints) -> None:
         self.source, self.proxy, self.target, self.search = source, proxy, target, search
-        self.allowed: NDArray[np.int64] | None = None
+        self.near: NearVertices | None = None
 
     def restrict(self, target_proxy: Proxy, proxy_map: NDArray[np.int64]) -> None:
         """Look for a vertex only near to the match of its proxy vertex."""
-        self.target_proxy, self.proxy_map = target_proxy, proxy_map
-        self.allowed = _near_pairs(target_proxy.mesh)
+        self.target_proxy, self.near = target_proxy, NearVertices(target_proxy.mesh, _RINGS)
+        self.proxy_map = with_patches_mended(self.proxy.mesh, proxy_map, self.near)
 
     def _blended(self, motion: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
         """Motion at vertices (q,) of the dense mesh, (q, 3, 4)."""
@@ -192,11 +193,9 @@ class _Lift:
         """Vertices of the target from which to search for those of the source, (q,), and which are astray, (q,)."""
         starts = self.search.nearest_vertices(positions)
         astray = np.einsum("qd,qd->q", normals, self.search.vertex_normals[starts]) < _NORMAL_GATE
-        if self.allowed is not None:
+        if self.near is not None:
             matched = self.proxy_map[self.proxy.points.nearest_vertices[vertices]]
-            asked = matched * self.target_proxy.mesh.vertex_count + self.target_proxy.points.nearest_vertices[starts]
-            found = np.searchsorted(self.allowed, asked).clip(max=len(self.allowed) - 1)
-            far = self.allowed[found] != asked
+            far = ~self.near.pairs(matched, self.target_proxy.points.nearest_vertices[starts])
             starts[far] = self.target_proxy.vertices[matched[far]]
             astray |= far
         return starts, astray
@@ -245,25 +244,11 @@ class _Lift:
 def _averaging(mesh: TriangleMesh) -> csr_array:
     """Matrix (k, k) that takes half of each vertex and half of the mean of its neighbours."""
     k = mesh.vertex_count
-    neighbours = _adjacency(mesh)
+    a, b = mesh.edges.T
+    ends = (np.concatenate([a, b]), np.concatenate([b, a]))
+    neighbours = csr_array(coo_array((np.ones(2 * len(a)), ends), shape=(k, k)))
     degrees = np.maximum(neighbours.sum(axis=1), 1)
     return csr_array(eye_array(k) / 2 + diags_array(0.5 / degrees) @ neighbours)
-
-
-def _adjacency(mesh: TriangleMesh) -> csr_array:
-    k, (a, b) = mesh.vertex_count, mesh.edges.T
-    ends = (np.concatenate([a, b]), np.concatenate([b, a]))
-    return csr_array(coo_array((np.ones(2 * len(a)), ends), shape=(k, k)))
-
-
-def _near_pairs(mesh: TriangleMesh) -> NDArray[np.int64]:
-    """Keys first * k + second, sorted, of all vertices that are at most some edges apart."""
-    k = mesh.vertex_count
-    ring = csr_array(_adjacency(mesh) + eye_array(k))
-    reach = ring
-    for _ in range(_RINGS - 1):
-        reach = csr_array(reach @ ring)
-    return np.sort(np.repeat(np.arange(k), np.diff(reach.indptr)) * k + reach.indices)
 
 
 def _motion(proxy: Proxy, registered: NDArray[np.float64], average: csr_array) -> NDArray[np.float64]:

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Patches that a map tears off: where surfaces touch, closest points may be on the other one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array, eye_array
+from scipy.sparse.csgraph import connected_components
+
+from .untangling import follow_neighbours
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+
+__all__ = ["NearVertices", "with_patches_mended"]
+
+_PATCH = 0.01
+"""Part of the area below which what a map tears off is taken for an error."""
+
+
+class NearVertices:
+    """Tells which vertices of a mesh are near to each other along the surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The mesh, of some thousand vertices.
+    rings : int
+        How many edges they may be apart.
+    """
+
+    def __init__(self, mesh: TriangleMesh, rings: int) -> None:
+        self._count = mesh.vertex_count
+        a, b = mesh.edges.T
+        ends = (np.concatenate([a, b]), np.concatenate([b, a]))
+        neighbours = coo_array((np.ones(2 * len(a)), ends), shape=(self._count, self._count))
+        ring = csr_array(neighbours + eye_array(self._count))
+        reach = ring
+        for _ in range(rings - 1):
+            reach = csr_array(reach @ ring)
+        first = np.repeat(np.arange(self._count), np.diff(reach.indptr))
+        self._keys = np.sort(first * self._count + reach.indices)
+
+    def pairs(self, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Tell for pairs (q,) of vertices whether they are near, (q,)."""
+        asked = first * self._count + second
+        found = np.searchsorted(self._keys, asked).clip(max=len(self._keys) - 1)
+        near: NDArray[np.bool_] = self._keys[found] == asked
+        return near
+
+
+def with_patches_mended(mesh: TriangleMesh, images: NDArray[np.int64], near: NearVertices) -> NDArray[np.int64]:
+    """Give small patches that a map tears off the images of what is around them.
+
+    A hand that rests on a thigh is as near to it in space as the thigh itself.  So a few vertices of the one may be
+    matched to the other, and all edges that lead to them are stretched from one to the other, along the surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface, n vertices.
+    images : (n,) array of int
+        Vertex of the target for each of its vertices.
+    near : NearVertices
+        What counts as near on the target: the ends of an edge that are mapped farther apart are torn from each other.
+
+    Returns
+    -------
+    (n,) array of int
+        The images, those of each patch taken from its nearest neighbours: a place to look from, not a map.
+    """
+    tail, head = mesh.edges.T
+    kept = near.pairs(images[tail], images[head])
+    if kept.all():
+        return images
+    n = mesh.vertex_count
+    graph = coo_array((np.ones(int(kept.sum())), (tail[kept], head[kept])), shape=(n, n))
+    _, parts = connected_components(graph, directed=False)
+    areas = np.bincount(parts, mesh.vertex_areas)
+    return follow_neighbours(mesh, images, areas[parts] < _PATCH * mesh.area)
