@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["NearVertices", "with_patches_mended"]
 
-_PATCH = 0.01
+_PATCH = 0.02
 """Part of the area below which what a map tears off is taken for an error."""
 
 

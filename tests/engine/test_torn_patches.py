@@ -62,7 +62,7 @@ def test_a_small_patch_gets_the_images_of_what_is_around_it(roll):
 def test_what_is_large_or_not_torn_is_left_alone(roll):
     near = NearVertices(roll, 3)
     images, patch = torn(roll, 5)
-    assert roll.vertex_areas[patch].sum() > 0.01 * roll.area
+    assert roll.vertex_areas[patch].sum() > 0.02 * roll.area
     np.testing.assert_array_equal(with_patches_mended(roll, images, near), images)
     flat = TriangleMesh(*plane(9))
     turned = np.arange(flat.vertex_count)[::-1]
