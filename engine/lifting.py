@@ -159,7 +159,7 @@ class _Lift:
     def restrict(self, target_proxy: Proxy, proxy_map: NDArray[np.int64]) -> None:
         """Look for a vertex only near to the match of its proxy vertex."""
         self.target_proxy, self.near = target_proxy, NearVertices(target_proxy.mesh, _RINGS)
-        self.proxy_map = with_patches_mended(self.proxy.mesh, proxy_map, self.near)
+        self.proxy_map = with_patches_mended(self.proxy.mesh, proxy_map, target_proxy.mesh, self.near)
 
     def _blended(self, motion: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
         """Motion at vertices (q,) of the dense mesh, (q, 3, 4)."""

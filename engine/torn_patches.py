@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, eye_array
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import connected_components, dijkstra
 
 from .untangling import follow_neighbours
 
@@ -20,6 +20,12 @@ __all__ = ["NearVertices", "with_patches_mended"]
 
 _PATCH = 0.02
 """Part of the area below which what a map tears off is taken for an error."""
+
+_STRETCHED = 4.0
+"""Times its length, in the scale of the target, to which an edge has to be stretched at least to be torn."""
+
+_SOURCES = 16
+"""Vertices from which distances tell how far apart others are at least: the first are tips of limbs."""
 
 
 class NearVertices:
@@ -53,7 +59,9 @@ class NearVertices:
         return near
 
 
-def with_patches_mended(mesh: TriangleMesh, images: NDArray[np.int64], near: NearVertices) -> NDArray[np.int64]:
+def with_patches_mended(
+    mesh: TriangleMesh, images: NDArray[np.int64], target: TriangleMesh, near: NearVertices
+) -> NDArray[np.int64]:
     """Give small patches that a map tears off the images of what is around them.
 
     A hand that rests on a thigh is as near to it in space as the thigh itself.  So a few vertices of the one may be
@@ -65,8 +73,10 @@ def with_patches_mended(mesh: TriangleMesh, images: NDArray[np.int64], near: Nea
         The surface, n vertices.
     images : (n,) array of int
         Vertex of the target for each of its vertices.
+    target : TriangleMesh
+        The surface that it is mapped to.
     near : NearVertices
-        What counts as near on the target: the ends of an edge that are mapped farther apart are torn from each other.
+        Vertices of the target that are so near to each other that no edge between them is torn, however short it was.
 
     Returns
     -------
@@ -75,10 +85,28 @@ def with_patches_mended(mesh: TriangleMesh, images: NDArray[np.int64], near: Nea
     """
     tail, head = mesh.edges.T
     kept = near.pairs(images[tail], images[head])
-    if kept.all():
+    doubtful = np.flatnonzero(~kept)
+    if not len(doubtful):
         return images
+    lengths = mesh.edge_lengths[doubtful] * np.sqrt(target.area / mesh.area)
+    apart = _least_distances(target, images[tail[doubtful]], images[head[doubtful]])
+    kept[doubtful] = apart < _STRETCHED * lengths
     n = mesh.vertex_count
     graph = coo_array((np.ones(int(kept.sum())), (tail[kept], head[kept])), shape=(n, n))
     _, parts = connected_components(graph, directed=False)
     areas = np.bincount(parts, mesh.vertex_areas)
     return follow_neighbours(mesh, images, areas[parts] < _PATCH * mesh.area)
+
+
+def _least_distances(mesh: TriangleMesh, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.float64]:
+    """How far pairs (q,) of vertices are apart along edges at least, (q,): as far as their distances from others."""
+    n, (a, b) = mesh.vertex_count, mesh.edges.T
+    graph = coo_array((mesh.edge_lengths, (a, b)), shape=(n, n)).tocsr()
+    least, nearest = np.zeros(len(first)), np.full(n, np.inf)
+    source = int(first[0])
+    for _ in range(_SOURCES):
+        row = dijkstra(graph, directed=False, indices=source)
+        least = np.maximum(least, abs(row[first] - row[second]))
+        nearest = np.minimum(nearest, row)
+        source = int(nearest.argmax())
+    return least

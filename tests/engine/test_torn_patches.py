@@ -50,7 +50,7 @@ def test_near_are_vertices_that_few_edges_lead_to(rings):
 def test_a_small_patch_gets_the_images_of_what_is_around_it(roll):
     images, patch = torn(roll, 1)
     before = images.copy()
-    mended = with_patches_mended(roll, images, NearVertices(roll, 3))
+    mended = with_patches_mended(roll, images, roll, NearVertices(roll, 3))
     np.testing.assert_array_equal(mended[~patch], np.flatnonzero(~patch))
     assert not patch[mended].any()
     gaps = np.linalg.norm(roll.vertices[mended[patch]] - roll.vertices[patch], axis=1)
@@ -63,10 +63,20 @@ def test_what_is_large_or_not_torn_is_left_alone(roll):
     near = NearVertices(roll, 3)
     images, patch = torn(roll, 5)
     assert roll.vertex_areas[patch].sum() > 0.02 * roll.area
-    np.testing.assert_array_equal(with_patches_mended(roll, images, near), images)
+    np.testing.assert_array_equal(with_patches_mended(roll, images, roll, near), images)
     flat = TriangleMesh(*plane(9))
     turned = np.arange(flat.vertex_count)[::-1]
-    np.testing.assert_array_equal(with_patches_mended(flat, turned, NearVertices(flat, 3)), turned)
+    np.testing.assert_array_equal(with_patches_mended(flat, turned, flat, NearVertices(flat, 3)), turned)
+
+
+def test_long_edges_are_not_torn_where_the_target_has_many_vertices_between_their_ends():
+    coarse, fine = TriangleMesh(*plane(6)), TriangleMesh(*plane(61))
+    images = np.square(fine.vertices[None] - coarse.vertices[:, None]).sum(axis=2).argmin(axis=1)
+    np.testing.assert_array_equal(with_patches_mended(coarse, images, fine, NearVertices(fine, 3)), images)
+    turned = np.arange(coarse.vertex_count)[::-1]
+    np.testing.assert_array_equal(
+        with_patches_mended(coarse, images[turned], fine, NearVertices(fine, 3)), images[turned]
+    )
 
 
 def test_a_lift_keeps_to_the_layer_that_the_surroundings_are_on(roll):
