@@ -116,18 +116,6 @@ class MapDomain:
         return weights / weights.sum(axis=1, keepdims=True)
 
     @cached_property
-    def coarse_patches(self) -> NDArray[np.float64]:
-        """The same weights of the coarse samples alone, (coarse, coarse); rows sum to one."""
-        weights = self.patches[:, : self.coarse_count]
-        return weights / weights.sum(axis=1, keepdims=True)
-
-    def sampled(self, count: int) -> tuple[SampledBasis, NDArray[np.float64]]:
-        """Take eigenfunctions and patches at the coarse samples, if there are so many of them, or at the fine ones."""
-        if count == self.coarse_count:
-            return self.coarse_basis, self.coarse_patches
-        return self.fine_basis, self.patches
-
-    @cached_property
     def curvature(self) -> NDArray[np.float64]:
         r"""Mean curvature after some heat flow, at the fine samples, (p,); its mean square is one.
 

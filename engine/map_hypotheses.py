@@ -20,7 +20,7 @@ from .functional_maps import (
     spectral_sizes,
 )
 from .map_domain import MapDomain
-from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, score_of, spectral_terms
+from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
 from .map_search import MapLead, distinct_leads, rough_maps_steps
 from .progress import Progress, Steps, run, within
 
@@ -38,6 +38,9 @@ _SMOOTHED = 110  # eigenfunctions that patches are smoothed by before they are c
 _DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
 _RETURNED = {1: 4, -1: 2}  # most hypotheses that keep the orientation, and that mirror it
 _HOPELESS = 3.0  # excess of the score over the best of the same orientation
+# Rigidity is the strongest cue against half turns; in distances and spectra these are hardly worse than the truth.
+_WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
+_LEAST_TERM = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,7 +224,8 @@ def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Map
     terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
     terms["distances"] = distance_term(x, y, points)
     terms["rigidity"] = rigidity_term(x, y, points, _SMOOTHED)
-    return MapLead(points, score_of(terms), map_orientation(x, y, points, maps)[0], terms, origin)
+    score = sum(weight * np.log(max(terms[name], _LEAST_TERM)) for name, weight in _WEIGHTS.items())
+    return MapLead(points, float(score), map_orientation(x, y, points, maps)[0], terms, origin)
 
 
 def _between_all_vertices_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:

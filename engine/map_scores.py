@@ -10,34 +10,16 @@ import numpy as np
 from .orientation import orientation_agreement
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
     from .functional_maps import FunctionalMaps, PointMaps
     from .map_domain import MapDomain
 
-__all__ = ["curvature_terms", "distance_term", "map_orientation", "rigidity_term", "score_of", "spectral_terms"]
-
-# Rigidity is the strongest cue against half turns; in distances and spectra these are hardly worse than the truth.
-_WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
-_LEAST_TERM = 1e-6
+__all__ = ["curvature_terms", "distance_term", "map_orientation", "rigidity_term", "spectral_terms"]
 
 _BOUNDING = 200  # samples whose distances bound other ones
 _RIGID = 1e-3  # rigid defects below this are all the same
 _POINT = 1e-12  # squared radius, in units of the area, of what is no more than a point
-
-
-def score_of(terms: Mapping[str, float]) -> float:
-    """Sum up what was measured of a map, as weighted logarithms: smaller is more credible.
-
-    Parameters
-    ----------
-    terms : mapping of str to float
-        What the functions here measure; the scores of maps can be compared if the same was measured of all.
-    """
-    known = [(weight, terms[name]) for name, weight in _WEIGHTS.items() if name in terms]
-    return float(sum(weight * np.log(max(term, _LEAST_TERM)) for weight, term in known))
 
 
 def spectral_terms(x: MapDomain, y: MapDomain, maps: FunctionalMaps) -> dict[str, float]:
@@ -112,8 +94,7 @@ def curvature_terms(x: MapDomain, y: MapDomain, points: PointMaps) -> dict[str, 
     """
     terms = {}
     for name, at_x, at_y in (("curvature", x.curvature, y.curvature), ("waves", x.signatures, y.signatures)):
-        forward = np.abs(at_x[: len(points.on_y)] - at_y[points.on_y]).mean()
-        back = np.abs(at_y[: len(points.on_x)] - at_x[points.on_x]).mean()
+        forward, back = np.abs(at_x - at_y[points.on_y]).mean(), np.abs(at_y - at_x[points.on_x]).mean()
         terms[name] = float(forward + back) / 2
     return terms
 
@@ -163,13 +144,11 @@ def rigidity_term(x: MapDomain, y: MapDomain, points: PointMaps, size: int) -> f
     """
     logarithms = []
     for here, there, images in ((x, y, points.on_y), (y, x, points.on_x)):
-        known = len(images)
-        basis, patches = here.sampled(known)
+        basis = here.fine_basis
         count = min(size, basis.size)
-        own = here.places[:known], here.normals[:known]
-        rough = np.concatenate([*own, there.places[images], there.normals[images]], axis=1)
+        rough = np.concatenate([here.places, here.normals, there.places[images], there.normals[images]], axis=1)
         smoothed = basis.functions[:, :count] @ basis.coefficients(rough, count)
-        defects = _rigid_defects(patches, *np.split(smoothed, 4, axis=1))
+        defects = _rigid_defects(here.patches, *np.split(smoothed, 4, axis=1))
         logarithms.append(np.log(defects + _RIGID).mean())
     return float(np.exp(np.mean(logarithms)))
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from .extremities import spread_extremities
 from .extremity_search import beam_matchings
-from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
-from .lifted_matchings import LiftedMatchings
-from .map_scores import curvature_terms, map_orientation, rigidity_term, score_of, spectral_terms
+from .functional_maps import PointMaps, fit_functional_maps, nearest_both_ways, refine_bijective_steps, spectral_sizes
+from .map_scores import map_orientation, spectral_terms
+from .orientation import signed_areas
 from .progress import Progress, Steps, within
 
 if TYPE_CHECKING:
@@ -24,17 +24,16 @@ if TYPE_CHECKING:
 
 __all__ = ["MapLead", "distinct_leads", "rough_maps_steps"]
 
-# How many farthest points of X and of Y are matched, and how many matchings are followed up that keep the orientation
-# (1) and that mirror it (-1).
-_FARTHEST = ((5, 9, {1: 10, -1: 8}), (6, 10, {1: 12, -1: 8}))
+# How many farthest points of X and of Y are matched, and how many matchings are carried over with the orientation kept
+# (1) and with it mirrored (-1): of these the best only, as mirror images are matched as well as what they mirror.
+_FARTHEST = ((5, 9, {1: 20, -1: 8}), (6, 10, {1: 40, -1: 12}))
 # The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
-_TIPS = (6, 9, {1: 10, -1: 8})
+_TIPS = (6, 9, {1: 20, -1: 8})
 _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
-_EXCHANGES = 6  # other ways to match the tips to what the best map takes there, of limbs that are alike
-_OFFERED = 400  # matchings that are carried over the surfaces to choose those that are followed up
+_SIGNED_WEIGHT = 1.0  # of signed areas beside distances, when matchings of extremities are carried over the surface
 _SIZES = spectral_sizes(15, 30, 5)  # not from fewer: those would turn even true matchings front to back
-_VARIANTS = {1: (3, 2, 1, 1, 1, 1), -1: (2, 1)}  # how many of each group of like maps are followed up, by orientation
-_HOPELESS = 2.5  # excess of the score over the best of the same orientation
+_ORIENTED = 0.3  # how much more credible a map of one orientation throughout is
+_VARIANTS = {1: (3, 2, 1, 1), -1: (2, 1)}  # how many of each group of like maps are followed up, by orientation
 _CLUSTER = 0.15  # mean distance between the images of maps of different groups, in sqrt(area)
 _VARIANT = 0.04  # the same for those of one group: a limb may be crossed in the best of them
 
@@ -99,53 +98,18 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     """
     leads: list[MapLead] = []
     searches = _searches(x, y)
-    parts = len(searches) + 1
-    for number, search in enumerate(searches):
-        steps = _followed_steps(x, y, search, signs)
-        leads += yield from within(steps, number / parts, (number + 1) / parts)
-    for number, sign in enumerate(signs):
-        begin, end = (1 - (1 - (number + i) / len(signs)) / parts for i in (0, 1))
-        for lead in _of_orientation(leads, sign)[:1]:
-            leads += yield from within(_exchanged_steps(x, y, lead, sign), begin, end)
+    total, done = sum(kept[sign] for *_, kept in searches for sign in signs), 0
+    for of_x, of_y, kept in searches:
+        distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
+        matchings = beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=max(kept.values()))
+        directions_y = y.directions(of_y)
+        rows_x = _lifting_rows(x, of_x, x.directions(of_x), 1)
+        for sign in signs:
+            for images in matchings.images[: kept[sign]]:
+                points = nearest_both_ways(rows_x, _lifting_rows(y, of_y[images], directions_y[:, images], sign))
+                leads.append((yield from within(_refined_steps(x, y, points), done / total, (done + 1) / total)))
+                done += 1
     return _candidates(y, leads)
-
-
-def _followed_steps(x: MapDomain, y: MapDomain, search: _Search, signs: tuple[int, ...]) -> Steps[list[MapLead]]:
-    """Follow up the matchings of one kind that fit the whole surfaces best."""
-    leads: list[MapLead] = []
-    matchings = _matchings(x, y, search.of_x, search.of_y)
-    lifted = LiftedMatchings(x, y, search.of_x, search.of_y)
-    total = sum(search.kept[sign] for sign in signs)
-    for sign in signs:
-        for images in lifted.best(matchings, sign, search.kept[sign]):
-            steps = _refined_steps(x, y, lifted.maps(images, sign))
-            leads.append((yield from within(steps, len(leads) / total, (len(leads) + 1) / total)))
-    return leads
-
-
-def _exchanged_steps(x: MapDomain, y: MapDomain, lead: MapLead, sign: int) -> Steps[list[MapLead]]:
-    """Follow up other ways to match what a map takes to the tips of limbs of Y."""
-    tips = spread_extremities(y.shape, _TIPS[1], _TIPS_APART[1])
-    of_x, first = np.unique(lead.points.on_x[tips], return_index=True)
-    of_y = tips[first]
-    lifted = LiftedMatchings(x, y, of_x, of_y)
-    starts = lifted.best(_matchings(x, y, of_x, of_y), sign, _EXCHANGES)
-    better = []
-    for images in starts:
-        better.append(lifted.exchanged(images, sign))
-        yield Progress(0.5 * len(better) / len(starts), "Comparing maps")
-    leads: list[MapLead] = []
-    for images in lifted.best(np.array(better), sign, _EXCHANGES):
-        begin, end = (0.5 + 0.5 * (len(leads) + i) / len(starts) for i in (0, 1))
-        leads.append((yield from within(_refined_steps(x, y, lifted.maps(images, sign)), begin, end)))
-    return leads
-
-
-def _matchings(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Match coarse samples (m,) to coarse samples (n,) in many ways: positions of images (r, m)."""
-    distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
-    unlike = _dissimilarity(x, y, of_x, of_y)
-    return beam_matchings(distances_x, distances_y, unlike, kept=_OFFERED, width=_OFFERED).images
 
 
 def _searches(x: MapDomain, y: MapDomain) -> list[_Search]:
@@ -197,8 +161,6 @@ def _candidates(y: MapDomain, leads: list[MapLead]) -> list[MapLead]:
     for sign, variants in _VARIANTS.items():
         groups: list[list[MapLead]] = []
         for lead in _of_orientation(leads, sign):
-            if groups and lead.score > groups[0][0].score + _HOPELESS:
-                break
             place = next((i for i, group in enumerate(groups) if _move(y, lead, group[0]) <= _CLUSTER), None)
             if place is None:
                 if len(groups) < len(variants):
@@ -225,10 +187,11 @@ def _refined_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[MapLe
     maps = fit_functional_maps(
         x.coarse_basis, y.coarse_basis, points, min(_SIZES[-1], x.coarse_basis.size, y.coarse_basis.size)
     )
-    terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
-    terms["rigidity"] = rigidity_term(x, y, points, len(maps.onto_x))
+    terms = spectral_terms(x, y, maps)
+    orientation = map_orientation(x, y, points, maps)[0]
+    score = terms["bijectivity"] - _ORIENTED * abs(orientation)
     yield Progress(1.0, "Comparing maps")
-    return MapLead(points, score_of(terms), map_orientation(x, y, points, maps)[0], terms, "extremities")
+    return MapLead(points, score, orientation, terms, "extremities")
 
 
 def _dissimilarity(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -236,3 +199,15 @@ def _dissimilarity(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: ND
     difference = x.extremity_descriptors(of_x)[:, None] - y.extremity_descriptors(of_y)
     root = np.sqrt(np.square(difference).mean(axis=2))
     return root / max(float(np.median(root)), np.finfo(float).tiny)
+
+
+def _lifting_rows(
+    domain: MapDomain, extremities: NDArray[np.int64], directions: NDArray[np.float64], sign: int
+) -> NDArray[np.float64]:
+    """Describe the coarse samples by their distances to extremities (m,), and on which side of each pair they are."""
+    distances = domain.shape.sample_distances[:, extremities]
+    sides = signed_areas(directions)
+    columns = [distances / np.sqrt(distances.shape[1])]
+    if sides.shape[1]:
+        columns.append(sign * _SIGNED_WEIGHT * sides / np.sqrt(sides.shape[1]))
+    return np.column_stack(columns)

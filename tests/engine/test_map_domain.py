@@ -106,11 +106,3 @@ def test_patches_are_means_over_the_surroundings(body):
     np.testing.assert_allclose(body.patches.sum(axis=1), 1)
     assert body.patches.shape == (body.coarse_count, len(body.vertices))
     np.testing.assert_array_equal(body.patches.argmax(axis=1), np.arange(body.coarse_count))
-
-
-def test_coarse_samples_have_a_basis_and_patches_of_their_own(body):
-    basis, patches = body.sampled(body.coarse_count)
-    assert basis is body.coarse_basis
-    assert patches.shape == (body.coarse_count, body.coarse_count)
-    np.testing.assert_allclose(patches.sum(axis=1), 1)
-    assert body.sampled(len(body.vertices)) == (body.fine_basis, body.patches)

@@ -5,7 +5,7 @@ import pytest
 from engine import Shape, TriangleMesh
 from engine.functional_maps import FunctionalMaps, PointMaps, fit_functional_maps
 from engine.map_domain import MapDomain
-from engine.map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, score_of, spectral_terms
+from engine.map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
 from engine.progress import run
 from tests.shapes import creature, rotation
 
@@ -29,12 +29,12 @@ def at_vertices(x, y):
 # Fewer vertices than fine samples: all are samples, so that any two shapes of one meshing have the same ones.
 @pytest.fixture(scope="module")
 def body():
-    return domain(*creature(0.0, 9)[:2])
+    return domain(*creature(0.0, 11)[:2])
 
 
 @pytest.fixture(scope="module")
 def bent():
-    return domain(*creature(1.0, 9)[:2])
+    return domain(*creature(1.0, 11)[:2])
 
 
 @pytest.fixture(scope="module")
@@ -125,29 +125,3 @@ def test_both_directions_count_alike(body, bent):
     assert distance_term(body, bent, points) == pytest.approx(distance_term(bent, body, back))
     assert rigidity_term(body, bent, points, 40) == pytest.approx(rigidity_term(bent, body, back, 40))
     assert curvature_terms(body, bent, points) == pytest.approx(curvature_terms(bent, body, back))
-
-
-def test_maps_between_the_coarse_samples_are_measured_alike(body, bent):
-    true = coarse(body, bent)
-    rng = np.random.default_rng(3)
-    wrong = PointMaps(rng.permutation(true.on_y), rng.permutation(true.on_x))
-    assert rigidity_term(body, body, coarse(body, body), 30) == pytest.approx(1e-3)
-    assert rigidity_term(body, bent, true, 30) < 0.6 * rigidity_term(body, bent, wrong, 30)
-    for name in ("curvature", "waves"):
-        assert curvature_terms(body, body, coarse(body, body))[name] == 0
-        assert curvature_terms(body, bent, true)[name] < 0.8 * curvature_terms(body, bent, wrong)[name]
-
-
-def coarse(x, y):
-    """The true map between coarse samples, of meshes whose vertices correspond by number."""
-    a, b = (d.vertices[: d.coarse_count] for d in (x, y))
-    here, there = x.shape.sample_rows[:, b], y.shape.sample_rows[:, a]
-    return PointMaps(there.argmin(axis=0), here.argmin(axis=0))
-
-
-def test_the_score_is_a_sum_of_logarithms_of_what_is_known():
-    terms = {"rigidity": 0.1, "curvature": 0.5}
-    assert score_of({name: np.e * value for name, value in terms.items()}) == pytest.approx(score_of(terms) + 4.0)
-    assert score_of(terms | {"orthogonality": 7.0}) == score_of(terms)
-    assert score_of(terms | {"distances": 0.2}) < score_of(terms)
-    assert np.isfinite(score_of({"rigidity": 0.0}))
