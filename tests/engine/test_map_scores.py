@@ -29,12 +29,12 @@ def at_vertices(x, y):
 # Fewer vertices than fine samples: all are samples, so that any two shapes of one meshing have the same ones.
 @pytest.fixture(scope="module")
 def body():
-    return domain(*creature(0.0, 11)[:2])
+    return domain(*creature(0.0, 9)[:2])
 
 
 @pytest.fixture(scope="module")
 def bent():
-    return domain(*creature(1.0, 11)[:2])
+    return domain(*creature(1.0, 9)[:2])
 
 
 @pytest.fixture(scope="module")
