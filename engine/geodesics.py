@@ -170,6 +170,29 @@ class GeodesicSolver:
                     break
                 yield first, nothing
 
+    def path_lengths(self, sources: ArrayLike) -> NDArray[np.float64]:
+        """Compute the lengths of shortest paths in `graph` from each source to every vertex.
+
+        These are upper bounds of the distances, a few percent too long, and take a quarter of the time.
+
+        Parameters
+        ----------
+        sources : (S,) array_like of int
+            Vertex indices.
+
+        Returns
+        -------
+        (S, n) array of float
+            Lengths in units of the mesh; ``inf`` where no path leads.
+
+        Raises
+        ------
+        MeshError
+            If a source is not a vertex of the mesh.
+        """
+        lengths: NDArray[np.float64] = dijkstra(self.graph, indices=self._checked(sources))
+        return lengths * self._unit
+
     def _checked(self, sources: ArrayLike) -> NDArray[np.int64]:
         array = np.asarray(sources)
         if array.ndim != 1 or not (np.issubdtype(array.dtype, np.integer) or array.size == 0):

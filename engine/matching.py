@@ -125,9 +125,14 @@ def match_steps(
     if known is not None:
         x, y = x.starting_with(known.source.matched), y.starting_with(known.target.matched)
     samples = max(3 * settings.samples // 4 if settings.dense else settings.samples, 2 * settings.points)
+    # A dense map is decided on by more than distances: from the points that are matched they are measured, from the
+    # other samples estimated.
+    measured = settings.points if settings.dense else None
     sparse_end = 0.5 if settings.dense else 1.0
-    yield from within(x.sample_steps(samples), 0.06, 0.13 if settings.dense else 0.3)
-    yield from within(y.sample_steps(samples), 0.13 if settings.dense else 0.3, 0.2 if settings.dense else 0.6)
+    yield from within(x.sample_steps(samples, measured), 0.06, 0.13 if settings.dense else 0.3)
+    yield from within(
+        y.sample_steps(samples, measured), 0.13 if settings.dense else 0.3, 0.2 if settings.dense else 0.6
+    )
     clock.lap("geodesics")
     begin = 0.2 if settings.dense else 0.6
     if Pair.needs_spectrum(settings):
@@ -135,7 +140,8 @@ def match_steps(
         yield from within(y.spectrum_steps(settings.eigenpairs), begin + 0.05, begin + 0.1)
         begin += 0.1
         clock.lap("eigenpairs")
-    pair = Pair(x.limited(samples), y.limited(samples), settings, 0 if known is None else len(known))
+    sampled = x.limited(samples, measured), y.limited(samples, measured)
+    pair = Pair(*sampled, settings, 0 if known is None else len(known))
     clock.lap("descriptors")
     answers = yield from within(solve_steps(pair, clock.lap), begin, sparse_end)
     notes = tuple(note for shape in (x, y) for note in shape.surface.cleaned.notes)

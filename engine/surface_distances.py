@@ -98,13 +98,14 @@ class SurfaceDistances:
     def prepare_steps(self, points: SurfacePoints) -> Steps[None]:
         """Compute the rows that distances from some points need, in short steps; see `prepare`."""
         needed = np.unique(points.corners[points.barycentric > 0])
-        missing = np.setdiff1d(needed, [*self._rows, *self._shape.samples])
+        shape = self._shape
+        missing = np.setdiff1d(needed, [*self._rows, *shape.samples[: shape.measured_count]])
         if len(self._rows) + len(missing) > self._capacity:
             wanted = set(needed.tolist())
             self._rows = {vertex: row for vertex, row in self._rows.items() if vertex in wanted}
-        for first, block in self._shape.solver.distances_in_blocks(missing):
+        for first, block in shape.solver.distances_in_blocks(missing):
             last = first + len(block)
-            rows = (block / self._shape.scale).astype(np.float32)
+            rows = (block / shape.scale).astype(np.float32)
             self._rows.update(zip(missing[first:last].tolist(), rows, strict=True))
             yield Progress(last / len(missing), "Measuring distances")
 
@@ -168,7 +169,8 @@ class SurfaceDistances:
 
     def _gather(self, sources: NDArray[np.int64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
         """Distances from prepared vertices (s,) to vertices (v,), (s, v)."""
-        number = dict(zip(self._shape.samples.tolist(), self._shape.sample_rows, strict=True))
+        measured = slice(self._shape.measured_count)
+        number = dict(zip(self._shape.samples[measured].tolist(), self._shape.sample_rows[measured], strict=True))
         block = np.empty((len(sources), len(vertices)))
         for i, source in enumerate(sources.tolist()):
             row = self._rows.get(source)

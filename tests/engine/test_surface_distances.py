@@ -145,6 +145,17 @@ def test_rows_of_the_samples_are_used(monkeypatch):
     np.testing.assert_allclose(distances.between(points), shape.sample_distances, atol=1e-5)
 
 
+def test_estimates_from_the_samples_are_not_used():
+    shape = shape_of(icosphere(5))
+    run(shape.sample_steps(30, 10))
+    estimated = shape.limited(30, 10)
+    distances = SurfaceDistances(estimated)
+    points = SurfacePoints.at_vertices(shape.mesh, estimated.samples)
+    distances.prepare(points)
+    true = shape.solver.distances(estimated.samples)[:, estimated.samples] / shape.scale
+    np.testing.assert_allclose(distances.between(points), (true + true.T) / 2, atol=1e-5)
+
+
 def test_embedded_distances_are_straight_through_their_space():
     mesh = TriangleMesh(*torus(16, 8))
     coordinates = np.random.default_rng(0).standard_normal((mesh.vertex_count, 5))

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Samples of a shape: distances from the first are measured, and from the others estimated."""
+
+import numpy as np
+import pytest
+
+from engine import Shape, TriangleMesh
+from engine.progress import run
+from tests.shapes import creature, icosphere, irregular, subdivided
+
+COUNT, MEASURED = 60, 12
+
+
+def sampled(mesh, *asked):
+    """Make a shape that was asked for samples in turn."""
+    shape = Shape(mesh)
+    for each in asked:
+        run(shape.sample_steps(*each))
+    return shape
+
+
+def meshes():
+    return {
+        "creature": TriangleMesh(*creature(0.5, 11)[:2]),
+        "sphere": TriangleMesh(*irregular(*icosphere(9), seed=2)),
+        "grid": TriangleMesh(*subdivided(*icosphere(1), 9)),
+    }
+
+
+@pytest.fixture(params=meshes())
+def mesh(request):
+    return meshes()[request.param]
+
+
+def test_the_first_are_measured_and_the_others_estimated(mesh):
+    shape = sampled(mesh, (COUNT, MEASURED)).limited(COUNT, MEASURED)
+    assert (shape.sample_count, shape.measured_count) == (COUNT, MEASURED)
+    true = shape.solver.distances(shape.samples) / shape.scale
+    np.testing.assert_allclose(shape.sample_rows[:MEASURED], true[:MEASURED], rtol=1e-6)
+    errors = shape.sample_rows[MEASURED:] - true[MEASURED:]
+    assert abs(errors.mean()) < 0.008
+    assert np.abs(errors).mean() < 0.02
+    lengths = shape.solver.path_lengths(shape.samples) / shape.scale
+    assert (lengths > true - 1e-9).all()
+    assert np.abs(lengths - true).mean() > 1.5 * np.abs(errors).mean()  # what is gained by comparing them
+
+
+def test_distances_between_samples_are_measured_where_they_can_be(mesh):
+    shape = sampled(mesh, (COUNT, MEASURED)).limited(COUNT, MEASURED)
+    between = shape.sample_distances
+    np.testing.assert_array_equal(between, between.T)
+    np.testing.assert_array_equal(between.diagonal(), 0)
+    measured = shape.sample_rows[:MEASURED, shape.samples[MEASURED:]]
+    np.testing.assert_array_equal(between[:MEASURED, MEASURED:], measured)
+
+
+def test_what_was_asked_for_before_does_not_matter(mesh):
+    alone = sampled(mesh, (COUNT, MEASURED)).limited(COUNT, MEASURED)
+    others = [(30,), (COUNT + 5, 40)], [(COUNT + 20,)], [(25, 2), (COUNT, 50)]
+    for before in others:
+        shape = sampled(mesh, *before, (COUNT, MEASURED))
+        view = shape.limited(COUNT, MEASURED)
+        np.testing.assert_array_equal(view.samples, alone.samples)
+        np.testing.assert_array_equal(view.sample_rows, alone.sample_rows)
+        assert view.measured_count == MEASURED
+        run(shape.sample_steps(COUNT))
+        assert shape.limited(COUNT).measured_count == COUNT
+        np.testing.assert_array_equal(shape.limited(COUNT).sample_rows, sampled(mesh, (COUNT,)).sample_rows)
+
+
+def test_fewer_of_the_estimated_ones_are_the_first_of_them(mesh):
+    shape = sampled(mesh, (COUNT, MEASURED)).limited(COUNT, MEASURED)
+    for count, measured in ((30, MEASURED), (8, 8)):
+        fewer = shape.limited(count)
+        assert (fewer.sample_count, fewer.measured_count) == (count, measured)
+        np.testing.assert_array_equal(fewer.sample_rows, shape.sample_rows[:count])
+
+
+def test_of_few_vertices_all_are_measured():
+    mesh = TriangleMesh(*icosphere(1))
+    shape = sampled(mesh, (200, 100))
+    assert shape.limited(200, 100) is shape
+    assert shape.sample_count == shape.measured_count == mesh.vertex_count
