@@ -37,10 +37,13 @@ if TYPE_CHECKING:
     from .prepared_surface import PreparedSurface
     from .registration import Stage
 
-__all__ = ["DenseMatch", "dense_match_steps", "densify", "densify_steps"]
+__all__ = ["MEASURED", "DenseMatch", "dense_match_steps", "densify", "densify_steps"]
 
-_SAMPLES, _MEASURED = 512, 64
-"""Samples of each surface that hypotheses are compared at, and those from which distances are measured."""
+_SAMPLES = 512
+"""Samples of each surface that hypotheses are compared at."""
+
+MEASURED = 64
+"""Of how many of them, at least, the distances are measured, and not estimated."""
 
 _POLISHED = 40_000
 """Vertices up to which meshes that have a proxy are registered once more in full resolution."""
@@ -108,14 +111,14 @@ def densify_steps(
     y = yield from within(_shape_steps(target, "target"), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
-    yield from within(x.sample_steps(_SAMPLES, _MEASURED), 0.2, 0.28)
-    yield from within(y.sample_steps(_SAMPLES, _MEASURED), 0.28, 0.34)
+    yield from within(x.sample_steps(_SAMPLES, MEASURED), 0.2, 0.28)
+    yield from within(y.sample_steps(_SAMPLES, MEASURED), 0.28, 0.34)
     yield from within(x.spectrum_steps(EIGENPAIRS), 0.34, 0.35)
     mirrored = _mirrors(x, y, start)
     # Seen in a mirror, the source is matched by a map that keeps the orientation.
     seen = x.reflected() if mirrored else x
     involution = mirrored and x is y
-    shapes = seen.limited(_SAMPLES, _MEASURED), y.limited(_SAMPLES, _MEASURED)
+    shapes = seen.limited(_SAMPLES, MEASURED), y.limited(_SAMPLES, MEASURED)
     steps = registered_pair_steps(*shapes, (start,), search=mirrored, as_they_are=mirrored)
     pair = yield from within(steps, 0.35, 0.8)
     dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from .dense_map import registered_pair_steps
-from .dense_match import DenseMatch, dense_match_steps
+from .dense_match import MEASURED, DenseMatch, dense_match_steps
 from .errors import MatchError
 from .handle_cutting import evened_steps
 from .hierarchy import refine_steps
@@ -125,9 +125,9 @@ def match_steps(
     if known is not None:
         x, y = x.starting_with(known.source.matched), y.starting_with(known.target.matched)
     samples = max(3 * settings.samples // 4 if settings.dense else settings.samples, 2 * settings.points)
-    # A dense map is decided on by more than distances: from the points that are matched they are measured, from the
+    # A dense map is decided on by more than distances: from the points that are matched they are measured, from most
     # other samples estimated.
-    measured = settings.points if settings.dense else None
+    measured = max(settings.points, MEASURED) if settings.dense else None
     sparse_end = 0.5 if settings.dense else 1.0
     yield from within(x.sample_steps(samples, measured), 0.06, 0.13 if settings.dense else 0.3)
     yield from within(
