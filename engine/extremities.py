@@ -43,7 +43,7 @@ def limb_tips(shape: Shape) -> NDArray[np.int64]:
     return tips[np.argsort(-means[tips], kind="stable")][:_MOST_TIPS]
 
 
-def spread_extremities(shape: Shape, count: int, apart: float) -> NDArray[np.int64]:
+def spread_extremities(shape: Shape, count: int, apart: float, *, filled: bool = True) -> NDArray[np.int64]:
     """Choose tips of different limbs; where there are too few, places far from all of them.
 
     Parameters
@@ -54,6 +54,8 @@ def spread_extremities(shape: Shape, count: int, apart: float) -> NDArray[np.int
         How many are wanted at most.
     apart : float
         Least distance between two tips, in sqrt(area): those of ears and of nose, or of toes, are nearer.
+    filled : bool
+        Whether other places are taken at all.
 
     Returns
     -------
@@ -62,7 +64,7 @@ def spread_extremities(shape: Shape, count: int, apart: float) -> NDArray[np.int
     """
     distances = shape.sample_distances
     chosen: list[int] = []
-    for places, least in ((limb_tips(shape), apart), (np.arange(len(distances)), _FILLED)):
+    for places, least in ((limb_tips(shape), apart), (np.arange(len(distances) if filled else 0), _FILLED)):
         for place in places:
             if len(chosen) < count and (distances[place, chosen] > least).all():
                 chosen.append(int(place))

@@ -10,9 +10,9 @@ import numpy as np
 
 from .extremities import spread_extremities
 from .extremity_search import beam_matchings
-from .functional_maps import PointMaps, fit_functional_maps, nearest_both_ways, refine_bijective_steps, spectral_sizes
+from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
+from .lifted_matchings import LiftedMatchings
 from .map_scores import map_orientation, spectral_terms
-from .orientation import signed_areas
 from .progress import Progress, Steps, within
 
 if TYPE_CHECKING:
@@ -30,7 +30,9 @@ _FARTHEST = ((5, 9, {1: 20, -1: 8}), (6, 10, {1: 40, -1: 12}))
 # The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
 _TIPS = (6, 9, {1: 20, -1: 8})
 _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
-_SIGNED_WEIGHT = 1.0  # of signed areas beside distances, when matchings of extremities are carried over the surface
+# Of bodies with at least so many limbs all are matched: how many matchings are offered, how many of those that fit best
+# are improved, and how many different ones are followed up at most.
+_MANY_LIMBS, _OFFERED, _STARTS, _ENDS = 8, 400, 16, 8
 _SIZES = spectral_sizes(15, 30, 5)  # not from fewer: those would turn even true matchings front to back
 _ORIENTED = 0.3  # how much more credible a map of one orientation throughout is
 _VARIANTS = {1: (3, 2, 1, 1), -1: (2, 1)}  # how many of each group of like maps are followed up, by orientation
@@ -100,16 +102,49 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     searches = _searches(x, y)
     total, done = sum(kept[sign] for *_, kept in searches for sign in signs), 0
     for of_x, of_y, kept in searches:
-        distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
-        matchings = beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=max(kept.values()))
-        directions_y = y.directions(of_y)
-        rows_x = _lifting_rows(x, of_x, x.directions(of_x), 1)
+        offered = _matchings(x, y, of_x, of_y, max(kept.values()))
+        lifted = LiftedMatchings(x, y, of_x, of_y)
         for sign in signs:
-            for images in matchings.images[: kept[sign]]:
-                points = nearest_both_ways(rows_x, _lifting_rows(y, of_y[images], directions_y[:, images], sign))
-                leads.append((yield from within(_refined_steps(x, y, points), done / total, (done + 1) / total)))
+            for images in offered[: kept[sign]]:
+                steps = _refined_steps(x, y, lifted.maps(images, sign))
+                leads.append((yield from within(steps, done / total, (done + 1) / total)))
                 done += 1
-    return _candidates(y, leads)
+    chosen = _candidates(y, leads)
+    for sign in signs:
+        # Bodies with many limbs are rare: the bar has come to its end before.
+        chosen += yield from within(_many_limbs_steps(x, y, sign), 1.0, 1.0)
+    return chosen
+
+
+def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLead]]:
+    """Match all limbs of bodies that have many of them, such as the arms of an octopus or the legs of an ant.
+
+    Distances between tips hardly tell which of eight arms is which, and a body that is turned by one arm is nearly the
+    same.  So matchings are chosen by how well they carry over to the whole surfaces, and improved by exchanges.
+    """
+    apart = _TIPS_APART[0]
+    of_x, of_y = (spread_extremities(d.shape, d.coarse_count, apart, filled=False) for d in (x, y))
+    if min(len(of_x), len(of_y)) < _MANY_LIMBS:
+        return []
+    of_x = of_x[: len(of_y)]
+    lifted = LiftedMatchings(x, y, of_x, of_y)
+    starts = lifted.best(_matchings(x, y, of_x, of_y, _OFFERED), sign, _STARTS)
+    better, leads = [], []
+    for images in starts:
+        better.append(lifted.exchanged(images, sign))
+        yield Progress(len(better) / len(starts), "Comparing maps")
+    for images in lifted.best(np.array(better), sign, _ENDS):
+        lead = yield from _refined_steps(x, y, lifted.maps(images, sign))
+        leads.append(lead)
+    return leads
+
+
+def _matchings(
+    x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64], kept: int
+) -> NDArray[np.int64]:
+    """Match coarse samples (m,) to coarse samples (n,) in the `kept` best ways: positions of images (kept, m)."""
+    distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
+    return beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=kept).images
 
 
 def _searches(x: MapDomain, y: MapDomain) -> list[_Search]:
@@ -199,15 +234,3 @@ def _dissimilarity(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: ND
     difference = x.extremity_descriptors(of_x)[:, None] - y.extremity_descriptors(of_y)
     root = np.sqrt(np.square(difference).mean(axis=2))
     return root / max(float(np.median(root)), np.finfo(float).tiny)
-
-
-def _lifting_rows(
-    domain: MapDomain, extremities: NDArray[np.int64], directions: NDArray[np.float64], sign: int
-) -> NDArray[np.float64]:
-    """Describe the coarse samples by their distances to extremities (m,), and on which side of each pair they are."""
-    distances = domain.shape.sample_distances[:, extremities]
-    sides = signed_areas(directions)
-    columns = [distances / np.sqrt(distances.shape[1])]
-    if sides.shape[1]:
-        columns.append(sign * _SIGNED_WEIGHT * sides / np.sqrt(sides.shape[1]))
-    return np.column_stack(columns)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bodies for the tests of symmetry and retrieval, made from the creature of `tests.shapes`."""
+"""Bodies for tests of symmetry, retrieval and many limbs, made as or from the creature of `tests.shapes`."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from tests.shapes import creature, irregular, posed
+from tests.shapes import bent, capsule_surface, creature, irregular, posed
 
 
 def mirrored_body(pose=0.0, resolution=13, seed=None):
@@ -48,6 +48,49 @@ def relative_of_creature(legs=1.0, tail=1.0, pose=0.0, resolution=11, turn=0.0):
     rest[:, 2] = np.where(rest[:, 2] < -0.3, -0.3 + legs * (rest[:, 2] + 0.3), rest[:, 2])
     rest[:, 0] = np.where(rest[:, 0] < -0.85, -0.85 + tail * (rest[:, 0] + 0.85), rest[:, 0])
     return posed(rest, pose), triangles
+
+
+def octopus(pose=0, resolution=9, turn=0.0, arms=8):
+    """Round body with a head on top, and around it many arms that are almost alike.
+
+    Parameters
+    ----------
+    pose : int
+        Seed of the bends of the arms; 0 for straight ones.
+    resolution : int
+        Cells of the meshing grid per unit length; the body is about 4 wide.
+    turn : float
+        Angle in radians by which that grid is turned: another meshing.
+    arms : int
+        How many arms.
+
+    Returns
+    -------
+    vertices : (n, 3) array of float
+        Positions in the pose.
+    triangles : (m, 3) array of int
+        The same in all poses.
+    rest : (n, 3) array of float
+        Positions with straight arms, which name the points of the surface.
+    """
+    angles = 2 * np.pi * np.arange(arms) / arms
+    out = np.stack([np.cos(angles), np.sin(angles), np.zeros(arms)], axis=1)
+    lengths = 2.6 + 0.15 * np.cos(3 * angles + 1)
+    thickness = 0.11 + 0.01 * np.cos(2 * angles)
+    limbs = [
+        ((0, 0, 0), tuple(length * axis), 0.17, end) for axis, length, end in zip(out, lengths, thickness, strict=True)
+    ]
+    capsules = [*limbs, ((0.0, 0.0, 0.0), (0.1, 0.0, 0.9), 0.5, 0.35)]
+    rest, triangles = capsule_surface(capsules, [[-3.0, -3.0, -0.8], [3.0, 3.0, 1.5]], resolution, turn)
+    vertices = rest.copy()
+    bends = np.random.default_rng(pose).uniform(-1.5, 1.5, (arms, 2)) * (pose > 0)
+    nearest = (rest @ out.T).argmax(axis=1)
+    for arm, (axis, both) in enumerate(zip(out, bends, strict=True)):
+        beyond = (nearest == arm) & (rest @ axis > 0.9) & (rest[:, 2] < 0.5)
+        for towards, angle in zip((np.array([0.0, 0.0, 1.0]), np.cross([0, 0, 1], axis)), both, strict=True):
+            if angle:
+                vertices[beyond] = bent(vertices[beyond] - 0.9 * axis, axis, towards, 1.5, angle) + 0.9 * axis
+    return vertices, triangles, rest
 
 
 def _half(points, triangles):

@@ -217,8 +217,32 @@ def creature(pose=0.0, resolution=18, turn=0.0):
     rest : (n, 3) array of float
         Positions at rest, which name the points of the surface: the truth between different meshings.
     """
-    frame = rotation([1.0, 2.0, 3.0], turn)
-    box = np.array([[-1.4, -0.5, -1.3], [1.5, 0.5, 0.9]])
+    rest, triangles = capsule_surface(_CAPSULES, [[-1.4, -0.5, -1.3], [1.5, 0.5, 0.9]], resolution, turn)
+    return posed(rest, pose), triangles, rest
+
+
+def capsule_surface(capsules, box, resolution, turn=0.0):
+    """Mesh a smooth union of capsules.
+
+    Parameters
+    ----------
+    capsules : sequence of tuple
+        Start, end, and the radii there.
+    box : (2, 3) array_like
+        Lowest and highest coordinates around them.
+    resolution : int
+        Cells of the meshing grid per unit length.
+    turn : float
+        Angle in radians by which the grid is turned.
+
+    Returns
+    -------
+    vertices : (n, 3) array of float
+        Points of the surface.
+    triangles : (m, 3) array of int
+        Their triangles.
+    """
+    frame, box = rotation([1.0, 2.0, 3.0], turn), np.asarray(box)
     corners = np.stack(np.meshgrid(*box.T, indexing="ij"), axis=-1).reshape(-1, 3) @ frame
     low, high = corners.min(axis=0), corners.max(axis=0)
     # Now and then two sheets of the net touch in an edge: shift the grid until none do.
@@ -230,17 +254,17 @@ def creature(pose=0.0, resolution=18, turn=0.0):
         points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1) @ frame.T
         near = ((points > box[0]) & (points < box[1])).all(axis=-1)
         values = np.ones(near.shape)
-        values[near] = _body(points[near])
-        rest, triangles = _surface_net(points, values)
+        values[near] = _depth(capsules, points[near])
+        vertices, triangles = _surface_net(points, values)
         sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-        if (np.unique(sides @ [len(rest), 1], return_counts=True)[1] == 2).all():
+        if (np.unique(sides @ [len(vertices), 1], return_counts=True)[1] == 2).all():
             break
     for _ in range(3):  # onto the surface itself, along the gradient
         step = 1e-4
-        value = _body(rest)
-        gradient = np.stack([_body(rest + step * axis) - value for axis in np.eye(3)], axis=1) / step
-        rest -= gradient * (value / np.maximum((gradient**2).sum(axis=1), 0.1))[:, None]
-    return posed(rest, pose), triangles, rest
+        value = _depth(capsules, vertices)
+        gradient = np.stack([_depth(capsules, vertices + step * axis) - value for axis in np.eye(3)], axis=1) / step
+        vertices -= gradient * (value / np.maximum((gradient**2).sum(axis=1), 0.1))[:, None]
+    return vertices, triangles
 
 
 # Ends, radii at the ends: torso, neck, head, snout, two unequal ears, tail, four legs of different lengths, a hump.
@@ -275,10 +299,10 @@ _JOINTS = (
 )
 
 
-def _body(points):
-    """Smooth union of the capsules at points (k, 3): negative inside, near the surface about the distance."""
+def _depth(capsules, points):
+    """Smooth union of capsules at points (k, 3): negative inside, near the surface about the distance."""
     softness, total = 0.03, np.zeros(len(points))
-    for start, end, first, last in _CAPSULES:
+    for start, end, first, last in capsules:
         axis = np.subtract(end, start)
         part = np.clip((points - start) @ axis / (axis @ axis), 0, 1)
         distance = np.linalg.norm(points - start - part[:, None] * axis, axis=1) - (first + (last - first) * part)
@@ -295,11 +319,11 @@ def posed(rest, pose):
         if leg is not None:
             beyond &= (rest[:, 0] * leg[0] > 0) & (rest[:, 1] * leg[1] > 0)
         if pose * angle:
-            points[beyond] = _bent(points[beyond] - start, along, towards, length, pose * angle) + start
+            points[beyond] = bent(points[beyond] - start, along, towards, length, pose * angle) + start
     return points
 
 
-def _bent(points, along, towards, length, angle):
+def bent(points, along, towards, length, angle):
     """Bend a beam from the origin on, to an arc that turns by `angle` from `along` to `towards`, and straight on."""
     s, u = points @ along, points @ towards
     turned = angle * np.clip(s / length, 0, 1)

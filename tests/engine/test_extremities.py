@@ -74,6 +74,14 @@ def test_limbs_of_other_lengths_have_the_same_extremities(legs, tail):
     assert cKDTree(chosen).query(ends(vertices))[0].max() < 0.15 * np.sqrt(made.mesh.area)
 
 
+def test_without_filling_up_only_tips_are_chosen(body):
+    made, _ = body
+    tips = spread_extremities(made, 99, 0.4, filled=False)
+    assert set(tips) <= set(limb_tips(made))
+    np.testing.assert_array_equal(tips, spread_extremities(made, len(tips), 0.4))
+    assert len(spread_extremities(made, 99, 0.4)) > len(tips)
+
+
 def test_extremities_are_different_places_and_as_many_as_there_is_room_for():
     ball = shape(*icosphere(6))
     chosen = spread_extremities(ball, 6, 0.4)

@@ -7,11 +7,12 @@ from engine.functional_maps import PointMaps
 from engine.map_domain import MapDomain
 from engine.map_search import MapLead, distinct_leads, rough_maps_steps
 from engine.progress import run
-from tests.shapes import creature
+from tests.bodies import octopus
+from tests.shapes import creature, rotation
 
 
-def domain(pose):
-    shape = Shape(TriangleMesh(*creature(pose, 9)[:2]))
+def domain_of(vertices, triangles):
+    shape = Shape(TriangleMesh(vertices, triangles))
     run(shape.sample_steps(300))
     run(shape.spectrum_steps(60))
     return MapDomain(shape, 60)
@@ -19,7 +20,7 @@ def domain(pose):
 
 @pytest.fixture(scope="module")
 def pair():
-    return domain(0.0), domain(1.0)
+    return tuple(domain_of(*creature(pose, 9)[:2]) for pose in (0.0, 1.0))
 
 
 def error(x, y, lead, sign=1):
@@ -68,3 +69,33 @@ def test_the_best_of_equal_maps_is_kept_and_hopeless_ones_are_not(pair):
     assert [each.score for each in kept] == [1, 1.5, 5]
     assert [each.score for each in distinct_leads(y, leads, 0.05, 3.0, {1: 1})] == [1]
     assert [each.score for each in distinct_leads(y, leads, 0.05, 30.0, {1: 3})] == [1, 1.5, 9]
+
+
+@pytest.fixture(scope="module")
+def octopuses():
+    """Two poses and meshings of a body with eight arms: domains, and places at rest."""
+    bodies = [octopus(1, 8), octopus(2, 8, turn=0.6)]
+    return [domain_of(*body[:2]) for body in bodies], [body[2] for body in bodies]
+
+
+def test_of_many_arms_any_may_be_the_first(octopuses, monkeypatch):
+    (x, y), (rest_x, rest_y) = octopuses
+    places = rest_x[x.vertices[: x.coarse_count]]
+
+    def turns():
+        """By how many arms the proposed maps turn the body: only those that are near to such a turn."""
+        found = set()
+        for lead in run(rough_maps_steps(x, y, (1,))):
+            images = rest_y[y.vertices[lead.points.on_y]]
+            gaps = [
+                np.linalg.norm(images - places @ rotation([0, 0, 1], k * np.pi / 4).T, axis=1).mean() for k in range(8)
+            ]
+            if min(gaps) < 0.3:
+                found.add(int(np.argmin(gaps)))
+        return found
+
+    found = turns()
+    assert 0 in found
+    assert len(found) >= 3
+    monkeypatch.setattr("engine.map_search._MANY_LIMBS", 99)
+    assert len(turns()) < len(found)
