@@ -29,8 +29,8 @@ __all__ = ["Shape"]
 
 _CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fingers wide
 
-_TAKEN_TOGETHER = 100
-"""Samples that are taken, or from which paths are followed, in one step."""
+_TAKEN_TOGETHER, _FOLLOWED_TOGETHER = 100, 40
+"""Samples that are taken, and from which paths are followed, in one step."""
 
 _COMPARED = 8
 """Samples by whose distances it is found how much longer paths are."""
@@ -158,8 +158,8 @@ class Shape:
                 yield Progress((first + len(block)) / total, "Measuring distances")
             self._rows = rows
             self._forget_samples()
-        for start in range(0, len(followed), _TAKEN_TOGETHER):
-            part = followed[start : start + _TAKEN_TOGETHER]
+        for start in range(0, len(followed), _FOLLOWED_TOGETHER):
+            part = followed[start : start + _FOLLOWED_TOGETHER]
             lengths = self.solver.path_lengths([self._sampler.samples[number] for number in part]) / self.scale
             self._paths.update(zip(part, lengths.astype(np.float32), strict=True))
             yield Progress((len(new) + start + len(part)) / total, "Measuring distances")
