@@ -11,10 +11,11 @@ import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from ...engine import HierMatchError
-from ..access import state_of
+from ..access import state_of, view_layer_of
+from ..halves import find_keyed
 from ..match_exchange import collect_match
 from ..match_file import save_match
-from ..pair import find_pair
+from ..pair import find_pair, selected_meshes
 from ..translated_text import translated
 
 if TYPE_CHECKING:
@@ -45,12 +46,18 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
     )
     source: bpy.props.StringProperty(
         name="Source",
-        description="Name of one of the two objects; if empty, the one picked in the panel or else the active object",
+        description=(
+            "Name of one of the two objects; if empty, the one picked in the panel, or the active object, or one of "
+            "the match that the panel shows"
+        ),
         options={"SKIP_SAVE"},
     )
     target: bpy.props.StringProperty(
         name="Target",
-        description="Name of the other object; if empty, the one picked in the panel or else the other selected mesh",
+        description=(
+            "Name of the other object; if empty, the one picked in the panel, or the other selected mesh, or the other "
+            "one of the match that the panel shows"
+        ),
         options={"SKIP_SAVE"},
     )
     prefix: bpy.props.StringProperty(
@@ -61,13 +68,26 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Read the match and write the file."""
-        state = state_of(context)
         path = Path(bpy.path.abspath(self.filepath))
         try:
-            source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
-            save_match(collect_match(source, target, self.prefix), path)
+            source, target, prefix = self._match(context)
+            save_match(collect_match(source, target, prefix), path)
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         self.report({"INFO"}, translated(f'Exported the match of "{source.name}" and "{target.name}" to "{path.name}"'))
         return {"FINISHED"}
+
+    def _match(self, context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object, str]:
+        """Find the two objects of the match that is meant, and its prefix."""
+        state = state_of(context)
+        named, picked, summary = (self.source, self.target), (state.source, state.target), state.summary
+        shown = summary.key and self.prefix in ("", summary.prefix)
+        if shown and not any((*named, *picked)) and len(selected_meshes(context)) < 2:
+            roles = ("target", "source") if summary.swapped else ("source", "target")
+            source, target = (
+                find_keyed(view_layer_of(context), summary.key, summary.prefix, role, name).obj
+                for role, name in zip(roles, (summary.source, summary.target), strict=True)
+            )
+            return source, target, summary.prefix
+        return *find_pair(context, named, picked), self.prefix

@@ -329,11 +329,18 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Filter": "フィルター",
     "Which files the browser lists": "ファイルブラウザーに表示するファイル",
-    "Name of one of the two objects; if empty, the one picked in the panel or else the active object": (
-        "二つのオブジェクトの一方の名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
+    (
+        "Name of one of the two objects; if empty, the one picked in the panel, or the active object, or one of "
+        "the match that the panel shows"
+    ): (
+        "二つのオブジェクトの一方の名前。空ならパネルで選んだもの、アクティブオブジェクトか、"
+        "パネルに表示中のマッチングの一方"
     ),
-    "Name of the other object; if empty, the one picked in the panel or else the other selected mesh": (
-        "もう一方のオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ"
+    (
+        "Name of the other object; if empty, the one picked in the panel, or the other selected mesh, or the other "
+        "one of the match that the panel shows"
+    ): (
+        "もう一方のオブジェクトの名前。空ならパネルで選んだもの、選択中のもう一つのメッシュか、パネルに表示中のマッチングのもう一方"
     ),
     "What the names start with that the match wrote; if empty, the one match that the objects carry": (
         "マッチングが書き込んだ名前の先頭。空なら両オブジェクトが持つ唯一のマッチング"

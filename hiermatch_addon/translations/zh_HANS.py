@@ -274,12 +274,14 @@ MESSAGES: Final[dict[str, str]] = {
     ): "将两个网格所带的匹配连同稠密映射写入文件，供其他程序使用或再次导入",
     "Filter": "过滤器",
     "Which files the browser lists": "文件浏览器列出哪些文件",
-    "Name of one of the two objects; if empty, the one picked in the panel or else the active object": (
-        "两个物体之一的名称；为空时使用面板中选取的物体，否则使用活动物体"
-    ),
-    "Name of the other object; if empty, the one picked in the panel or else the other selected mesh": (
-        "另一个物体的名称；为空时使用面板中选取的物体，否则使用另一个选中的网格"
-    ),
+    (
+        "Name of one of the two objects; if empty, the one picked in the panel, or the active object, or one of "
+        "the match that the panel shows"
+    ): "两个物体之一的名称；为空时使用面板中选取的物体、活动物体，或面板所示匹配的两个物体之一",
+    (
+        "Name of the other object; if empty, the one picked in the panel, or the other selected mesh, or the other "
+        "one of the match that the panel shows"
+    ): ("另一个物体的名称；为空时使用面板中选取的物体、另一个选中的网格，或面板所示匹配的另一个物体"),
     "What the names start with that the match wrote; if empty, the one match that the objects carry": (
         "匹配所写名称的开头；为空时使用两个物体所带的唯一匹配"
     ),

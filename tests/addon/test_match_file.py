@@ -229,3 +229,18 @@ def test_operators_export_and_import(dense_pair, tmp_path):
         bpy.ops.hiermatch.export_match(filepath=str(tmp_path / "a.txt"), source="Source", target="Target")
     with pytest.raises(RuntimeError, match="Prefix is empty"):
         bpy.ops.hiermatch.import_match(filepath=path, source="Source", target="Target", prefix="")
+
+
+@pytest.mark.usefixtures("dense_pair")
+def test_without_a_selection_the_match_that_the_panel_shows_is_exported(tmp_path):
+    shown, named = (str(tmp_path / f"{name}.npz") for name in ("shown", "named"))
+    bpy.ops.object.select_all(action="DESELECT")
+    state = bpy.context.scene.hiermatch
+    state.source = state.target = None
+    assert bpy.ops.hiermatch.export_match(filepath=shown) == {"FINISHED"}
+    assert bpy.ops.hiermatch.export_match(filepath=named, source="Source", target="Target") == {"FINISHED"}
+    with np.load(shown) as first, np.load(named) as second:
+        assert set(first) == set(second)
+        assert all(np.array_equal(first[name], second[name]) for name in first)
+    with pytest.raises(RuntimeError, match="It is open which mesh is the Source"):
+        bpy.ops.hiermatch.export_match(filepath=shown, prefix="Other")
