@@ -10,10 +10,10 @@ from scipy.sparse import coo_array, csr_array, diags_array, eye_array
 
 from .closest_points import ClosestPoints
 from .errors import MatchError
-from .progress import Progress, Steps
+from .progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .torn_patches import NearVertices, with_patches_mended
-from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle
+from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -145,7 +145,8 @@ def lift_steps(
         )
     yield Progress(0.9, _LABEL)
     if untangled:
-        untangle(source, target, triangles, barycentric, search=lift.search)
+        untangling = untangle_steps(source, target, triangles, barycentric, search=lift.search)
+        yield from within(untangling, 0.9, 1.0)
     return SurfacePoints.from_barycentric(target, triangles, barycentric)
 
 

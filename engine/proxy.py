@@ -14,10 +14,10 @@ from scipy.sparse.linalg import splu
 from .closest_points import ClosestPoints
 from .dual_triangulation import manifold_part
 from .mesh import TriangleMesh
-from .progress import Progress, Steps
+from .progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .surface_cells import SurfaceCells, grid_labels, nearest_members
-from .voronoi_regions import VoronoiRegions, spread_regions
+from .voronoi_regions import VoronoiRegions, spread_regions_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -120,7 +120,7 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
             closed, grid_labels(closed, _CELL_SIZE * float(np.sqrt(closed.area / (_CELLS * count))))
         )
         yield Progress(start + 0.2, "Simplifying the mesh")
-        regions = spread_regions(cells, count)
+        regions = yield from within(spread_regions_steps(cells, count), start + 0.2, start + 0.25)
         yield Progress(start + 0.25, "Simplifying the mesh")
         regions = regions.repaired(closed)
         kept = (

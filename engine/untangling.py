@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
+from .progress import Progress, Steps
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from .closest_points import ClosestPoints
     from .mesh import TriangleMesh
 
-__all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle"]
+__all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle_steps"]
 
 _ROUNDS = 11  # none of them is the last after averaging, which others have to put right
 _AVERAGED = 4  # every so many rounds, what is still flipped is averaged first
@@ -177,14 +178,14 @@ def heaviest_corners(
     return mesh.triangles[triangles, corner]
 
 
-def untangle(
+def untangle_steps(
     source: TriangleMesh,
     target: TriangleMesh,
     triangles: NDArray[np.int64],
     barycentric: NDArray[np.float64],
     *,
     search: ClosestPoints,
-) -> None:
+) -> Steps[None]:
     r"""Turn flipped triangles of a map back, in place.
 
     The vertices x of the flipped triangles and their neighbours are moved to where
@@ -205,6 +206,11 @@ def untangle(
         The point of the target that each vertex of the source is mapped to.
     search : ClosestPoints
         The search on the target.
+
+    Yields
+    ------
+    Progress
+        After each round; meanwhile the arrays hold what was reached.
 
     Notes
     -----
@@ -234,6 +240,7 @@ def untangle(
         )
         triangles[members], barycentric[members] = found.triangles, found.barycentric
         flipped = flipped_triangles(source, target, triangles, barycentric, around)
+        yield Progress((number + 1) / _ROUNDS, "Mapping every vertex")
 
 
 def _opened(image: _Image, rest: NDArray[np.float64], free: NDArray[np.int64]) -> NDArray[np.float64]:

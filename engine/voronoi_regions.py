@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from .dual_triangulation import DualTriangulation, dual_triangulation
+from .progress import Progress, Steps
 from .sizing_field import vertex_density
 from .surface_cells import SurfaceCells, nearest_members
 
@@ -19,8 +20,9 @@ if TYPE_CHECKING:
 
     from .mesh import TriangleMesh
 
-__all__ = ["VoronoiRegions", "spread_regions"]
+__all__ = ["VoronoiRegions", "spread_regions_steps"]
 
+_LABEL = "Simplifying the mesh"
 _SPACING = 0.75  # least distance of seeds, in units of sqrt(area / vertices)
 _CANDIDATES = 8.0  # cells that may become seeds, for each one that will
 _LLOYD_STEPS = 2
@@ -98,7 +100,7 @@ class VoronoiRegions:
         return regions
 
 
-def spread_regions(cells: SurfaceCells, count: int) -> VoronoiRegions:
+def spread_regions_steps(cells: SurfaceCells, count: int) -> Steps[VoronoiRegions]:
     """Divide a surface into about `count` regions, smaller ones where it bends; see `vertex_density`.
 
     Parameters
@@ -107,8 +109,19 @@ def spread_regions(cells: SurfaceCells, count: int) -> VoronoiRegions:
         The surface.
     count : int
         Number of regions; a surface of many parts may have more.
+
+    Yields
+    ------
+    Progress
+        In between.
+
+    Returns
+    -------
+    VoronoiRegions
+        The regions.
     """
     density = vertex_density(cells)
+    yield Progress(0.2, _LABEL)
     seeds = _poisson_disk(cells, count, density)
     # A part too small for a seed of its own still needs one.
     components = cells.component_labels
@@ -116,13 +129,15 @@ def spread_regions(cells: SurfaceCells, count: int) -> VoronoiRegions:
     seeds = np.concatenate([seeds, first[~np.isin(parts, components[seeds])]])
     # Centres of such weights keep the density as it is: regions shrink by the fourth root of what their cells weigh.
     weights = cells.areas * np.square(density)
-    for _ in range(_LLOYD_STEPS):
+    for number in range(_LLOYD_STEPS):
+        yield Progress(0.5 + 0.5 * number / (_LLOYD_STEPS + 1), _LABEL)
         _, labels = _nearest_seeds(cells, seeds)
         sums = np.bincount(labels, weights, len(seeds))
         moments = [np.bincount(labels, weights * column, len(seeds)) for column in cells.positions.T]
         centres = np.stack(moments, axis=1) / np.maximum(sums, np.finfo(float).tiny)[:, None]
         offsets = cells.positions - centres[labels]
         seeds = nearest_members(labels, np.einsum("cd,cd->c", offsets, offsets), len(seeds))
+    yield Progress(1 - 0.5 / (_LLOYD_STEPS + 1), _LABEL)
     return VoronoiRegions.around(cells, seeds)
 
 

@@ -5,7 +5,15 @@ import numpy as np
 
 from engine import SurfaceMap, SurfacePoints, TriangleMesh
 from engine.closest_points import ClosestPoints
-from engine.untangling import flipped_triangles, follow_neighbours, heaviest_corners, located, torn_vertices, untangle
+from engine.progress import run
+from engine.untangling import (
+    flipped_triangles,
+    follow_neighbours,
+    heaviest_corners,
+    located,
+    torn_vertices,
+    untangle_steps,
+)
 from tests.shapes import icosphere, permuted, plane
 
 
@@ -59,7 +67,7 @@ def test_a_knot_is_untied_and_the_rest_left_alone():
     triangles[near], barycentric[near] = triangles[moved], barycentric[moved]
     before = flipped_triangles(source, target, triangles, barycentric)
     assert len(before) > 20
-    untangle(source, target, triangles, barycentric, search=search)
+    run(untangle_steps(source, target, triangles, barycentric, search=search))
     assert len(flipped_triangles(source, target, triangles, barycentric)) == 0
     far = np.linalg.norm(source.vertices - source.vertices[700], axis=1) > 0.8
     np.testing.assert_array_equal(triangles[far], found.triangles[far])
@@ -72,7 +80,7 @@ def test_a_map_in_order_is_not_touched():
     search = ClosestPoints(target)
     found = search.nearest(source.vertices)
     triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
-    untangle(source, target, triangles, barycentric, search=search)
+    run(untangle_steps(source, target, triangles, barycentric, search=search))
     np.testing.assert_array_equal(triangles, found.triangles)
     np.testing.assert_array_equal(barycentric, found.barycentric)
 
@@ -101,7 +109,7 @@ def test_what_is_untied_is_what_the_map_calls_flipped():
     flipped = np.flatnonzero(folded.face_orientations(source, target) < 0)
     assert len(flipped)
     np.testing.assert_array_equal(flipped_triangles(source, target, triangles, barycentric), flipped)
-    untangle(source, target, triangles, barycentric, search=ClosestPoints(target))
+    run(untangle_steps(source, target, triangles, barycentric, search=ClosestPoints(target)))
     mended = SurfaceMap.from_barycentric(target, triangles, barycentric)
     assert mended.flipped_faces(source, target) == 0
     a, b, c = mended.positions[source.triangles[flipped]].transpose(1, 0, 2)
@@ -115,7 +123,7 @@ def test_vertices_move_along_the_surface_only():
     triangles, barycentric = points.triangles.copy(), points.barycentric.copy()
     triangles[65], barycentric[65] = triangles[67], barycentric[67]
     assert len(flipped_triangles(mesh, mesh, triangles, barycentric))
-    untangle(mesh, mesh, triangles, barycentric, search=ClosestPoints(mesh))
+    run(untangle_steps(mesh, mesh, triangles, barycentric, search=ClosestPoints(mesh)))
     assert len(flipped_triangles(mesh, mesh, triangles, barycentric)) == 0
     offsets = located(mesh, triangles, barycentric) - mesh.vertices
     np.testing.assert_allclose(offsets[:, 2], 0, atol=1e-12)

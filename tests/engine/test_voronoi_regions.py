@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
+from engine.progress import run
 from engine.surface_cells import SurfaceCells, grid_labels
-from engine.voronoi_regions import VoronoiRegions, spread_regions
+from engine.voronoi_regions import VoronoiRegions, spread_regions_steps
 from tests.shapes import icosphere, plane, torus
 
 
@@ -19,7 +20,7 @@ def cells_of(vertices, triangles, size=0.05):
 @pytest.mark.parametrize("shape", [icosphere(24), torus(90, 36), plane(45)])
 def test_there_are_about_as_many_as_asked_for(shape, count):
     _, cells = cells_of(*shape, size=0.02)
-    regions = spread_regions(cells, count)
+    regions = run(spread_regions_steps(cells, count))
     assert 0.75 * count < len(regions.seeds) < 1.25 * count
     assert len(np.unique(regions.seeds)) == len(regions.seeds)
     np.testing.assert_array_equal(regions.labels[regions.seeds], np.arange(len(regions.seeds)))
@@ -29,7 +30,7 @@ def test_there_are_about_as_many_as_asked_for(shape, count):
 
 def test_regions_of_a_sphere_are_alike():
     _, cells = cells_of(*icosphere(30), size=0.02)
-    regions = spread_regions(cells, 100)
+    regions = run(spread_regions_steps(cells, 100))
     areas = np.bincount(regions.labels, cells.areas)
     assert areas.std() < 0.3 * areas.mean()
 
@@ -37,7 +38,7 @@ def test_regions_of_a_sphere_are_alike():
 def test_more_seeds_go_where_the_surface_bends():
     vertices, triangles = icosphere(40)
     _, cells = cells_of(vertices * [1, 1, 4], triangles, size=0.01)
-    regions = spread_regions(cells, 200)
+    regions = run(spread_regions_steps(cells, 200))
     tips = np.abs(cells.positions[:, 2]) > 3.6
     share = cells.areas[tips].sum() / cells.areas.sum()
     assert tips[regions.seeds].mean() > 1.5 * share
