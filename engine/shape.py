@@ -225,6 +225,7 @@ class Shape:
         shape = copy.copy(self)
         shape._forget_samples()  # noqa: SLF001
         shape._rows = self._rows[:0]  # noqa: SLF001
+        shape._measured = None  # noqa: SLF001
         shape._paths = {}  # noqa: SLF001
         shape._views = {}  # noqa: SLF001
         shape._sampler = FarthestPointSampler(self.solver.graph, vertices)  # noqa: SLF001
@@ -263,7 +264,7 @@ class Shape:
 
     @property
     def sample_rows(self) -> NDArray[np.float32]:
-        """Distance from each sample to each vertex, (S, n)."""
+        """Distance from each sample to each vertex, (S, n), estimated from the samples that are not measured."""
         return self._rows
 
     @cached_property

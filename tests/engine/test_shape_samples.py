@@ -76,6 +76,14 @@ def test_fewer_of_the_estimated_ones_are_the_first_of_them(mesh):
         np.testing.assert_array_equal(fewer.sample_rows, shape.sample_rows[:count])
 
 
+def test_other_samples_of_a_shape_with_estimates_are_measured():
+    shape = sampled(TriangleMesh(*creature(0.5, 11)[:2]), (COUNT, MEASURED)).limited(COUNT, MEASURED)
+    other = shape.starting_with(np.array([5, 9]))
+    run(other.sample_steps(20))
+    assert other.measured_count == other.sample_count == 20
+    np.testing.assert_allclose(other.sample_rows, other.solver.distances(other.samples) / other.scale, rtol=1e-6)
+
+
 def test_of_few_vertices_all_are_measured():
     mesh = TriangleMesh(*icosphere(1))
     shape = sampled(mesh, (200, 100))
