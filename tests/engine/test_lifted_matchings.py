@@ -4,20 +4,11 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from engine import Shape, TriangleMesh
 from engine.lifted_matchings import LiftedMatchings
-from engine.map_domain import MapDomain
-from engine.progress import run
+from tests.domains import domain
 from tests.shapes import creature
 
 COUNT = 5
-
-
-def domain(vertices, triangles):
-    shape = Shape(TriangleMesh(vertices, triangles))
-    run(shape.sample_steps(200))
-    run(shape.spectrum_steps(20))
-    return MapDomain(shape, 20)
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +18,7 @@ def rest():
 
 @pytest.fixture(scope="module")
 def pair():
-    return tuple(domain(*creature(pose, 9)[:2]) for pose in (0.0, 1.0))
+    return tuple(domain(*creature(pose, 9)[:2], eigenpairs=20) for pose in (0.0, 1.0))
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +51,7 @@ def test_of_all_permutations_the_truth_fits_best(pair, rest, all_matchings):
 def test_a_reflected_surface_is_matched_with_the_sides_reversed(pair, rest, all_matchings):
     x, y = pair
     mesh = y.shape.mesh
-    reflected = domain(mesh.vertices * [1, -1, 1], mesh.triangles[:, ::-1])
+    reflected = domain(mesh.vertices * [1, -1, 1], mesh.triangles[:, ::-1], eigenpairs=20)
     found = lifted(x, reflected, rest)
     np.testing.assert_array_equal(found.best(all_matchings, -1, 1)[0], np.arange(COUNT))
     kept, mirrored = (error(x, reflected, rest, found.maps(np.arange(COUNT), sign)) for sign in (1, -1))

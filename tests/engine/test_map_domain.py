@@ -2,17 +2,8 @@
 import numpy as np
 import pytest
 
-from engine import Shape, TriangleMesh
-from engine.map_domain import MapDomain
-from engine.progress import run
+from tests.domains import domain
 from tests.shapes import creature, icosphere, permuted, rotation, torus
-
-
-def domain(vertices, triangles, samples=150, eigenpairs=60):
-    shape = Shape(TriangleMesh(vertices, triangles))
-    run(shape.sample_steps(samples))
-    run(shape.spectrum_steps(eigenpairs))
-    return MapDomain(shape, min(eigenpairs, len(shape.spectrum)))
 
 
 @pytest.fixture(scope="module")

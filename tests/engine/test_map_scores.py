@@ -2,19 +2,10 @@
 import numpy as np
 import pytest
 
-from engine import Shape, TriangleMesh
 from engine.functional_maps import FunctionalMaps, PointMaps, fit_functional_maps
-from engine.map_domain import MapDomain
 from engine.map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
-from engine.progress import run
+from tests.domains import domain
 from tests.shapes import creature, rotation
-
-
-def domain(vertices, triangles):
-    shape = Shape(TriangleMesh(vertices, triangles))
-    run(shape.sample_steps(200))
-    run(shape.spectrum_steps(60))
-    return MapDomain(shape, 60)
 
 
 def at_vertices(x, y):

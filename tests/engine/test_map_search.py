@@ -2,25 +2,17 @@
 import numpy as np
 import pytest
 
-from engine import Shape, TriangleMesh
 from engine.functional_maps import PointMaps
-from engine.map_domain import MapDomain
 from engine.map_search import MapLead, distinct_leads, rough_maps_steps
 from engine.progress import run
 from tests.bodies import octopus
+from tests.domains import domain
 from tests.shapes import creature, rotation
-
-
-def domain_of(vertices, triangles):
-    shape = Shape(TriangleMesh(vertices, triangles))
-    run(shape.sample_steps(300))
-    run(shape.spectrum_steps(60))
-    return MapDomain(shape, 60)
 
 
 @pytest.fixture(scope="module")
 def pair():
-    return tuple(domain_of(*creature(pose, 9)[:2]) for pose in (0.0, 1.0))
+    return tuple(domain(*creature(pose, 9)[:2], samples=300) for pose in (0.0, 1.0))
 
 
 def error(x, y, lead, sign=1):
@@ -75,7 +67,7 @@ def test_the_best_of_equal_maps_is_kept_and_hopeless_ones_are_not(pair):
 def octopuses():
     """Two poses and meshings of a body with eight arms: domains, and places at rest."""
     bodies = [octopus(1, 8), octopus(2, 8, turn=0.6)]
-    return [domain_of(*body[:2]) for body in bodies], [body[2] for body in bodies]
+    return [domain(*body[:2], samples=300) for body in bodies], [body[2] for body in bodies]
 
 
 def test_of_many_arms_any_may_be_the_first(octopuses, monkeypatch):
