@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, diags_array, eye_array
+from scipy.sparse import csr_array, diags_array, eye_array
 
 from .closest_points import ClosestPoints
 from .errors import MatchError
@@ -14,6 +14,7 @@ from .progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .torn_patches import NearVertices, with_patches_mended
 from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle_steps
+from .vertex_adjacency import vertex_adjacency
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -245,9 +246,7 @@ class _Lift:
 def _averaging(mesh: TriangleMesh) -> csr_array:
     """Matrix (k, k) that takes half of each vertex and half of the mean of its neighbours."""
     k = mesh.vertex_count
-    a, b = mesh.edges.T
-    ends = (np.concatenate([a, b]), np.concatenate([b, a]))
-    neighbours = csr_array(coo_array((np.ones(2 * len(a)), ends), shape=(k, k)))
+    neighbours = vertex_adjacency(mesh)
     degrees = np.maximum(neighbours.sum(axis=1), 1)
     return csr_array(eye_array(k) / 2 + diags_array(0.5 / degrees) @ neighbours)
 

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array, csr_array, eye_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from .untangling import follow_neighbours
+from .vertex_adjacency import vertex_adjacency
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,10 +42,7 @@ class NearVertices:
 
     def __init__(self, mesh: TriangleMesh, rings: int) -> None:
         self._count = mesh.vertex_count
-        a, b = mesh.edges.T
-        ends = (np.concatenate([a, b]), np.concatenate([b, a]))
-        neighbours = coo_array((np.ones(2 * len(a)), ends), shape=(self._count, self._count))
-        ring = csr_array(neighbours + eye_array(self._count))
+        ring = csr_array(vertex_adjacency(mesh) + eye_array(self._count))
         reach = ring
         for _ in range(rings - 1):
             reach = csr_array(reach @ ring)
