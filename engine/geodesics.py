@@ -173,7 +173,7 @@ class GeodesicSolver:
     def path_lengths(self, sources: ArrayLike) -> NDArray[np.float64]:
         """Compute the lengths of shortest paths in `graph` from each source to every vertex.
 
-        These are upper bounds of the distances, a few percent too long, and take a quarter of the time.
+        These are upper bounds of the distances, a few percent too long, and take a fraction of the time.
 
         Parameters
         ----------

@@ -136,7 +136,7 @@ class Shape:
             How many samples.
         measured : int, optional
             From how many of them, the first, distances are measured by fast marching; from all by default.  From the
-            others paths are followed, which takes a quarter of the time, for `limited` to estimate distances by.
+            others paths are followed, which takes a fraction of the time, for `limited` to estimate distances by.
         """
         count = min(count, self.mesh.vertex_count)
         measured = count if measured is None else min(measured, count)

@@ -50,19 +50,17 @@ def relative_of_creature(legs=1.0, tail=1.0, pose=0.0, resolution=11, turn=0.0):
     return posed(rest, pose), triangles
 
 
-def octopus(pose=0, resolution=9, turn=0.0, arms=8):
-    """Round body with a head on top, and around it many arms that are almost alike.
+def octopus(pose, resolution, turn=0.0):
+    """Round body with a head on top, and around it eight arms that are almost alike.
 
     Parameters
     ----------
     pose : int
-        Seed of the bends of the arms; 0 for straight ones.
+        Seed of the bends of the arms.
     resolution : int
-        Cells of the meshing grid per unit length; the body is about 4 wide.
+        Cells of the meshing grid per unit length; the body is about 5.5 wide.
     turn : float
         Angle in radians by which that grid is turned: another meshing.
-    arms : int
-        How many arms.
 
     Returns
     -------
@@ -73,6 +71,7 @@ def octopus(pose=0, resolution=9, turn=0.0, arms=8):
     rest : (n, 3) array of float
         Positions with straight arms, which name the points of the surface.
     """
+    arms = 8
     angles = 2 * np.pi * np.arange(arms) / arms
     out = np.stack([np.cos(angles), np.sin(angles), np.zeros(arms)], axis=1)
     lengths = 2.6 + 0.15 * np.cos(3 * angles + 1)
@@ -83,13 +82,12 @@ def octopus(pose=0, resolution=9, turn=0.0, arms=8):
     capsules = [*limbs, ((0.0, 0.0, 0.0), (0.1, 0.0, 0.9), 0.5, 0.35)]
     rest, triangles = capsule_surface(capsules, [[-3.0, -3.0, -0.8], [3.0, 3.0, 1.5]], resolution, turn)
     vertices = rest.copy()
-    bends = np.random.default_rng(pose).uniform(-1.5, 1.5, (arms, 2)) * (pose > 0)
+    bends = np.random.default_rng(pose).uniform(-1.5, 1.5, (arms, 2))
     nearest = (rest @ out.T).argmax(axis=1)
     for arm, (axis, both) in enumerate(zip(out, bends, strict=True)):
         beyond = (nearest == arm) & (rest @ axis > 0.9) & (rest[:, 2] < 0.5)
         for towards, angle in zip((np.array([0.0, 0.0, 1.0]), np.cross([0, 0, 1], axis)), both, strict=True):
-            if angle:
-                vertices[beyond] = bent(vertices[beyond] - 0.9 * axis, axis, towards, 1.5, angle) + 0.9 * axis
+            vertices[beyond] = bent(vertices[beyond] - 0.9 * axis, axis, towards, 1.5, angle) + 0.9 * axis
     return vertices, triangles, rest
 
 
