@@ -99,10 +99,10 @@ SOFT = Stage((80, 80, 160, 160), 0.2, 0.2, matched="vertices")
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
-CLOSE = Stage((1280,) * 4 + (2560,) * 6, 0.05, 0.0, matched="around", lead=0.5, momentum=0.8, softened=True)
+CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=True)
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
-LAST = Stage((2560, 2560), 0.05, 0.0)
+LAST = Stage((2560,), 0.05, 0.0)
 """At last to rest, from exact matches, which turn fewer triangles over."""
 
 POLISH = Stage((80, 160, 320, 1280, 2560), 0.05, 0.0, matched="around")
