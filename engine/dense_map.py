@@ -47,6 +47,8 @@ _ELSEWHERE, _LIMB = 0.15, 0.02
 
 _MOST_CANDIDATES = 3
 _ELASTIC_WEIGHT = 4.0
+_GAP_WEIGHT = 4.0
+_LEAST_GAP = 1e-4  # in sqrt(area); surfaces that meet closer than that are all the same
 _SMOOTH = 40
 """Eigenfunctions that the source is placed by before it is registered."""
 
@@ -72,9 +74,10 @@ class Candidate:
     registration : Registration
         The source on the target.
     score : float
-        Smaller is more credible: the score of the registered map and the logarithm of what the deformation costs.
+        Smaller is more credible: the score of the registered map and the logarithms of the gaps that are left.
     likeness : float
-        How much alike the surfaces are, if this is the map: the same with the score of the hypothesis, larger for more.
+        How much alike the surfaces are, if this is the map, larger for more: by the score of the hypothesis and the
+        logarithm of what the deformation costs.
     """
 
     hypothesis: MapHypothesis
@@ -234,8 +237,11 @@ class _Follower:
         registration = yield from within(steps, 0.2, 1.0)
         cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
         elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
-        # A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.
-        score = score_everywhere(hypothesis.domains, self.vertex_maps(registration)) + elastic
+        # A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.  The
+        # true one may take more deforming than a wrong one where proportions differ, but the surfaces meet closer.
+        gaps = np.maximum(registration.gaps, _LEAST_GAP)
+        score = score_everywhere(hypothesis.domains, self.vertex_maps(registration))
+        score += _GAP_WEIGHT * float(np.log(gaps).sum())
         return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic))
 
     def _guides(self, hypothesis: MapHypothesis, images: PointMaps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

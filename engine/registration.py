@@ -125,6 +125,9 @@ class Registration:
         Elastic energy of the deformation.
     misfit : float
         Mean squared distance of the positions from their matches, in units of area.
+    gaps : pair of float
+        Mean distance of the source's vertices, deformed, from their matches, and of the target's from theirs, in units
+        of the square root of the area.
     """
 
     positions: NDArray[np.float64]
@@ -132,6 +135,7 @@ class Registration:
     on_source: FoundPoints
     energy: float
     misfit: float
+    gaps: tuple[float, float]
 
 
 _MATCHED = ("vertices", "around", "anywhere")
@@ -315,9 +319,11 @@ def register_steps(
     search, _ = matcher.source_search(positions)
     on_target, on_source = matcher.matches(search, last=True)
     rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
-    there = _at(on_target, target.triangles, target.vertices)
-    misfit = float(source.mass @ np.square(there - positions).sum(axis=1))
-    return Registration(positions, on_target, on_source, source.elastic.energy(positions, rotations), misfit)
+    squared = np.square(_at(on_target, target.triangles, target.vertices) - positions).sum(axis=1)
+    squared_back = np.square(_at(on_source, source.triangles, positions) - target.vertices).sum(axis=1)
+    gaps = float(source.mass @ np.sqrt(squared)), float(target.mass @ np.sqrt(squared_back))
+    energy = source.elastic.energy(positions, rotations)
+    return Registration(positions, on_target, on_source, energy, float(source.mass @ squared), gaps)
 
 
 def _at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:

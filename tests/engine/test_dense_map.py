@@ -92,7 +92,7 @@ def test_candidates_are_ordered_and_cost_what_their_registration_costs(registere
             )
         )
         cost = 4 * np.log(found.energy + 20 * found.misfit)
-        assert candidate.score == pytest.approx(score_everywhere(domains, maps) + cost)
+        assert candidate.score == pytest.approx(score_everywhere(domains, maps) + 4 * np.log(found.gaps).sum())
         assert candidate.likeness == pytest.approx(-candidate.hypothesis.score - cost)
         assert candidate.hypothesis.orientation > 0
     assert registered.likeness == registered.candidates[0].likeness

@@ -76,6 +76,9 @@ def test_the_source_lies_on_the_target(registered, bodies):
     there = at(registered.on_target, target, target.vertices)
     gaps = np.square(registered.positions - there).sum(axis=1)
     assert registered.misfit == pytest.approx(float(source.mass @ gaps))
+    back = at(registered.on_source, source, registered.positions) - target.vertices
+    left = source.mass @ np.sqrt(gaps), target.mass @ np.linalg.norm(back, axis=1)
+    assert registered.gaps == pytest.approx(left)
     assert registered.misfit < 1e-4
     rotations = source.elastic.rotations(registered.positions, FINE.rotation_radius)
     assert registered.energy == pytest.approx(source.elastic.energy(registered.positions, rotations))
