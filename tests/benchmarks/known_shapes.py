@@ -186,6 +186,10 @@ class KnownShapes:
         """Folder that the shape of this name comes from."""
         return self._paths[name].relative_to(self._folder).parts[0]
 
+    def of_kind(self, kind):
+        """Names of the shapes that show this animal, which share their places."""
+        return [name for name in self._paths if _kind(name) == kind]
+
     def random_pairs(self, count, seed):
         """Random pairs (source, target) of different shapes of one kind, without repetition, in the `MIXTURE`."""
         random = np.random.default_rng(seed)
