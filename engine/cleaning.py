@@ -15,6 +15,7 @@ from .errors import MeshError
 from .hole_filling import fill_holes, small_holes
 from .mesh import TriangleMesh
 from .mesh_orientation import inward_components, orient_consistently, turn_triangles
+from .pinched_gaps import pinched_gaps
 from .spikes import find_spikes, pulled_in
 from .triangle_components import triangle_components
 from .vertex_fans import split_fans
@@ -33,9 +34,9 @@ def clean(mesh: TriangleMesh, name: str = "mesh", left_out: NDArray[np.bool_] | 
     """Make a mesh into oriented manifolds.
 
     In this order: vertices along open seams are welded; triangles without three different vertices, and repeated ones,
-    left out; edges of more than two triangles opened; triangles turned to agree with their neighbours; vertices split
-    at which sheets only touch; single vertices that stick out pulled in; parts turned that look inward; small holes of
-    the main part filled.
+    left out; edges of more than two triangles opened; triangles turned to agree with their neighbours; single missing
+    faces put back where gaps meet; vertices split at which sheets only touch; single vertices that stick out pulled in;
+    parts turned that look inward; small holes of the main part filled.
 
     Parameters
     ----------
@@ -167,11 +168,27 @@ def _make_manifold(work: _Work, groups: EdgeGroups) -> None:
     work.counts.one_sided = orientation.twins is not work.twins
     work.components, work.twins = orientation.components, orientation.twins
     work.turn(orientation.turned)
+    _fill_pinched_gaps(work)
     work.split()
     if not work.counts.crowded:
         work.counts.touching = len(work.copied)
     if work.counts.crowded or work.counts.one_sided:
         _leave_out_crowding(work)
+
+
+def _fill_pinched_gaps(work: _Work) -> None:
+    """Put single faces back that are missing where gaps meet, instead of cutting the surface apart there."""
+    faces, half_edges = pinched_gaps(work.vertices, work.triangles, work.twins, float(work.areas.sum()))
+    if not len(faces):
+        return
+    work.counts.filled = len(faces)
+    work.twins = np.append(work.twins, half_edges.ravel())
+    work.twins[half_edges.ravel()] = 3 * len(work.triangles) + np.arange(half_edges.size)
+    work.triangles = np.concatenate([work.triangles, faces])
+    work.areas = np.append(work.areas, _areas(work.vertices, faces))
+    work.origins = np.append(work.origins, np.full(len(faces), -1))
+    work.turned = np.append(work.turned, np.zeros(len(faces), bool))
+    work.components = triangle_components(work.twins)
 
 
 def _leave_out_crowding(work: _Work) -> None:
@@ -253,7 +270,8 @@ def _in_parts(
         turned = work.turned[chosen]
         if part == 0:
             open_half_edges = np.flatnonzero(work.twins.reshape(-1, 3)[chosen].ravel() < 0)
-            piece, counts.filled, counts.left_open = _filled(piece, open_half_edges, float(areas[component]))
+            piece, filled, counts.left_open = _filled(piece, open_half_edges, float(areas[component]))
+            counts.filled += filled
             turned = np.concatenate([turned, np.zeros(len(piece[1]) - len(turned), bool)])
         vertices, triangles, original_vertices, original_triangles = piece
         unchanged = len(vertices) == mesh.vertex_count and np.array_equal(triangles, mesh.triangles)

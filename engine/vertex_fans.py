@@ -14,7 +14,7 @@ from .edge_pairs import following
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["split_fans"]
+__all__ = ["several_fans", "split_fans"]
 
 _LONGEST_WALK = 1000
 """Most steps around a vertex: longer ones, at the hub of thousands of triangles, cost more than they save."""
@@ -46,7 +46,7 @@ def split_fans(
     A fan is a set of triangles around a vertex that hang together across its edges.  The largest fan keeps the vertex.
     """
     tail = triangles.ravel()
-    faulty = _several_fans(tail, twins, vertex_count)
+    faulty = several_fans(tail, twins, vertex_count)
     if not faulty.any():
         return triangles, np.empty(0, np.int64)
     corners = np.flatnonzero(faulty[tail])
@@ -71,10 +71,23 @@ def split_fans(
     return split.reshape(-1, 3), vertex_of_fan[extra]
 
 
-def _several_fans(tail: NDArray[np.int64], twins: NDArray[np.int64], vertex_count: int) -> NDArray[np.bool_]:
-    """Find the vertices that have triangles which a walk around the vertex does not come by, (n,).
+def several_fans(tail: NDArray[np.int64], twins: NDArray[np.int64], vertex_count: int) -> NDArray[np.bool_]:
+    """Find the vertices at which several fans of triangles touch.
 
-    Walks that take too long end early: their vertices are found, too, but have perhaps one fan only.
+    Parameters
+    ----------
+    tail : (3m,) array of int
+        Vertex that each half-edge starts at.
+    twins : (3m,) array of int
+        Twin of each half-edge, -1 at the boundary.
+    vertex_count : int
+        Number of vertices, n.
+
+    Returns
+    -------
+    (n,) array of bool
+        Whether a vertex has triangles which a walk around it does not come by.  Walks that take too long end early:
+        their vertices are found, too, but have perhaps one fan only.
     """
     open_start = np.flatnonzero(twins < 0)
     start = np.full(vertex_count, -1)

@@ -195,6 +195,55 @@ def test_touching_vertices_are_separated():
     assert "1 place where sheets touch in one vertex: it was separated" in surface.notes[0]
 
 
+def without_faces(vertices, triangles, part, seed=0):
+    """Leave out so large a part of the faces, here and there."""
+    return vertices, triangles[np.random.default_rng(seed).random(len(triangles)) >= part]
+
+
+def test_faces_missing_around_a_vertex_are_put_back(body):
+    """Every other triangle around a vertex: the others would hang on it by a corner each."""
+    vertices, triangles = body
+    degrees = np.bincount(triangles.ravel())
+    middle = np.flatnonzero(degrees == 6)[40]
+    around = np.flatnonzero((triangles == middle).any(axis=1))
+    following = {}
+    for face in around:
+        corner = list(triangles[face]).index(middle)
+        following[triangles[face][corner - 2]] = (triangles[face][corner - 1], face)
+    at = next(iter(following))
+    order = []
+    for _ in range(6):
+        at, face = following[at]
+        order.append(face)
+    surface = cleaned((vertices, np.delete(triangles, order[::2], axis=0)))
+    assert surface.mesh.vertex_count == len(vertices)
+    assert_like(surface, body)
+    assert_leads_back(surface)
+    assert surface.notes == ("The source had 3 small holes: they were closed for matching.",)
+
+
+@pytest.mark.parametrize("part", [0.1, 0.25])
+def test_a_body_without_many_of_its_faces_hangs_together(body, part):
+    whole = TriangleMesh(*body)
+    surface = cleaned(without_faces(*body, part))
+    for piece in surface.pieces:
+        assert_manifold(piece.mesh)
+    assert_leads_back(surface)
+    assert surface.mesh.area > 0.9 * whole.area
+    # What is cut apart gets copies of its vertices.
+    assert surface.mesh.vertex_count - (surface.main.original_vertices < 0).sum() < 1.1 * whole.vertex_count
+
+
+def test_flakes_that_touch_in_a_vertex_are_no_gap():
+    """Two triangles, each other's neighbours in a vertex only: their outlines are closed walks, too."""
+    vertices, triangles = icosphere(4)
+    flakes = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [-1, 0, 0], [-1, -1, 0]]) * 0.1 + [0, 0, 3]
+    faces = np.array([[0, 1, 2], [0, 3, 4]]) + len(vertices)
+    surface = cleaned((np.concatenate([vertices, flakes]), np.concatenate([triangles, faces])))
+    assert [part.triangle_count for part in surface.parts] == [1, 1]
+    assert surface.main.mesh.triangle_count == len(triangles)
+
+
 def test_sheets_that_share_an_edge_and_its_ends_become_manifold():
     """A pinched body: pairing alone would leave an edge with four triangles between two vertices."""
     vertices, triangles = torus(12, 8)

@@ -49,6 +49,11 @@ def holes(vertices, triangles, rest):
     return vertices, triangles, rest
 
 
+def shreds(vertices, triangles, rest):
+    """Without a quarter of the faces, here and there."""
+    return vertices, triangles[np.random.default_rng(3).random(len(triangles)) > 0.25], rest
+
+
 def open_back(vertices, triangles, rest):
     """Without the upper side of the trunk: one wide opening."""
     middles = rest[triangles].mean(axis=1)
@@ -141,6 +146,8 @@ def errors(found, own, other, mesh):
         (inconsistent, needles, (0.013, 0.1), "normals against their neighbours"),
         (holes, clean, (0.014, 0.1), "small holes"),
         (clean, holes, (0.014, 0.15), "small holes"),
+        (shreds, clean, (0.014, 0.1), "small holes"),
+        (clean, shreds, (0.016, 0.15), "small holes"),
         (clean, open_back, (0.03, 0.3), "large opening"),
         (leg_cut_off, clean, (0.025, 0.25), "large opening"),
         (clean, leg_cut_off, (0.025, 0.3), "large opening"),
