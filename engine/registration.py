@@ -93,11 +93,12 @@ class Stage:
 GUIDED = Stage((5, 5, 10, 10, 20, 20, 40, 40), 0.2, 0.2, matched="vertices", guide_length=0.05)
 """From a rough start, while the surface is stiff: guides keep limbs apart that are near to each other in space."""
 
-SOFT = Stage((80, 80, 160, 160), 0.2, 0.2, matched="vertices", guide_length=0.05)
-"""The normals and curvatures pull features together; of a body that crouches hands and feet are still kept apart."""
+SOFT = Stage((80, 80, 160, 160), 0.2, 0.2, matched="vertices", guide_length=0.02)
+"""The normals and curvatures pull features together; guides err like the map that they are from, and count less, but
+enough for the hands and feet of a body that crouches."""
 
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
-"""Onto the target, without guides: these err by as much as the map that they are from."""
+"""Onto the target."""
 
 CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=True)
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
