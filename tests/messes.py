@@ -43,6 +43,11 @@ def without_disc(vertices, triangles, centre, radius):
     return vertices, triangles[away]
 
 
+def without_faces(vertices, triangles, part, seed=0):
+    """Leave out so large a part of the faces, here and there."""
+    return vertices, triangles[np.random.default_rng(seed).random(len(triangles)) >= part]
+
+
 def partly_turned(vertices, triangles, part=0.3, seed=0):
     """Turn random triangles over."""
     turned = np.random.default_rng(seed).random(len(triangles)) < part

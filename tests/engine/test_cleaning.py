@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from engine import TriangleMesh
 from engine.cleaning import clean
 from tests.bodies import mirrored_body
-from tests.messes import cut_along_seam, in_pieces, partly_turned, together, with_fin, without_disc
+from tests.messes import cut_along_seam, in_pieces, partly_turned, together, with_fin, without_disc, without_faces
 from tests.shapes import creature, cylinder, icosphere, irregular, permuted, plane, rotation, torus
 
 
@@ -193,11 +193,6 @@ def test_touching_vertices_are_separated():
         assert_manifold(piece.mesh)
         assert characteristic(piece.mesh) == 2
     assert "1 place where sheets touch in one vertex: it was separated" in surface.notes[0]
-
-
-def without_faces(vertices, triangles, part, seed=0):
-    """Leave out so large a part of the faces, here and there."""
-    return vertices, triangles[np.random.default_rng(seed).random(len(triangles)) >= part]
 
 
 def test_faces_missing_around_a_vertex_are_put_back(body):

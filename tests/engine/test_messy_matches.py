@@ -6,7 +6,7 @@ import pytest
 
 from engine import HierMatchError, MatchError, MatchSettings, MeshError, Shape, TriangleMesh, match
 from tests.bodies import mirrored_body
-from tests.messes import cut_along_seam, in_pieces, partly_turned, together, with_fin, without_disc
+from tests.messes import cut_along_seam, in_pieces, partly_turned, together, with_fin, without_disc, without_faces
 from tests.shapes import creature, icosphere, irregular
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -51,7 +51,7 @@ def holes(vertices, triangles, rest):
 
 def shreds(vertices, triangles, rest):
     """Without a quarter of the faces, here and there."""
-    return vertices, triangles[np.random.default_rng(3).random(len(triangles)) > 0.25], rest
+    return *without_faces(vertices, triangles, 0.25, seed=3), rest
 
 
 def open_back(vertices, triangles, rest):
