@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LiftedMatchings"]
 
-_SIGNED_WEIGHT = 1.0
-"""Of signed areas beside distances."""
+_SIGNED_WEIGHT, _RELATIVE_SIGNED_WEIGHT = 1.0, 2.0
+"""Of signed areas beside distances, and beside relative distances."""
 
 _SCOUTS = 64
 """Samples of either surface that say how well a matching fits: the first, which are spread the best."""
@@ -45,13 +45,24 @@ class LiftedMatchings:
         The surfaces.
     of_x, of_y : (m,), (n,) arrays of int
         The numbers of coarse samples that are matched, and that they may be matched to.
+    relative : bool
+        Whether distances to a sample are in units of their mean over the surface, and signed areas count twice: between
+        different kinds of bodies, limbs are of different lengths.
     """
 
-    def __init__(self, x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> None:
+    def __init__(
+        self, x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64], *, relative: bool = False
+    ) -> None:
         self._apart = y.shape.sample_distances
-        self._distances = y.shape.sample_distances[:, of_y]
-        self._directions = y.directions(of_y)
-        self._rows_x = _rows(x.shape.sample_distances[:, of_x], x.directions(of_x), 1)
+        here, there = (d.shape.sample_distances[:, of] for d, of in ((x, of_x), (y, of_y)))
+        self._distances = _in_means(there) if relative else there
+        self._weight = _RELATIVE_SIGNED_WEIGHT if relative else _SIGNED_WEIGHT
+        # Those of all pairs in either order, so that each matching finds its own.
+        self._sides = np.zeros((len(there), len(of_y), len(of_y)))
+        first, second = np.triu_indices(len(of_y), 1)
+        self._sides[:, first, second] = signed_areas(y.directions(of_y))
+        self._sides[:, second, first] = -self._sides[:, first, second]
+        self._rows_x = self._rows(_in_means(here) if relative else here, signed_areas(x.directions(of_x)))
 
     def maps(self, images: NDArray[np.int64], sign: int) -> PointMaps:
         """Carry a matching over both surfaces.
@@ -135,16 +146,21 @@ class LiftedMatchings:
         return misfits, landings
 
     def _rows_y(self, images: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
-        return _rows(self._distances[:, images], self._directions[:, images], sign)
+        first, second = np.triu_indices(len(images), 1)
+        return self._rows(self._distances[:, images], sign * self._sides[:, images[first], images[second]])
+
+    def _rows(self, distances: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Describe points by their distances (k, m) to samples, and by the signed areas (k, m (m - 1) / 2)."""
+        columns = [distances / np.sqrt(max(distances.shape[1], 1))]
+        if sides.shape[1]:
+            columns.append(self._weight * sides / np.sqrt(sides.shape[1]))
+        return np.column_stack(columns)
 
 
-def _rows(distances: NDArray[np.float64], directions: NDArray[np.float64], sign: int) -> NDArray[np.float64]:
-    """Describe points by their distances (k, m) to samples, and by the directions (k, m, 2) away from them."""
-    sides = signed_areas(directions)
-    columns = [distances / np.sqrt(max(distances.shape[1], 1))]
-    if sides.shape[1]:
-        columns.append(sign * _SIGNED_WEIGHT * sides / np.sqrt(sides.shape[1]))
-    return np.column_stack(columns)
+def _in_means(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distances (k, m) of points from samples in units of the mean from each sample."""
+    means = distances.mean(axis=0)
+    return np.divide(distances, means, out=np.zeros_like(distances, np.float64), where=means > 0)
 
 
 def _squared_differences(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -24,18 +24,23 @@ if TYPE_CHECKING:
 
 __all__ = ["MapLead", "distinct_leads", "rough_maps_steps"]
 
-# How many farthest points of X and of Y are matched, and how many matchings are carried over with the orientation kept
+# How many matchings are offered, by the distances between what is matched.
+_OFFERED = 400
+# How many farthest points of X and of Y are matched, and how many matchings are followed up with the orientation kept
 # (1) and with it mirrored (-1): of these the best only, as mirror images are matched as well as what they mirror.
 _FARTHEST = ((5, 9, {1: 20, -1: 8}), (6, 10, {1: 40, -1: 12}))
 # The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
 _TIPS = (6, 9, {1: 20, -1: 8})
+# How many of all that are offered are followed up besides, for carrying over to the whole surfaces best.
+_FITTING = {1: 14, -1: 6}
 _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
-# Of bodies with at least so many limbs all are matched: how many matchings are offered, how many of those that fit best
-# are improved, and how many different ones are followed up at most.
-_MANY_LIMBS, _OFFERED, _STARTS, _ENDS = 8, 400, 16, 8
+# Of bodies with at least so many limbs all are matched: how many of the matchings that fit best are improved, and how
+# many different ones are followed up at most.
+_MANY_LIMBS, _STARTS, _ENDS = 8, 16, 8
 _SIZES = spectral_sizes(15, 30, 5)  # not from fewer: those would turn even true matchings front to back
 _ORIENTED = 0.3  # how much more credible a map of one orientation throughout is
 _VARIANTS = {1: (3, 2, 1, 1), -1: (2, 1)}  # how many of each group of like maps are followed up, by orientation
+_FITTING_VARIANTS = {1: (2, 1, 1), -1: (1,)}  # and of those that carry over best, where they are others
 _CLUSTER = 0.15  # mean distance between the images of maps of different groups, in sqrt(area)
 _VARIANT = 0.04  # the same for those of one group: a limb may be crossed in the best of them
 
@@ -98,22 +103,42 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     list of MapLead
         A few of each of the most credible groups of like maps, of either orientation.
     """
-    leads: list[MapLead] = []
-    searches = _searches(x, y)
-    total, done = sum(kept[sign] for *_, kept in searches for sign in signs), 0
-    for of_x, of_y, kept in searches:
-        offered = _matchings(x, y, of_x, of_y, max(kept.values()))
-        lifted = LiftedMatchings(x, y, of_x, of_y)
-        for sign in signs:
-            for images in offered[: kept[sign]]:
-                steps = _refined_steps(x, y, lifted.maps(images, sign))
-                leads.append((yield from within(steps, done / total, (done + 1) / total)))
-                done += 1
-    chosen = _candidates(y, leads)
+    usual: list[MapLead] = []
+    fitting: list[MapLead] = []
+    searches = [(search, sign) for search in _searches(x, y) for sign in signs]
+    for number, (search, sign) in enumerate(searches):
+        begin, end = ((number + i) / len(searches) for i in (0, 1))
+        found = yield from within(_searched_steps(x, y, search, sign), begin, end)
+        usual += found[0]
+        fitting += found[1]
+    chosen = _candidates(y, usual, _VARIANTS)
+    more = _candidates(y, fitting, _FITTING_VARIANTS)
+    chosen += [lead for lead in more if all(_move(y, lead, other) > _VARIANT for other in chosen)]
     for sign in signs:
         # Bodies with many limbs are rare: the bar has come to its end before.
         chosen += yield from within(_many_limbs_steps(x, y, sign), 1.0, 1.0)
     return chosen
+
+
+def _searched_steps(
+    x: MapDomain, y: MapDomain, search: _Search, sign: int
+) -> Steps[tuple[list[MapLead], list[MapLead]]]:
+    """Match some samples, and follow up the best matchings, and others that carry over to the whole surfaces best.
+
+    Between bodies of other proportions the distances between ends of limbs agree in many wrong matchings as well as in
+    the true one, which may be the hundredth of them; that it fits everywhere else tells it from most.
+    """
+    relative, absolute = (LiftedMatchings(x, y, search.of_x, search.of_y, relative=r) for r in (True, False))
+    offered = _matchings(x, y, search.of_x, search.of_y)
+    yield Progress(0.0, "Comparing maps")
+    best = offered[: search.kept[sign]]
+    fitting = relative.best(offered[len(best) :], sign, _FITTING[sign])
+    maps = [absolute.maps(images, sign) for images in best] + [relative.maps(images, sign) for images in fitting]
+    leads = []
+    for number, points in enumerate(maps):
+        begin, end = ((number + i) / len(maps) for i in (0, 1))
+        leads.append((yield from within(_refined_steps(x, y, points), begin, end)))
+    return leads[: len(best)], leads[len(best) :]
 
 
 def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLead]]:
@@ -128,7 +153,7 @@ def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLe
         return []
     of_x = of_x[: len(of_y)]
     lifted = LiftedMatchings(x, y, of_x, of_y)
-    starts = lifted.best(_matchings(x, y, of_x, of_y, _OFFERED), sign, _STARTS)
+    starts = lifted.best(_matchings(x, y, of_x, of_y), sign, _STARTS)
     better, leads = [], []
     for images in starts:
         better.append(lifted.exchanged(images, sign))
@@ -139,12 +164,10 @@ def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLe
     return leads
 
 
-def _matchings(
-    x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64], kept: int
-) -> NDArray[np.int64]:
-    """Match coarse samples (m,) to coarse samples (n,) in the `kept` best ways: positions of images (kept, m)."""
+def _matchings(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Match coarse samples (m,) to coarse samples (n,) in the best ways: positions of images (r, m)."""
     distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
-    return beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=kept).images
+    return beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=_OFFERED).images
 
 
 def _searches(x: MapDomain, y: MapDomain) -> list[_Search]:
@@ -190,10 +213,10 @@ def distinct_leads(
     return sorted(kept, key=lambda lead: lead.score)
 
 
-def _candidates(y: MapDomain, leads: list[MapLead]) -> list[MapLead]:
+def _candidates(y: MapDomain, leads: list[MapLead], most: Mapping[int, tuple[int, ...]]) -> list[MapLead]:
     """Choose the most credible groups of like maps, and of each the best few that differ a little."""
     chosen: list[MapLead] = []
-    for sign, variants in _VARIANTS.items():
+    for sign, variants in most.items():
         groups: list[list[MapLead]] = []
         for lead in _of_orientation(leads, sign):
             place = next((i for i, group in enumerate(groups) if _move(y, lead, group[0]) <= _CLUSTER), None)

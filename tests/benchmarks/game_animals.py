@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Match animals of the game 0 A.D. in different poses: the same in two of them, or two of different kinds.
+
+    apt-get download 0ad-data && dpkg-deb -x 0ad-data_*.deb FOLDER
+    python -m tests.benchmarks.game_animals --archive FOLDER/usr/share/games/0ad/mods/public/public.zip
+        [--pairs 60] [--seed 1] [--jobs 2]
+
+Each animal takes up to five poses from its animations that differ much.  Its few triangles are split, and each pose is
+meshed anew with 5,000 vertices, so that no two surfaces have triangles in common, and turned.
+
+Pairs of the same animal are measured by the true correspondence: the mean distance from there, over the square root of
+the area, times 100, at 300 vertices, and the share of them that are more than 15 away.  For pairs of different animals
+it is said to which end each end of the one goes, from either side: 0 and 1 the fore feet, 2 and 3 the hind feet, 4 the
+head; 01234 is right.  Margin and confidence are what the match says of itself.  At last it is counted how many are
+wrong, and how many of those have a confidence of one half or more.
+"""
+
+import argparse
+import multiprocessing
+import os
+import time
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from engine import HierMatchError, MatchSettings, TriangleMesh, match
+from engine.geodesics import GeodesicSolver
+from engine.shape import Shape
+from tests.benchmarks.game_models import Archive
+from tests.shapes import rotation, subdivided
+
+# Model: how the names of its animations start, and its kind.  All look along -z at rest, but the sheep.
+ANIMALS = {
+    "animal_lion": ("lion", "cat"),
+    "animal_lioness": ("lion", "cat"),
+    "bear": ("bear", "bear"),
+    "bear_polar": ("bear", "bear"),
+    "camel": ("camel", "camel"),
+    "elephant_african_baby": ("elephant_infant", "elephant"),
+    "giraffe_adult": ("giraffe_adult", "giraffe"),
+    "horse": ("horse", "horse"),
+    "pony": ("horse", "horse"),
+    "horse_persian": ("horse", "horse"),
+    "rhino": ("rhino", "rhino"),
+    "donkey": ("donkey", "donkey"),
+    "sheep": ("sheep", "sheep"),
+    "deer_mesh": ("deer", "deer"),
+    "wolf": ("wolf_", "dog"),
+    "zebra": ("zebra", "zebra"),
+    "mastiff_no_spikes": ("mastiff", "dog"),
+    "wolfhound": ("wolfhound", "dog"),
+    "goat": ("goat", "goat"),
+    "animal_boar": ("animal_boar", "pig"),
+    "fauna_hippopotamus": ("hippopotamus", "hippopotamus"),
+    "animal_piglet": ("animal_piglet", "pig"),
+    "wildebeest_adult": ("wildebeest", "cow"),
+    "zebu": ("zebu", "cow"),
+    "sanga_cattle_a": ("sanga", "cow"),
+    "cattle_male_a": ("cattle", "cow"),
+    "auroch_a": ("auroch", "cow"),
+    "tiger": ("tiger", "cat"),
+}
+LOOKS_BACK = {"sheep"}
+POSES, FRAMES = 5, 6
+DENSE, COARSE = 26_000, 5_000
+PLACES, FAR, WRONG = 300, 15.0, 0.03
+ENDS = 5
+CONFIDENT = 0.5
+
+
+@dataclass(frozen=True)
+class Animal:
+    """A pose: its mesh; for each vertex one of the split model, and the split model's places on it; its ends."""
+
+    mesh: TriangleMesh
+    split: np.ndarray
+    places: np.ndarray
+    ends: np.ndarray
+
+
+@cache
+def poses(archive, name):
+    """Vertices of up to five poses, the most usual first, then each as far as can be from those before."""
+    model = archive.model(name)
+    frames = [archive.frames(a, len(model.bones), FRAMES) for a in archive.animations(ANIMALS[name][0])]
+    rest = TriangleMesh(model.vertices, model.triangles)
+    found = [model.posed(frame) for each in frames for frame in each]
+    found = [
+        p for p in found if np.isfinite(p).all() and 0.8 < TriangleMesh(p, model.triangles).area / rest.area < 1.25
+    ]
+    if not found:
+        return [model.vertices]
+    some = np.random.default_rng(0).permutation(len(model.vertices))[:60]
+    distances = np.array([np.linalg.norm(p[some, None] - p[some], axis=2).ravel() for p in found])
+    chosen = [int(np.linalg.norm(distances - np.median(distances, axis=0), axis=1).argmin())]
+    while len(chosen) < min(POSES, len(found)):
+        apart = np.linalg.norm(distances[:, None] - distances[chosen], axis=2).min(axis=1)
+        chosen.append(int(apart.argmax()))
+    return [found[i] for i in chosen]
+
+
+def ends(vertices, *, backwards):
+    """Numbers of the end that each vertex at rest belongs to, or -1, (n,)."""
+    low, size = vertices.min(axis=0), np.ptp(vertices, axis=0)
+    x, y, z = ((vertices - [0, low[1], low[2]]) / [np.abs(vertices[:, 0]).max(), size[1], size[2]]).T
+    if backwards:
+        x, z = -x, 1 - z
+    feet = (y < 0.06) & (np.abs(x) > 0.12)
+    middle = (z[feet].min() + z[feet].max()) / 2
+    found = np.where(feet, (x > 0) + 2 * (z > middle), -1)
+    found[z < 0.05] = 4
+    return found
+
+
+@cache
+def animal(archive, name, pose):
+    """Mesh a pose anew, turned at random."""
+    model = archive.model(name)
+    parts = max(3, int(np.ceil(np.sqrt(DENSE / len(model.vertices)))))
+    random = np.random.default_rng(pose)
+    turn = rotation(random.standard_normal(3), random.uniform(0, 2 * np.pi))
+    split = TriangleMesh(*subdivided(poses(archive, name)[pose] @ turn.T, model.triangles, parts))
+    shape = Shape(split, name, COARSE)
+    rest, _ = subdivided(model.vertices, model.triangles, parts)
+    tree = cKDTree(shape.mesh.vertices)
+    numbers = cKDTree(split.vertices).query(shape.mesh.vertices)[1]
+    return Animal(
+        shape.mesh,
+        numbers,
+        tree.query(split.vertices)[1],
+        ends(rest, backwards=name in LOOKS_BACK)[numbers],
+    )
+
+
+def errors(source, target, found):
+    """Distances x 100 of images from where they belong, over the square root of the area, (k,)."""
+    chosen = np.random.default_rng(0).permutation(source.mesh.vertex_count)[:PLACES]
+    rows = GeodesicSolver(target.mesh).distances(target.places[source.split[chosen]])
+    away = rows[np.arange(len(chosen)), found.nearest_vertices[chosen]]
+    return 100 * away / np.sqrt(target.mesh.area)
+
+
+def reached(source, target, found):
+    """Number of the end that most of each end of the source goes to, or is nearest to, as a word."""
+    solver = GeodesicSolver(target.mesh)
+    away = np.array([solver.distances(np.flatnonzero(target.ends == end)).min(axis=0) for end in range(ENDS)])
+    nearest = away.argmin(axis=0)[found.nearest_vertices]
+    return "".join(str(np.bincount(nearest[source.ends == end], minlength=ENDS).argmax()) for end in range(ENDS))
+
+
+def measure(task):
+    """Match two animals; return how they are called, what is printed of the match, if it is wrong, and confidence."""
+    archive, (first, second) = task
+    source, target = animal(archive, *first), animal(archive, *second)
+    label = f"{first[0]} {first[1]} -> {second[0]} {second[1]}"
+    start = time.perf_counter()
+    try:
+        result = match(source.mesh, target.mesh, MatchSettings(dense=True))
+    except HierMatchError as error:
+        return f"{label:48s} {error}", True, 0.0
+    seconds = time.perf_counter() - start
+    both = (source, target, result.source_to_target), (target, source, result.target_to_source)
+    if first[0] == second[0]:
+        away = [errors(*each) for each in both]
+        wrong = any((e > FAR).mean() > WRONG for e in away)
+        what = "  ".join(f"{e.mean():6.2f} {(e > FAR).mean():6.1%}" for e in away)
+    else:
+        words = [reached(*each) for each in both]
+        wrong = any(word != "01234" for word in words)
+        what = " ".join(words)
+    quality = result.quality
+    margin = "-" if quality.margin is None else f"{quality.margin:.2f}"
+    line = f"{label:48s} {what:30s} {margin:>6s} {quality.confidence:5.2f} {seconds:6.1f}  {'WRONG' if wrong else ''}"
+    return line, wrong, quality.confidence
+
+
+def drawn_pairs(archive, count, seed):
+    """Random pairs of one animal in two poses, and of two animals of different kinds, ((name, pose), (name, pose))."""
+    random = np.random.default_rng(seed)
+    counts = {name: len(poses(archive, name)) for name in ANIMALS}
+    several = [name for name in ANIMALS if counts[name] > 1]
+    same, unlike = [], []
+    while len(same) < count:
+        name = several[random.integers(len(several))]
+        same.append(tuple((name, int(pose)) for pose in random.permutation(counts[name])[:2]))
+    names = list(ANIMALS)
+    while len(unlike) < count:
+        pair = [names[i] for i in random.permutation(len(names))[:2]]
+        if ANIMALS[pair[0]][1] != ANIMALS[pair[1]][1]:
+            unlike.append(tuple((name, int(random.integers(counts[name]))) for name in pair))
+    return {"one animal in two poses": same, "two kinds of animals": unlike}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--archive", type=Path, required=True, help="the game's public.zip")
+    parser.add_argument("--pairs", type=int, default=60, help="of one animal, and of two (default 60 each)")
+    parser.add_argument("--seed", type=int, default=1, help="of the random pairs (default 1)")
+    parser.add_argument("--jobs", type=int, default=1, help="pairs matched at the same time (default 1)")
+    options = parser.parse_args()
+    archive = Archive(options.archive)
+    with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
+        for title, pairs in drawn_pairs(archive, options.pairs, options.seed).items():
+            print(f"{title:48s} {'':30s} margin conf. seconds")
+            wrong, sure = 0, 0
+            for line, failed, confidence in pool.imap(measure, [(archive, pair) for pair in pairs]):
+                print(line, flush=True)
+                wrong += failed
+                sure += failed and confidence >= CONFIDENT
+            print(
+                f"{wrong} of {len(pairs)} wrong, {sure} of them with a confidence of {CONFIDENT} or more\n", flush=True
+            )
+
+
+if __name__ == "__main__":
+    main()
