@@ -31,9 +31,10 @@ _OFFERED = 400
 _FARTHEST = ((5, 9, {1: 20, -1: 8}), (6, 10, {1: 40, -1: 12}))
 # The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
 _TIPS = (6, 9, {1: 20, -1: 8})
-# How many of all that are offered are followed up besides, for carrying over to the whole surfaces best.
-_FITTING = {1: 14, -1: 6}
 _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
+# How many of all that each of these searches offers are followed up besides, for carrying over to the whole surfaces
+# best.
+_FITTING = {1: 14, -1: 6}
 # Of bodies with at least so many limbs all are matched: how many of the matchings that fit best are improved, and how
 # many different ones are followed up at most.
 _MANY_LIMBS, _STARTS, _ENDS = 8, 16, 8

@@ -26,13 +26,13 @@ def all_matchings():
     return np.array(list(permutations(range(COUNT))))
 
 
-def lifted(x, y, rest):
+def lifted(x, y, rest, **options):
     """Five farthest points of X, and the samples of Y that are nearest to them at rest."""
     of_x = np.arange(COUNT)
     places = rest[y.vertices[: y.coarse_count]]
     wanted = rest[x.vertices[of_x]]
     of_y = np.linalg.norm(wanted[:, None] - places, axis=2).argmin(axis=1)
-    return LiftedMatchings(x, y, of_x, of_y)
+    return LiftedMatchings(x, y, of_x, of_y, **options)
 
 
 def error(x, y, rest, maps):
@@ -46,6 +46,15 @@ def test_of_all_permutations_the_truth_fits_best(pair, rest, all_matchings):
     np.testing.assert_array_equal(best[0], np.arange(COUNT))
     assert error(*pair, rest, found.maps(best[0], 1)) < 0.15
     assert error(*pair, rest, found.maps(best[1], 1)) > 0.3
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_the_truth_fits_best_on_a_body_of_other_proportions_by_relative_distances(axis, rest, all_matchings):
+    vertices, triangles, _ = creature(0.0, 9)
+    stretched = vertices * np.where(np.arange(3) == axis, 1.7, 1.0)
+    x, y = (domain(places, triangles, eigenpairs=20) for places in (vertices, stretched))
+    best = lifted(x, y, rest, relative=True).best(all_matchings, 1, 1)
+    np.testing.assert_array_equal(best[0], np.arange(COUNT))
 
 
 def test_a_reflected_surface_is_matched_with_the_sides_reversed(pair, rest, all_matchings):
