@@ -44,6 +44,7 @@ _VARIANTS = {1: (3, 2, 1, 1), -1: (2, 1)}  # how many of each group of like maps
 _FITTING_VARIANTS = {1: (2, 1, 1), -1: (1,)}  # and of those that carry over best, where they are others
 _CLUSTER = 0.15  # mean distance between the images of maps of different groups, in sqrt(area)
 _VARIANT = 0.04  # the same for those of one group: a limb may be crossed in the best of them
+_OTHER = 0.06  # the same from which on one that carries over best is followed up beside the others
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +115,7 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
         fitting += found[1]
     chosen = _candidates(y, usual, _VARIANTS)
     more = _candidates(y, fitting, _FITTING_VARIANTS)
-    chosen += [lead for lead in more if all(_move(y, lead, other) > _VARIANT for other in chosen)]
+    chosen += [lead for lead in more if all(_move(y, lead, other) > _OTHER for other in chosen)]
     for sign in signs:
         # Bodies with many limbs are rare: the bar has come to its end before.
         chosen += yield from within(_many_limbs_steps(x, y, sign), 1.0, 1.0)
