@@ -8,7 +8,8 @@ place for each bone and frame.  Both are in `mods/public/public.zip` of Debian's
 import struct
 import zipfile
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from functools import cached_property
+from pathlib import Path, PurePosixPath
 
 import numpy as np
 
@@ -33,8 +34,8 @@ class Model:
         motion = frame @ np.linalg.inv(self.bones)
         there = self.influences < len(motion)
         weights = np.where(there, self.weights, 0)
-        moved = np.einsum("nkab,nb->nka", motion[np.where(there, self.influences, 0)][:, :, :3, :3], self.vertices)
-        moved += motion[np.where(there, self.influences, 0)][:, :, :3, 3]
+        each = motion[np.where(there, self.influences, 0)]
+        moved = np.einsum("nkab,nb->nka", each[..., :3, :3], self.vertices) + each[..., :3, 3]
         return np.einsum("nk,nka->na", weights, moved) / np.maximum(weights.sum(axis=1, keepdims=True), 1e-9)
 
 
@@ -53,13 +54,17 @@ def transformations(states):
     return matrices
 
 
+@dataclass(frozen=True)
 class Archive:
-    """The game's data."""
+    """The game's data; two of one path are the same, so that what was read from it is found again."""
 
-    def __init__(self, path):
-        self.path = path
-        with zipfile.ZipFile(path) as archive:
-            self.names = archive.namelist()
+    path: Path
+
+    @cached_property
+    def names(self):
+        """All files."""
+        with zipfile.ZipFile(self.path) as archive:
+            return archive.namelist()
 
     def _bytes(self, name, magic):
         with zipfile.ZipFile(self.path) as archive:
