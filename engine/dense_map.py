@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,10 +12,17 @@ from .closest_points import FoundPoints
 from .deformable import DeformableSurface
 from .functional_maps import PointMaps
 from .limb_sides import exchanged_limbs, repaired_start
-from .map_hypotheses import MapHypothesis, map_hypotheses_steps, score_everywhere, unrefined_hypothesis
+from .map_hypotheses import (
+    MapHypothesis,
+    map_hypotheses_steps,
+    refined_hypothesis_steps,
+    score_everywhere,
+    unrefined_hypotheses_steps,
+    unrefined_hypothesis,
+)
 from .progress import Steps, within
 from .registration import CLOSE, FINE, GUIDED, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
-from .steering import steered_hypotheses_steps
+from .steering import agrees, steered_hypotheses_steps
 from .surface import SurfacePoints
 from .ties import Ties
 
@@ -46,6 +53,12 @@ _ELSEWHERE, _LIMB = 0.15, 0.02
 """Or they are different maps if they take so large a part of the source so far, in sqrt(area), from each other."""
 
 _MOST_CANDIDATES = 3
+
+_ISOMETRIC = 0.05
+"""Isometric defect of the best hypothesis up to which functional maps, which refined it, are to be trusted."""
+
+_LIKE = 0.04
+"""Mean distance, in sqrt(area), up to which a rough map would lead to where another one already has."""
 _ELASTIC_WEIGHT = 4.0
 _GAP_WEIGHT = 4.0
 _LEAST_GAP = 1e-4  # in sqrt(area); surfaces that meet closer than that are all the same
@@ -179,9 +192,14 @@ def registered_pair_steps(
     follow = _Follower(source, target, _functions(x, _SMOOTH), ties)
     candidates = []
     for number, hypothesis in enumerate(plausible):
-        begin, end = (0.42 + 0.26 * (number + i) / len(plausible) for i in (0, 1))
+        begin, end = (0.42 + 0.18 * (number + i) / len(plausible) for i in (0, 1))
         candidates.append((yield from within(follow.steps(hypothesis), begin, end)))
     candidates.sort(key=lambda candidate: candidate.score)
+    if search and candidates[0].hypothesis.isometric_defect > _ISOMETRIC:
+        proposals = unrefined_hypotheses_steps(candidates[0].hypothesis.domains)
+        unrefined = yield from within(proposals, 0.6, 0.62)
+        allowed = [h for h in unrefined if landmarks is None or agrees(x, y, landmarks, h)]
+        candidates = yield from within(_unrefined_steps(follow, candidates, allowed), 0.62, 0.68)
     if search:
         # Where no map is looked for, the one that is given is followed as it is.
         repairing = _limbs_repaired_steps((x, y), follow, candidates[0])
@@ -217,6 +235,25 @@ def _ties(x: Shape, y: Shape, target: DeformableSurface, here: LandmarkPlaces, t
     return Ties.at(x.mesh, at, target.in_unit_size(places))
 
 
+def _unrefined_steps(
+    follow: _Follower, candidates: list[Candidate], hypotheses: list[MapHypothesis]
+) -> Steps[list[Candidate]]:
+    """Follow up rough maps, too, that would not lead to where a candidate is; the most credible candidate first."""
+    taken = [candidate.registration.positions for candidate in candidates]
+    for number, hypothesis in enumerate(hypotheses):
+        images = yield from hypothesis.images_steps()
+        start = follow.start(images)
+        if all(follow.apart(start, positions) > _LIKE for positions in taken):
+            begin, end = ((number + i) / (len(hypotheses) + 0.2) for i in (0, 1))
+            candidates = [*candidates, (yield from within(follow.steps(hypothesis), begin, end))]
+            taken += [start, candidates[-1].registration.positions]
+    ranked = sorted(candidates, key=lambda candidate: candidate.score)
+    if any(ranked[0].hypothesis is h for h in hypotheses):
+        # Others are compared with what functional maps make of it, not with the rough map.
+        ranked[0] = yield from within(follow.refined_steps(ranked[0]), 0.9, 1.0)
+    return ranked
+
+
 @dataclass(frozen=True, eq=False)
 class _Follower:
     """Follows hypotheses up by a soft registration."""
@@ -230,7 +267,7 @@ class _Follower:
         """Register the source from where a hypothesis takes it, and judge what comes of it."""
         source, target = self.source, self.target
         images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
-        start = smooth_start(source, target, images.on_y, self.smooth)
+        start = self.start(images)
         first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
         guides = self._guides(hypothesis, images)
         steps = register_steps(source, target, start, (GUIDED, SOFT), first, ties=self.ties, guides=guides)
@@ -243,6 +280,23 @@ class _Follower:
         score = score_everywhere(hypothesis.domains, self.vertex_maps(registration))
         score += _GAP_WEIGHT * float(np.log(gaps).sum())
         return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic))
+
+    def start(self, images: PointMaps) -> NDArray[np.float64]:
+        """Place the source where a map between all vertices puts it, smoothly."""
+        return smooth_start(self.source, self.target, images.on_y, self.smooth)
+
+    def apart(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+        """Mean distance, in sqrt(area), between two ways to place the source."""
+        areas = self.source.mass
+        return float(areas @ np.linalg.norm(first - second, axis=1) / areas.sum())
+
+    def refined_steps(self, candidate: Candidate) -> Steps[Candidate]:
+        """Let functional maps refine a registered map, and take that for the hypothesis that led to it."""
+        was = candidate.hypothesis
+        maps = self.vertex_maps(candidate.registration)
+        hypothesis = yield from refined_hypothesis_steps(was.domains, maps, was.origin)
+        likeness = candidate.likeness + was.score - hypothesis.score
+        return replace(candidate, hypothesis=hypothesis, likeness=likeness)
 
     def _guides(self, hypothesis: MapHypothesis, images: PointMaps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Take the lowest eigenfunctions of the target to both surfaces: a tail is far from a leg in them, in any pose.

@@ -102,11 +102,12 @@ class LiftedMatchings:
                 kept.append(int(number))
         return matchings[kept]
 
-    def exchanged(self, images: NDArray[np.int64], sign: int) -> NDArray[np.int64]:
-        """Exchange two images of a matching, as often as it fits better then, always those that help the most.
+    def improved(self, images: NDArray[np.int64], sign: int) -> NDArray[np.int64]:
+        """Exchange two images of a matching, or one for another sample, as often as it fits better then.
 
-        Of limbs that are alike, as the arms of an octopus, there are too many matchings to try all of them; but the
-        fit of those that exchange a few limbs says which, so different starts end at few matchings.
+        Always the change that helps the most is made.  Of limbs that are alike, as the arms of an octopus, there are
+        too many matchings to try all of them; but the fit of those that change a few limbs says which, so different
+        starts end at few matchings.
 
         Parameters
         ----------
@@ -120,17 +121,26 @@ class LiftedMatchings:
         (m,) array of int
             The best that was found.
         """
-        first, second = np.triu_indices(len(images), 1)
-        rows = np.arange(len(first))
         least = self._assessed(images[None], sign)[0][0]
-        while len(rows):
-            offered = np.repeat(images[None], len(rows), axis=0)
-            offered[rows, first], offered[rows, second] = images[second], images[first]
+        while len(offered := self._changed(images)):
             misfits = self._assessed(offered, sign)[0]
             if misfits.min() >= least:
                 break
             images, least = offered[misfits.argmin()], misfits.min()
         return images
+
+    def _changed(self, images: NDArray[np.int64]) -> NDArray[np.int64]:
+        """All matchings that differ from one in one image, or in two that are exchanged, (r, m)."""
+        m = len(images)
+        first, second = np.triu_indices(m, 1)
+        exchanged = np.repeat(images[None], len(first), axis=0)
+        rows = np.arange(len(first))
+        exchanged[rows, first], exchanged[rows, second] = images[second], images[first]
+        free = np.setdiff1d(np.arange(self._distances.shape[1]), images)
+        changed, taken = np.repeat(np.arange(m), len(free)), np.tile(free, m)
+        replaced = np.repeat(images[None], len(changed), axis=0)
+        replaced[np.arange(len(changed)), changed] = taken
+        return np.concatenate([exchanged, replaced])
 
     def _assessed(self, matchings: NDArray[np.int64], sign: int) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
         """Mean squared difference of descriptions of scouts and of what they go to, (r,), and where those of X go."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from .errors import MatchError
 from .functional_maps import (
+    FunctionalMaps,
     PointMaps,
     fit_functional_maps,
     nearest_both_ways,
@@ -21,7 +22,7 @@ from .functional_maps import (
 )
 from .map_domain import MapDomain
 from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
-from .map_search import MapLead, distinct_leads, rough_maps_steps
+from .map_search import MapLead, distinct_leads, fitting_maps_steps, rough_maps_steps
 from .progress import Progress, Steps, run, within
 
 if TYPE_CHECKING:
@@ -31,9 +32,18 @@ if TYPE_CHECKING:
 
     from .shape import Shape
 
-__all__ = ["LandmarkStart", "MapHypothesis", "map_hypotheses_steps", "score_everywhere", "unrefined_hypothesis"]
+__all__ = [
+    "LandmarkStart",
+    "MapHypothesis",
+    "map_hypotheses_steps",
+    "refined_hypothesis_steps",
+    "score_everywhere",
+    "unrefined_hypotheses_steps",
+    "unrefined_hypothesis",
+]
 
 _FINE_SIZES = spectral_sizes(15, 80, 9)
+_SMOOTH = 25  # eigenfunctions that maps between coarse samples are carried over with
 _SMOOTHED = 110  # eigenfunctions that patches are smoothed by before they are compared as rigid bodies
 _DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
 _RETURNED = {1: 4, -1: 2}  # most hypotheses that keep the orientation, and that mirror it
@@ -164,14 +174,56 @@ def map_hypotheses_steps(
         steps = rough_maps_steps(a, b) if mirrored else _keeping_leads_steps(a, b)
         leads = yield from within(steps, 0.05, 0.4)
     refined: list[MapLead] = []
-    candidates = [(_on_fine_samples(a, b, lead.points), lead.origin) for lead in leads]
+    candidates = [(_between_fine(a, b, _smooth_maps(a, b, lead.points)), lead.origin) for lead in leads]
     candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
     for number, (points, origin) in enumerate(candidates):
         begin, end = (0.4 + 0.6 * (number + i) / len(candidates) for i in (0, 1))
         finer = refine_bijective_steps(a.fine_basis, b.fine_basis, points, _FINE_SIZES)
         refined.append(_assessed(a, b, (yield from within(finer, begin, end)), origin))
     kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
-    return [MapHypothesis((a, b), lead.points, lead.score, lead.orientation, lead.terms, lead.origin) for lead in kept]
+    return [_hypothesis((a, b), lead) for lead in kept]
+
+
+def unrefined_hypotheses_steps(domains: tuple[MapDomain, MapDomain]) -> Steps[list[MapHypothesis]]:
+    """Propose maps that keep the orientation, of matchings of extremities as they are.
+
+    From either side: which points of a surface are its farthest, and what they may be matched to, differs.
+
+    Parameters
+    ----------
+    domains : pair of MapDomain
+        The surfaces.
+
+    Returns
+    -------
+    list of MapHypothesis
+        The most credible matching of X to Y, and of Y to X.  Their scores are comparable among each other.
+    """
+    x, y = domains
+    there = yield from within(fitting_maps_steps(x, y), 0.0, 0.25)
+    best_there = yield from within(_best_unrefined_steps(domains, there), 0.25, 0.5)
+    back = yield from within(fitting_maps_steps(y, x), 0.5, 0.75)
+    turned = [PointMaps(points.on_x, points.on_y) for points in back]
+    best_back = yield from within(_best_unrefined_steps(domains, turned), 0.75, 1.0)
+    return [hypothesis for hypothesis in (best_there, best_back) if hypothesis is not None]
+
+
+def _best_unrefined_steps(
+    domains: tuple[MapDomain, MapDomain], proposed: list[PointMaps]
+) -> Steps[MapHypothesis | None]:
+    """Choose the most credible of maps between the coarse samples, if any keeps the orientation."""
+    x, y = domains
+    best: tuple[MapLead, FunctionalMaps] | None = None
+    for number, points in enumerate(proposed):
+        maps = _smooth_maps(x, y, points)
+        lead = _assessed(x, y, _between_fine(x, y, maps), "matching")
+        if lead.orientation > 0 and (best is None or lead.score < best[0].score):
+            best = lead, maps
+        yield Progress((number + 1) / len(proposed), "Comparing maps")
+    if best is None:
+        return None
+    images = yield from within(points_from_functions_steps(best[1], x.functions, y.functions), 1.0, 1.0)
+    return _hypothesis(domains, best[0], images)
 
 
 def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: LandmarkStart) -> MapHypothesis:
@@ -180,19 +232,37 @@ def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: LandmarkSt
     Functional maps join what looks alike, such as the one horn of two that is whole with itself in a map that mirrors.
     """
     x, y = domains
-    rough = _assessed(x, y, _from_landmarks(x, y, start), start.origin)
-    hypothesis = MapHypothesis(domains, rough.points, rough.score, rough.orientation, rough.terms, rough.origin)
+    lead = _assessed(x, y, _from_landmarks(x, y, start), start.origin)
     rows = (np.asarray(distances, np.float64).T for distances in (start.source_distances, start.target_distances))
-    hypothesis.__dict__["images"] = nearest_both_ways(*rows)
-    return hypothesis
+    return _hypothesis(domains, lead, nearest_both_ways(*rows))
 
 
 def score_everywhere(domains: tuple[MapDomain, MapDomain], images: PointMaps) -> float:
     """Score maps between all vertices like a hypothesis: smaller is more credible."""
+    return _assessed(*domains, _at_fine_samples(*domains, images), "").score
+
+
+def refined_hypothesis_steps(
+    domains: tuple[MapDomain, MapDomain], images: PointMaps, origin: str
+) -> Steps[MapHypothesis]:
+    """Refine maps between all vertices by functional maps, as rough maps are, so that their scores compare."""
     x, y = domains
-    on_y = y.nearest_samples(images.on_y[x.vertices])
-    on_x = x.nearest_samples(images.on_x[y.vertices])
-    return _assessed(x, y, PointMaps(on_y, on_x), "").score
+    rough = _at_fine_samples(x, y, images)
+    points = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, rough, _FINE_SIZES)
+    return _hypothesis(domains, _assessed(x, y, points, origin))
+
+
+def _at_fine_samples(x: MapDomain, y: MapDomain, images: PointMaps) -> PointMaps:
+    """Take maps between all vertices to the fine samples."""
+    return PointMaps(y.nearest_samples(images.on_y[x.vertices]), x.nearest_samples(images.on_x[y.vertices]))
+
+
+def _hypothesis(domains: tuple[MapDomain, MapDomain], lead: MapLead, images: PointMaps | None = None) -> MapHypothesis:
+    """Make a hypothesis of a lead, with its map between all vertices if that is known already."""
+    hypothesis = MapHypothesis(domains, lead.points, lead.score, lead.orientation, lead.terms, lead.origin)
+    if images is not None:
+        hypothesis.__dict__["images"] = images
+    return hypothesis
 
 
 def _keeping_leads_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:
@@ -202,10 +272,14 @@ def _keeping_leads_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:
     return keeping or (yield from within(rough_maps_steps(x, y), 0.9, 1.0))
 
 
-def _on_fine_samples(x: MapDomain, y: MapDomain, points: PointMaps) -> PointMaps:
-    """Carry maps between coarse samples to the fine ones."""
-    size = min(25, x.coarse_basis.size, y.coarse_basis.size)
-    maps = fit_functional_maps(x.coarse_basis, y.coarse_basis, points, size)
+def _smooth_maps(x: MapDomain, y: MapDomain, points: PointMaps) -> FunctionalMaps:
+    """Take maps between the coarse samples without their noise."""
+    size = min(_SMOOTH, x.coarse_basis.size, y.coarse_basis.size)
+    return fit_functional_maps(x.coarse_basis, y.coarse_basis, points, size)
+
+
+def _between_fine(x: MapDomain, y: MapDomain, maps: FunctionalMaps) -> PointMaps:
+    """Carry functional maps to the fine samples."""
     return points_from_functions(maps, x.fine_basis.functions, y.fine_basis.functions)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from .map_domain import MapDomain
 
-__all__ = ["MapLead", "distinct_leads", "rough_maps_steps"]
+__all__ = ["MapLead", "distinct_leads", "fitting_maps_steps", "rough_maps_steps"]
 
 # How many matchings are offered, by the distances between what is matched.
 _OFFERED = 400
@@ -35,6 +35,8 @@ _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb,
 # How many of all that each of these searches offers are followed up besides, for carrying over to the whole surfaces
 # best.
 _FITTING = {1: 14, -1: 6}
+# How many matchings of each search are proposed as they are, for carrying over best, and improved.
+_UNREFINED = 3
 # Of bodies with at least so many limbs all are matched: how many of the matchings that fit best are improved, and how
 # many different ones are followed up at most.
 _MANY_LIMBS, _STARTS, _ENDS = 8, 16, 8
@@ -122,6 +124,38 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     return chosen
 
 
+def fitting_maps_steps(x: MapDomain, y: MapDomain) -> Steps[list[PointMaps]]:
+    """Propose maps between the coarse samples that matchings of extremities of X give as they are.
+
+    Between unlike bodies eigenfunctions differ, so that refined by them even the true map may be turned into a wrong
+    one.  Matchings that carry over to the whole surfaces best need none.
+
+    Parameters
+    ----------
+    x, y : MapDomain
+        The surfaces.
+
+    Yields
+    ------
+    Progress
+        After each search for matchings.
+
+    Returns
+    -------
+    list of PointMaps
+        Of each search the best few, and what they become if one image after the other is changed for a better one.
+    """
+    found = []
+    searches = _searches(x, y)
+    for number, search in enumerate(searches):
+        lifted = LiftedMatchings(x, y, search.of_x, search.of_y, relative=True)
+        best = lifted.best(_matchings(x, y, search.of_x, search.of_y), 1, _UNREFINED)
+        improved = [lifted.improved(images, 1) for images in best]
+        found += [lifted.maps(images, 1) for images in np.unique([*best, *improved], axis=0)]
+        yield Progress((number + 1) / len(searches), "Comparing maps")
+    return found
+
+
 def _searched_steps(
     x: MapDomain, y: MapDomain, search: _Search, sign: int
 ) -> Steps[tuple[list[MapLead], list[MapLead]]]:
@@ -147,7 +181,7 @@ def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLe
     """Match all limbs of bodies that have many of them, such as the arms of an octopus or the legs of an ant.
 
     Distances between tips hardly tell which of eight arms is which, and a body that is turned by one arm is nearly the
-    same.  So matchings are chosen by how well they carry over to the whole surfaces, and improved by exchanges.
+    same.  So matchings are chosen by how well they carry over to the whole surfaces, and improved step by step.
     """
     apart = _TIPS_APART[0]
     of_x, of_y = (spread_extremities(d.shape, d.coarse_count, apart, filled=False) for d in (x, y))
@@ -158,7 +192,7 @@ def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLe
     starts = lifted.best(_matchings(x, y, of_x, of_y), sign, _STARTS)
     better, leads = [], []
     for images in starts:
-        better.append(lifted.exchanged(images, sign))
+        better.append(lifted.improved(images, sign))
         yield Progress(len(better) / len(starts), "Comparing maps")
     for images in lifted.best(np.array(better), sign, _ENDS):
         lead = yield from _refined_steps(x, y, lifted.maps(images, sign))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .landmarks import Landmarks
     from .shape import Shape
 
-__all__ = ["Steered", "landmark_distance", "steered_hypotheses_steps"]
+__all__ = ["Steered", "agrees", "landmark_distance", "steered_hypotheses_steps"]
 
 _PENALTY = 20.0
 """What a map's score rises by for each sqrt(area) that the images of landmarks are from their partners."""
@@ -62,6 +62,11 @@ def landmark_distance(x: Shape, y: Shape, landmarks: Landmarks, hypothesis: MapH
     return float((there + back).mean() / 2)
 
 
+def agrees(x: Shape, y: Shape, landmarks: Landmarks, hypothesis: MapHypothesis) -> bool:
+    """Say whether a map takes landmarks to their partners, as nearly as rough maps do; see `landmark_distance`."""
+    return landmark_distance(x, y, landmarks, hypothesis) <= _AGREEING
+
+
 def steered_hypotheses_steps(
     x: Shape, y: Shape, starts: Sequence[LandmarkStart], landmarks: Landmarks, *, search: bool = True
 ) -> Steps[Steered]:
@@ -93,7 +98,7 @@ def steered_hypotheses_steps(
     hypotheses = yield from within(map_hypotheses_steps(x, y, starts, search=search), 0.0, 0.4)
     natural = next((h for h in hypotheses if h.orientation > 0), hypotheses[0])
     direct = _judged(x, y, landmarks, hypotheses)
-    if landmark_distance(x, y, landmarks, natural) <= _AGREEING:
+    if agrees(x, y, landmarks, natural):
         return Steered(x, mirrored=False, hypotheses=direct)
     direct = yield from within(_completed_steps(x, y, starts, landmarks, direct), 0.4, 0.5)
     reflection = x.reflected()
@@ -112,7 +117,7 @@ def _completed_steps(
 
     Without the landmarks it may have been too poor to be kept beside the others.
     """
-    if any(h.orientation > 0 and landmark_distance(x, y, landmarks, h) <= _AGREEING for h in judged):
+    if any(h.orientation > 0 and agrees(x, y, landmarks, h) for h in judged):
         return judged
     more: list[MapHypothesis] = []
     for number, start in enumerate(starts):

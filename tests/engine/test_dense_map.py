@@ -158,6 +158,31 @@ def test_limbs_that_the_best_hypothesis_exchanges_are_put_right(bodies, monkeypa
     assert pair.margin is None or pair.margin >= 0
 
 
+def test_where_a_map_is_nearly_an_isometry_no_rough_ones_are_followed(registered):
+    assert registered.candidates[0].hypothesis.isometric_defect < 0.05
+    assert "matching" not in [candidate.hypothesis.origin for candidate in registered.candidates]
+
+
+def test_a_matching_as_it_is_takes_the_place_of_hypotheses_that_are_wrong(bodies, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    turned = np.linalg.norm(rest_x[x.samples[:40]][:, None] * [-1, -1, 1] - rest_y, axis=2).argmin(axis=1)
+    start = start_from(x, y, x.samples[:40], turned, "turned")
+
+    def misled(x, y, starts=(), *, search=True, mirrored=True):
+        return map_hypotheses_steps(x, y, [start] if search else starts, search=False, mirrored=mirrored)
+
+    monkeypatch.setattr(dense_map, "map_hypotheses_steps", misled)
+    reports, pair = followed(registered_pair_steps(x, y))
+    fractions = [report.fraction for report in reports]
+    assert fractions == sorted(fractions)
+    best, other = pair.candidates[0], pair.candidates[-1]
+    assert (best.hypothesis.origin, other.hypothesis.origin) == ("matching", "turned")
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
+    assert best.hypothesis.isometric_defect < 0.05 < other.hypothesis.isometric_defect
+    assert best.likeness > other.likeness + 3
+    assert pair.margin == pytest.approx(other.score - best.score)
+
+
 def test_motion_and_scale_do_not_matter(registered, bodies):
     x, y = bodies[:2]
     turn = rotation([1, -1, 2], 2.5)

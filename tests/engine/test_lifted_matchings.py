@@ -80,12 +80,23 @@ def test_no_more_are_chosen_than_there_are(pair, rest):
     assert found.best(np.arange(COUNT)[None], 1, 9).shape == (1, COUNT)
 
 
-def test_exchanges_lead_from_wrong_matchings_to_the_truth(pair, rest):
+def test_changes_lead_from_wrong_matchings_to_the_truth(pair, rest):
     found = lifted(*pair, rest)
     for wrong in ([1, 0, 2, 3, 4], [1, 2, 0, 3, 4], [3, 1, 4, 0, 2]):
-        np.testing.assert_array_equal(found.exchanged(np.array(wrong), 1), np.arange(COUNT))
+        np.testing.assert_array_equal(found.improved(np.array(wrong), 1), np.arange(COUNT))
 
 
-def test_a_single_pair_has_nothing_to_exchange(pair):
+def test_an_image_that_is_nowhere_in_a_matching_is_taken_for_a_better_one(pair, rest):
+    x, y = pair
+    of_x = np.arange(COUNT)
+    true = np.linalg.norm(rest[x.vertices[of_x]][:, None] - rest[y.vertices[: y.coarse_count]], axis=2).argmin(axis=1)
+    others = np.setdiff1d(np.arange(40), true)[:4]
+    found = LiftedMatchings(x, y, of_x, np.concatenate([others, true]))
+    truth = np.arange(COUNT) + len(others)
+    for wrong in ([0, *truth[1:]], [truth[1], truth[0], 2, *truth[3:]]):
+        np.testing.assert_array_equal(found.improved(np.array(wrong), 1), truth)
+
+
+def test_a_single_pair_has_nothing_to_change(pair):
     single = np.zeros(1, np.int64)
-    np.testing.assert_array_equal(LiftedMatchings(*pair, single, single).exchanged(single, 1), single)
+    np.testing.assert_array_equal(LiftedMatchings(*pair, single, single).improved(single, 1), single)

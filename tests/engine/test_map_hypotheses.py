@@ -4,10 +4,17 @@
 import numpy as np
 import pytest
 
-from engine import MatchError, Shape, TriangleMesh
+from engine import MatchError, Shape, TriangleMesh, map_hypotheses
 from engine.functional_maps import PointMaps
-from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere, unrefined_hypothesis
-from engine.progress import run
+from engine.map_hypotheses import (
+    LandmarkStart,
+    map_hypotheses_steps,
+    refined_hypothesis_steps,
+    score_everywhere,
+    unrefined_hypotheses_steps,
+    unrefined_hypothesis,
+)
+from engine.progress import Progress, run
 from tests.bodies import mirrored_body
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
@@ -182,6 +189,39 @@ def test_a_start_can_be_taken_as_it_is(poses, proposed):
     assert error(rest, found.images_on_x) < 0.02
     assert found.orientation > 0.6
     assert found.origin == "known"
+
+
+def test_matchings_are_proposed_as_they_are_from_either_side(poses, proposed):
+    rest, domains = poses[2], proposed[0].domains
+    found = run(unrefined_hypotheses_steps(domains))
+    assert len(found) == 2
+    for hypothesis in found:
+        assert hypothesis.origin == "matching"
+        assert hypothesis.orientation > 0.3
+    assert min(error(rest, h.images_on_y) for h in found) < 0.04
+
+
+def test_a_matching_that_only_the_target_offers_is_turned_round(poses, proposed, monkeypatch):
+    rest, (x, y) = poses[2], proposed[0].domains
+    places = [rest[d.vertices[: d.coarse_count]] for d in (x, y)]
+    gaps = np.linalg.norm(places[0][:, None] - places[1], axis=2)
+
+    def only_back(source, _target):
+        yield Progress(0.5, "")
+        return [PointMaps(gaps.argmin(axis=0), gaps.argmin(axis=1))] if source is y else []
+
+    monkeypatch.setattr(map_hypotheses, "fitting_maps_steps", only_back)
+    (found,) = run(unrefined_hypotheses_steps((x, y)))
+    assert error(rest, found.images_on_y) < 0.03
+    assert error(rest, found.images_on_x) < 0.03
+
+
+def test_a_map_that_functional_maps_refine_is_scored_like_hypotheses(poses, proposed):
+    everywhere = np.arange(poses[0].mesh.vertex_count)
+    refined = run(refined_hypothesis_steps(proposed[0].domains, PointMaps(everywhere, everywhere), "truth"))
+    assert refined.score == pytest.approx(proposed[0].score, abs=0.3)
+    assert refined.origin == "truth"
+    assert error(poses[2], refined.images_on_y) < 0.02
 
 
 def test_maps_between_all_vertices_are_scored_like_hypotheses(poses, proposed):

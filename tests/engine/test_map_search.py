@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from engine.functional_maps import PointMaps
-from engine.map_search import MapLead, distinct_leads, rough_maps_steps
+from engine.map_search import MapLead, distinct_leads, fitting_maps_steps, rough_maps_steps
 from engine.progress import run
 from tests.bodies import octopus
 from tests.domains import domain
@@ -15,17 +15,17 @@ def pair():
     return tuple(domain(*creature(pose, 9)[:2], samples=300) for pose in (0.0, 1.0))
 
 
-def error(x, y, lead, sign=1):
+def error(x, y, points, sign=1):
     """Mean distance between images and truth at rest, where vertices correspond by their number."""
     rest = creature(0.0, 9)[2]
-    images = rest[y.vertices[lead.points.on_y]]
+    images = rest[y.vertices[points.on_y]]
     return np.linalg.norm(images - rest[x.vertices[: x.coarse_count]] * [1, sign, 1], axis=1).mean()
 
 
 def test_the_truth_is_among_the_rough_maps_and_first_of_its_orientation(pair):
     leads = run(rough_maps_steps(*pair))
     keeping = [lead for lead in leads if lead.orientation > 0]
-    assert error(*pair, keeping[0]) < 0.15
+    assert error(*pair, keeping[0].points) < 0.15
     assert keeping[0].score == min(lead.score for lead in keeping)
 
 
@@ -33,7 +33,17 @@ def test_maps_that_mirror_are_proposed_too(pair):
     leads = run(rough_maps_steps(*pair))
     mirroring = [lead for lead in leads if lead.orientation <= 0]
     assert mirroring
-    assert min(error(*pair, lead, -1) for lead in mirroring) < 0.25
+    assert min(error(*pair, lead.points, -1) for lead in mirroring) < 0.25
+
+
+def test_of_matchings_as_they_are_most_say_the_truth(pair):
+    maps = run(fitting_maps_steps(*pair))
+    errors = [error(*pair, points) for points in maps]
+    assert 3 <= len(maps) <= 18
+    assert min(errors) < 0.12
+    progress = [report.fraction for report in fitting_maps_steps(*pair)]
+    assert progress == sorted(progress)
+    assert progress[-1] == 1
 
 
 def test_groups_are_few(pair):
