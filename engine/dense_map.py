@@ -54,9 +54,6 @@ _ELSEWHERE, _LIMB = 0.15, 0.02
 
 _MOST_CANDIDATES = 3
 
-_ISOMETRIC = 0.05
-"""Isometric defect of the best hypothesis up to which functional maps, which refined it, are to be trusted."""
-
 _LIKE = 0.04
 """Mean distance, in sqrt(area), up to which a rough map would lead to where another one already has."""
 _ELASTIC_WEIGHT = 4.0
@@ -195,7 +192,7 @@ def registered_pair_steps(
         begin, end = (0.42 + 0.18 * (number + i) / len(plausible) for i in (0, 1))
         candidates.append((yield from within(follow.steps(hypothesis), begin, end)))
     candidates.sort(key=lambda candidate: candidate.score)
-    if search and candidates[0].hypothesis.isometric_defect > _ISOMETRIC:
+    if search and candidates[0].hypothesis.is_doubtful:
         proposals = unrefined_hypotheses_steps(candidates[0].hypothesis.domains)
         unrefined = yield from within(proposals, 0.6, 0.62)
         allowed = [h for h in unrefined if landmarks is None or agrees(x, y, landmarks, h)]

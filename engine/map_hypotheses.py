@@ -51,6 +51,8 @@ _HOPELESS = 3.0  # excess of the score over the best of the same orientation
 # Rigidity is the strongest cue against half turns; in distances and spectra these are hardly worse than the truth.
 _WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
 _LEAST_TERM = 1e-6
+_ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
+_ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +126,11 @@ class MapHypothesis:
     def isometric_defect(self) -> float:
         """How far the map is from keeping all distances; below 0.1 where it is nearly an isometry."""
         return self.terms["commutator"]
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether functional maps may have led astray: the map is no isometry, or turns parts of the surface over."""
+        return self.isometric_defect > _ISOMETRIC or self.orientation < _ORIENTED
 
 
 def map_hypotheses_steps(

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Dense maps proposed for a body in two poses, whose truth is known vertex by vertex."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -189,6 +191,13 @@ def test_a_start_can_be_taken_as_it_is(poses, proposed):
     assert error(rest, found.images_on_x) < 0.02
     assert found.orientation > 0.6
     assert found.origin == "known"
+
+
+def test_maps_that_are_no_isometries_or_turn_parts_over_are_doubtful(proposed):
+    best = proposed[0]
+    assert not best.is_doubtful
+    assert replace(best, orientation=0.6).is_doubtful
+    assert replace(best, terms={**best.terms, "commutator": 0.06}).is_doubtful
 
 
 def test_matchings_are_proposed_as_they_are_from_either_side(poses, proposed):
