@@ -97,6 +97,19 @@ def test_one_landmark_decides_between_the_true_and_the_mirrored_dense_map(mirror
     assert result.mirrored is None
 
 
+def test_landmarks_that_turn_a_body_round_are_followed_against_all_that_fits_better(bodies, shapes):
+    _, _, rest_x, rest_y = bodies
+    turned = rest_x * [-1, -1, 1]
+    directions = [[1, 0, 0], [-1, 0, 0], [1, 1, -1], [1, -1, -1], [-1, 1, -1], [-1, -1, -1]]
+    ends = np.argmax(rest_x @ np.transpose(directions), axis=0)
+    pairs = [[int(end), int(np.square(rest_y - turned[end]).sum(axis=1).argmin())] for end in ends]
+    result = match(*shapes, QUICK, landmarks=pairs)
+    assert_exact(result, pairs)
+    images = result.source_to_target.transfer(rest_y)
+    assert np.linalg.norm(images - turned, axis=1).mean() < 0.25
+    assert np.linalg.norm(images - rest_x, axis=1).mean() > 1
+
+
 @pytest.mark.parametrize(
     ("solver", "mirror"), [("hierarchical", False), ("hierarchical", True), ("flat", True), ("gmds", True)]
 )
