@@ -56,6 +56,7 @@ _MOST_CANDIDATES = 3
 
 _LIKE = 0.04
 """Mean distance, in sqrt(area), up to which a rough map would lead to where another one already has."""
+
 _ELASTIC_WEIGHT = 4.0
 _GAP_WEIGHT = 4.0
 _LEAST_GAP = 1e-4  # in sqrt(area); surfaces that meet closer than that are all the same
@@ -80,7 +81,7 @@ class Candidate:
     Attributes
     ----------
     hypothesis : MapHypothesis
-        The map it started from.
+        The map it started from; of the best, if that was rough, what functional maps make of where it led.
     registration : Registration
         The source on the target.
     score : float
@@ -238,10 +239,9 @@ def _unrefined_steps(
     """Follow up rough maps, too, that would not lead to where a candidate is; the most credible candidate first."""
     taken = [candidate.registration.positions for candidate in candidates]
     for number, hypothesis in enumerate(hypotheses):
-        images = yield from hypothesis.images_steps()
-        start = follow.start(images)
+        start = follow.start(hypothesis.images)
         if all(follow.apart(start, positions) > _LIKE for positions in taken):
-            begin, end = ((number + i) / (len(hypotheses) + 0.2) for i in (0, 1))
+            begin, end = (0.9 * (number + i) / len(hypotheses) for i in (0, 1))
             candidates = [*candidates, (yield from within(follow.steps(hypothesis), begin, end))]
             taken += [start, candidates[-1].registration.positions]
     ranked = sorted(candidates, key=lambda candidate: candidate.score)
