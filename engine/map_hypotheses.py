@@ -201,6 +201,11 @@ def unrefined_hypotheses_steps(domains: tuple[MapDomain, MapDomain]) -> Steps[li
     domains : pair of MapDomain
         The surfaces.
 
+    Yields
+    ------
+    Progress
+        After each search for matchings, and each map that is scored.
+
     Returns
     -------
     list of MapHypothesis
@@ -252,7 +257,27 @@ def score_everywhere(domains: tuple[MapDomain, MapDomain], images: PointMaps) ->
 def refined_hypothesis_steps(
     domains: tuple[MapDomain, MapDomain], images: PointMaps, origin: str
 ) -> Steps[MapHypothesis]:
-    """Refine maps between all vertices by functional maps, as rough maps are, so that their scores compare."""
+    """Refine maps between all vertices by functional maps, as rough maps are, so that their scores compare.
+
+    Parameters
+    ----------
+    domains : pair of MapDomain
+        The surfaces.
+    images : PointMaps
+        Between all their vertices.
+    origin : str
+        Where they are from.
+
+    Yields
+    ------
+    Progress
+        After each number of eigenfunctions.
+
+    Returns
+    -------
+    MapHypothesis
+        What has become of them.
+    """
     x, y = domains
     rough = _at_fine_samples(x, y, images)
     points = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, rough, _FINE_SIZES)

@@ -63,7 +63,22 @@ def landmark_distance(x: Shape, y: Shape, landmarks: Landmarks, hypothesis: MapH
 
 
 def agrees(x: Shape, y: Shape, landmarks: Landmarks, hypothesis: MapHypothesis) -> bool:
-    """Say whether a map takes landmarks to their partners, as nearly as rough maps do; see `landmark_distance`."""
+    """Say whether a map takes landmarks to their partners, as nearly as rough maps do.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The surfaces; their samples begin with the landmarks.
+    landmarks : Landmarks
+        What is known.
+    hypothesis : MapHypothesis
+        The map.
+
+    Returns
+    -------
+    bool
+        Whether `landmark_distance` is small.
+    """
     return landmark_distance(x, y, landmarks, hypothesis) <= _AGREEING
 
 

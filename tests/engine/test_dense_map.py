@@ -7,7 +7,9 @@ import pytest
 from engine import Shape, SurfacePoints, TriangleMesh, dense_map, run
 from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
 from engine.functional_maps import PointMaps
+from engine.landmarks import LandmarkPlaces, Landmarks
 from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere
+from engine.steering import Steered
 from tests.bodies import mirrored_body
 from tests.shapes import icosphere, rotation
 
@@ -36,6 +38,12 @@ def bodies():
     """A symmetric body, and one like it in another pose and triangulation."""
     first, second = mirrored_body(0.0, 9), mirrored_body(0.8, 9, seed=1)
     return shape(*first[:2]), shape(*second[:2]), first[2], second[2]
+
+
+def returned(value):
+    """Steps that take none."""
+    return value
+    yield
 
 
 def followed(steps):
@@ -163,10 +171,15 @@ def test_where_a_map_is_nearly_an_isometry_no_rough_ones_are_followed(registered
     assert "matching" not in [candidate.hypothesis.origin for candidate in registered.candidates]
 
 
+def turned_start(x, y, rest_x, rest_y):
+    """Start from pairs of vertices of which one is where the other would be if the body were turned round."""
+    turned = np.linalg.norm(rest_x[x.samples[:40]][:, None] * [-1, -1, 1] - rest_y, axis=2).argmin(axis=1)
+    return start_from(x, y, x.samples[:40], turned, "turned")
+
+
 def test_a_matching_as_it_is_takes_the_place_of_hypotheses_that_are_wrong(bodies, monkeypatch):
     x, y, rest_x, rest_y = bodies
-    turned = np.linalg.norm(rest_x[x.samples[:40]][:, None] * [-1, -1, 1] - rest_y, axis=2).argmin(axis=1)
-    start = start_from(x, y, x.samples[:40], turned, "turned")
+    start = turned_start(*bodies)
 
     def misled(x, y, starts=(), *, search=True, mirrored=True):
         return map_hypotheses_steps(x, y, [start] if search else starts, search=False, mirrored=mirrored)
@@ -182,6 +195,22 @@ def test_a_matching_as_it_is_takes_the_place_of_hypotheses_that_are_wrong(bodies
     assert other.hypothesis.is_doubtful
     assert best.likeness > other.likeness + 3
     assert pair.margin == pytest.approx(other.score - best.score)
+
+
+@pytest.mark.parametrize("agreeing", [True, False])
+def test_matchings_are_followed_only_if_they_agree_with_landmarks(agreeing, bodies, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    known = x.samples[:1]
+    partner = np.linalg.norm(rest_x[known] * [-1, -1, 1] - rest_y, axis=1).argmin(keepdims=True)
+    places = (LandmarkPlaces(vertices, vertices, vertices) for vertices in (known, partner))
+    hypotheses = run(map_hypotheses_steps(x, y, [turned_start(*bodies)], search=False))
+    steered = Steered(x, mirrored=False, hypotheses=hypotheses)
+    monkeypatch.setattr(dense_map, "steered_hypotheses_steps", lambda *_, **__: returned(steered))
+    asked = []
+    monkeypatch.setattr(dense_map, "agrees", lambda *those: asked.append(those[3]) or agreeing)
+    pair = run(registered_pair_steps(x, y, landmarks=Landmarks(*places)))
+    assert {hypothesis.origin for hypothesis in asked} == {"matching"}
+    assert ("matching" in [candidate.hypothesis.origin for candidate in pair.candidates]) == agreeing
 
 
 def test_motion_and_scale_do_not_matter(registered, bodies):

@@ -36,7 +36,7 @@ def test_maps_that_mirror_are_proposed_too(pair):
     assert min(error(*pair, lead.points, -1) for lead in mirroring) < 0.25
 
 
-def test_of_matchings_as_they_are_most_say_the_truth(pair):
+def test_the_truth_is_among_the_matchings_that_are_proposed_as_they_are(pair):
     maps = run(fitting_maps_steps(*pair))
     errors = [error(*pair, points) for points in maps]
     assert 3 <= len(maps) <= 18
