@@ -298,6 +298,8 @@ def register_steps(
        CVPR 2007.
     """
     positions = start
+    # A smooth start has no cross-sections left where limbs are thin: which way round they are, its matches tell.
+    posed = start if first is None else _at(first[0], target.triangles, target.vertices)
     total = sum(len(stage.weights) for stage in stages)
     done = 0
     matches = first
@@ -311,9 +313,9 @@ def register_steps(
             search, normals = matcher.source_search(positions)
             if matches is None:
                 matches = matcher.matches(search)
-            solved = _solved(matcher, elastic, positions, normals, matches, weight=weight, ties=ties)
+            solved = _solved(matcher, elastic, posed, normals, matches, weight=weight, ties=ties)
             step = (1 + stage.lead) * (solved - positions) + stage.momentum * step
-            positions = positions + step
+            positions = posed = positions + step
             matches = None
             done += 1
             yield Progress(done / total, "Fitting the surfaces")
@@ -335,14 +337,14 @@ def _at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.fl
 def _solved(
     matcher: _Matcher,
     elastic: ElasticSurface,
-    positions: NDArray[np.float64],
+    posed: NDArray[np.float64],
     normals: NDArray[np.float64],
     matches: tuple[FoundPoints, FoundPoints],
     *,
     weight: float,
     ties: Ties | None,
 ) -> NDArray[np.float64]:
-    """Positions of least energy for given matches."""
+    """Positions of least energy for given matches, with rotations first fitted to the positions `posed`."""
     on_target, on_source = matches
     source, target = matcher.source, matcher.target
     wanted = _at(on_target, target.triangles, target.vertices)
@@ -357,15 +359,15 @@ def _solved(
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
     response = None if ties is None else ties.response(solve)
     for _ in range(_SOLVES):
-        rotations = elastic.rotations(positions, matcher.stage.rotation_radius)
+        rotations = elastic.rotations(posed, matcher.stage.rotation_radius)
         if len(beyond):
             # Harmonic extension: what has no partner turns with its surroundings, however it was squeezed before.
             extended = solve(own[:, None] * rotations.reshape(-1, 9))[beyond]
             rotations[beyond] = nearest_rotations(extended.reshape(-1, 3, 3))
-        positions = solve(elastic.pull(rotations) + right)
+        posed = solve(elastic.pull(rotations) + right)
         if ties is not None and response is not None:
-            positions = ties.held(positions, response)
-    return positions
+            posed = ties.held(posed, response)
+    return posed
 
 
 def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> NDArray[np.bool_]:

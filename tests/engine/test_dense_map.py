@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The choice among hypotheses, and the registration of the best."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from engine import Shape, SurfacePoints, TriangleMesh, dense_map, run
+from engine import Shape, SurfacePoints, TriangleMesh, dense_map, map_hypotheses, run
+from engine.candidates import Follower
 from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
 from engine.functional_maps import PointMaps
 from engine.landmarks import LandmarkPlaces, Landmarks
@@ -211,6 +214,55 @@ def test_matchings_are_followed_only_if_they_agree_with_landmarks(agreeing, bodi
     pair = run(registered_pair_steps(x, y, landmarks=Landmarks(*places)))
     assert {hypothesis.origin for hypothesis in asked} == {"matching"}
     assert ("matching" in [candidate.hypothesis.origin for candidate in pair.candidates]) == agreeing
+
+
+@pytest.fixture
+def both_starts(bodies, starts, monkeypatch):
+    """Start from the truth, and from it with the hind legs exchanged, however much less credible that is."""
+    monkeypatch.setattr(map_hypotheses, "_HOPELESS", np.inf)
+    monkeypatch.setattr(map_hypotheses, "_DISTINCT", 0.0)
+    monkeypatch.setattr(dense_map, "_AMBIGUOUS", np.inf)
+    return [starts[0], hind_legs_exchanged(*bodies)]
+
+
+def with_soft_score(monkeypatch, origin, added):
+    """Let the soft registrations of hypotheses of this origin seem worse than they are."""
+    own = Follower.steps
+
+    def steps(self, hypothesis):
+        candidate = yield from own(self, hypothesis)
+        return replace(candidate, score=candidate.score + added * (hypothesis.origin == origin))
+
+    monkeypatch.setattr(Follower, "steps", steps)
+
+
+def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, both_starts, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    plain = run(registered_pair_steps(x, y, both_starts, search=False))
+    scores = {candidate.hypothesis.origin: candidate.score for candidate in plain.candidates}
+    # So that the wrong one seems a little better at first.
+    added = scores["exchanged"] - scores["true"] + 1
+    assert added > 1
+    with_soft_score(monkeypatch, "true", added)
+    pair = run(registered_pair_steps(x, y, both_starts, search=False))
+    assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true", "exchanged"]
+    assert pair.candidates[0].score == pytest.approx(pair.candidates[1].score + 1)
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
+    follow = Follower(x, y, pair.source, pair.target)
+    fits = [run(follow.close_steps(candidate)) for candidate in pair.candidates]
+    assert pair.margin == pytest.approx(fits[1].score - fits[0].score)
+    np.testing.assert_array_equal(fits[0].registration.positions, pair.registration.positions)
+    np.testing.assert_array_equal(fits[0].reverse.positions, pair.reverse.positions)
+
+
+def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_starts, monkeypatch):
+    with_soft_score(monkeypatch, "exchanged", 100)
+    closely = []
+    own = Follower.close_steps
+    monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.hypothesis.origin) or own(self, c))
+    pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False))
+    assert closely == ["true"]
+    assert pair.margin == pytest.approx(pair.candidates[1].score - pair.candidates[0].score)
 
 
 def test_motion_and_scale_do_not_matter(registered, bodies):

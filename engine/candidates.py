@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Candidates for the map between two surfaces: hypotheses that are followed up by registrations, soft and close."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .closest_points import FoundPoints
+from .functional_maps import PointMaps
+from .limb_twists import untwisted
+from .map_hypotheses import MapHypothesis, refined_hypothesis_steps, score_everywhere
+from .progress import Steps, within
+from .registration import CLOSE, FINE, GUIDED, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
+from .surface import SurfacePoints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .deformable import DeformableSurface
+    from .shape import Shape
+    from .ties import Ties
+
+__all__ = ["Candidate", "CloseFit", "Follower"]
+
+_ELASTIC_WEIGHT = 4.0
+_GAP_WEIGHT = 4.0
+_LEAST_GAP = 1e-4  # in sqrt(area); surfaces that meet closer than that are all the same
+_SMOOTH = 40
+"""Eigenfunctions that the source is placed by before it is registered."""
+
+_GUIDES = 10
+"""Eigenfunctions of the target that guide the soft registration."""
+
+_DETAILED = 100
+"""Eigenfunctions that either surface is placed by before it is registered again."""
+
+_STAGES = FINE, CLOSE, LAST
+_MISFIT_WEIGHT = 20.0
+"""How much the mean squared distance that is left counts against the elastic energy."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A hypothesis, softly registered.
+
+    Attributes
+    ----------
+    hypothesis : MapHypothesis
+        The map it started from; of the best, if that was rough, what functional maps make of where it led.
+    registration : Registration
+        The source on the target.
+    score : float
+        Smaller is more credible: the score of the registered map and the logarithms of the gaps that are left.
+    likeness : float
+        How much alike the surfaces are, if this is the map, larger for more: by the score of the hypothesis and the
+        logarithm of what the deformation costs.
+    """
+
+    hypothesis: MapHypothesis
+    registration: Registration
+    score: float
+    likeness: float
+
+
+@dataclass(frozen=True, eq=False)
+class CloseFit:
+    """A candidate, registered closely from either side.
+
+    Attributes
+    ----------
+    candidate : Candidate
+        What was followed.
+    registration : Registration
+        The source on the target.
+    reverse : Registration
+        The target on the source.
+    score : float
+        Smaller is more credible: the mean of the scores of the soft registration and of the close one.  A rough start
+        may lead the soft one of the true map to where the surfaces meet badly, and a close one fits wrong maps as well.
+    """
+
+    candidate: Candidate
+    registration: Registration
+    reverse: Registration
+    score: float
+
+
+@dataclass(frozen=True, eq=False)
+class Follower:
+    """Follows hypotheses up by registrations.
+
+    Attributes
+    ----------
+    x, y : Shape
+        The shapes.
+    source, target : DeformableSurface
+        Their surfaces.
+    ties, ties_back : Ties or None
+        Where the source is held on the target, and the target on the source.
+    """
+
+    x: Shape
+    y: Shape
+    source: DeformableSurface
+    target: DeformableSurface
+    ties: Ties | None = None
+    ties_back: Ties | None = None
+
+    @cached_property
+    def _smooth(self) -> NDArray[np.float64]:
+        """Functions that the source is placed by before it is registered, (n_x, k)."""
+        return _functions(self.x, _SMOOTH)
+
+    def steps(self, hypothesis: MapHypothesis) -> Steps[Candidate]:
+        """Register the source from where a hypothesis takes it, and judge what comes of it."""
+        source, target = self.source, self.target
+        images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
+        start = self.start(images)
+        first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
+        guides = self._guides(hypothesis, images)
+        steps = register_steps(source, target, start, (GUIDED, SOFT), first, ties=self.ties, guides=guides)
+        registration = yield from within(steps, 0.2, 1.0)
+        cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
+        elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
+        score = self._score(hypothesis, registration)
+        return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic))
+
+    def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
+        """Register closely: the source, then the target from where it lies, then the source again."""
+        source, target = self.source, self.target
+        positions = candidate.registration.positions
+        if self.ties is None:
+            positions = untwisted(self.x, source, target, positions)
+        steps = register_steps(source, target, positions, (FINE,), ties=self.ties)
+        first = yield from within(steps, 0.0, 0.2)
+        matches = first.on_source, first.on_target
+        functions = _functions(self.y, _DETAILED)
+        steps = restarted_steps(target, source, functions, matches, stages=_STAGES, ties=self.ties_back)
+        reverse = yield from within(steps, 0.2, 0.6)
+        matches = reverse.on_source, reverse.on_target
+        functions = _functions(self.x, _DETAILED)
+        steps = restarted_steps(source, target, functions, matches, stages=_STAGES, ties=self.ties)
+        final = yield from within(steps, 0.6, 1.0)
+        score = (candidate.score + self._score(candidate.hypothesis, final)) / 2
+        return CloseFit(candidate, final, reverse, score)
+
+    def _score(self, hypothesis: MapHypothesis, registration: Registration) -> float:
+        """Score what a hypothesis has led to."""
+        # A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.  The
+        # true one may take more deforming than a wrong one where proportions differ, but the surfaces meet closer.
+        gaps = np.maximum(registration.gaps, _LEAST_GAP)
+        score = score_everywhere(hypothesis.domains, self.vertex_maps(registration))
+        return score + _GAP_WEIGHT * float(np.log(gaps).sum())
+
+    def start(self, images: PointMaps) -> NDArray[np.float64]:
+        """Place the source where a map between all vertices puts it, smoothly."""
+        return smooth_start(self.source, self.target, images.on_y, self._smooth)
+
+    def apart(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+        """Mean distance, in sqrt(area), between two ways to place the source."""
+        areas = self.source.mass
+        return float(areas @ np.linalg.norm(first - second, axis=1) / areas.sum())
+
+    def refined_steps(self, candidate: Candidate) -> Steps[Candidate]:
+        """Let functional maps refine a registered map, and take that for the hypothesis that led to it."""
+        was = candidate.hypothesis
+        maps = self.vertex_maps(candidate.registration)
+        hypothesis = yield from refined_hypothesis_steps(was.domains, maps, was.origin)
+        likeness = candidate.likeness + was.score - hypothesis.score
+        return replace(candidate, hypothesis=hypothesis, likeness=likeness)
+
+    def _guides(self, hypothesis: MapHypothesis, images: PointMaps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Take the lowest eigenfunctions of the target to both surfaces: a tail is far from a leg in them, in any pose.
+
+        The higher ones count less, by the root of their eigenvalues: they err more, and say less about limbs.
+        """
+        domain, lowest = hypothesis.domains[1], slice(1, 1 + _GUIDES)
+        values = domain.values[lowest]
+        there = domain.functions[:, lowest] * np.sqrt(values[:1] / values)
+        here = self._smooth @ (self._smooth.T @ (self.source.mass[:, None] * there[images.on_y]))
+        return here, there
+
+    def vertex_maps(self, registration: Registration) -> PointMaps:
+        """Take the maps of a registration between all vertices."""
+        on_target, on_source = registration.on_target, registration.on_source
+        return PointMaps(
+            self.target.triangles[on_target.triangles, on_target.barycentric.argmax(axis=1)],
+            self.source.triangles[on_source.triangles, on_source.barycentric.argmax(axis=1)],
+        )
+
+
+def _functions(shape: Shape, count: int) -> NDArray[np.float64]:
+    """First eigenfunctions of a shape of unit area, (n, count)."""
+    functions: NDArray[np.float64] = shape.spectrum.functions[:, :count] * np.sqrt(shape.laplace.area)
+    return functions
+
+
+def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
+    points = SurfacePoints.at_vertices(surface.mesh, vertices)
+    return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))

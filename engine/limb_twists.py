@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Limbs that a registration has turned about their own axes, and how they are turned back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from .extremities import spread_extremities
+from .procrustes import nearest_rotations
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .deformable import DeformableSurface
+    from .shape import Shape
+
+__all__ = ["untwisted"]
+
+_LIMBS, _APART = 8, 0.25
+"""How many limbs are looked at, and how far apart, in sqrt(area), their tips are at least."""
+
+_SHARE = 0.55
+"""Part of the way to the nearest other tip up to which a limb may reach."""
+
+_LONGEST = 0.6
+"""Length of limbs that is looked at, in sqrt(area)."""
+
+_WIDTH = 0.03
+"""Distance between two rings around a limb, and how far a ring reaches to either side, in sqrt(area)."""
+
+_FEWEST_VERTICES, _FEWEST_RINGS = 15, 4
+
+_WIDER = 1.8
+"""How many times as wide as those before a ring is where the limb ends at the body."""
+
+_ANGLES = 16
+"""Angles about the axis that are tried."""
+
+_NORMAL_LENGTH = 0.05
+"""How many units of length a unit of difference of the normals counts when points are matched."""
+
+_POINT = 1e-12
+"""Squared radius, in units of the area, of what is no more than a point."""
+
+_GAIN = 0.02
+"""Part of its cost that turning a limb must save."""
+
+_LEAST_TURN = 0.35
+"""Turn of any ring, in radians, below which a limb is left to the registration."""
+
+
+class _Ring(NamedTuple):
+    """What lies around a limb at some distance from its tip."""
+
+    distance: float
+    vertices: NDArray[np.int64]  # (m,)
+    weights: NDArray[np.float64]  # (m,), with the sum one
+    area: float  # that the ring stands for
+
+
+@dataclass(frozen=True, eq=False)
+class _Limb:
+    """A limb: its vertices (v,), their distances (v,) from the tip, the rings, tip first, and their radii at rest."""
+
+    vertices: NDArray[np.int64]
+    distances: NDArray[np.float64]
+    rings: list[_Ring]
+    radii: NDArray[np.float64]
+
+
+def untwisted(
+    shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    r"""Turn back what a registration has turned about the axis of a limb.
+
+    A thin limb that is placed by smooth functions is no more than a curve: which way round it lies is left to chance,
+    and closest points do not turn it back.  So the rings around each limb are turned about its axis by the angles
+    :math:`\theta_k` of least
+
+    .. math:: \sum_k \frac{A_k}{r_k^2} D_k(\theta_k)
+        + \sum_k \frac{\pi \bar r_k^3}{h} (\tau_k + \theta_{k+1} - \theta_k)^2,
+
+    which dynamic programming finds [1]_, with the last ring held: :math:`D_k` is the mean squared distance of a ring at
+    rest, moved as a rigid body, from where it meets the target if it is turned; :math:`A_k` and :math:`r_k` are its
+    area and radius.  The second sum is what it takes to twist a tube of the mean radius :math:`\bar r_k` between rings
+    at the distance h, where they are turned by :math:`\tau_k` against each other already.
+
+    Parameters
+    ----------
+    shape : Shape
+        The source, with samples.
+    source, target : DeformableSurface
+        The surfaces.
+    positions : (n, 3) array of float
+        Where a registration takes the vertices of the source.
+
+    Returns
+    -------
+    (n, 3) array of float
+        The same, with limbs turned where that makes them fit better.
+
+    References
+    ----------
+    .. [1] R. Bellman, "Dynamic Programming", Princeton University Press 1957.
+    """
+    turned = positions.copy()
+    normals = source.search.moved(positions).vertex_normals
+    tree = cKDTree(np.concatenate([target.vertices, _NORMAL_LENGTH * target.normals], axis=1))
+    for limb in _limbs(shape, source):
+        centres, axes = _axis(positions, limb.rings)
+        costs, rotations = [], []
+        for ring, radius, centre, axis in zip(limb.rings, limb.radii, centres, axes, strict=True):
+            places, seen = positions[ring.vertices] - centre, normals[ring.vertices]
+            asked = np.concatenate([_turned(places, axis) + centre, _NORMAL_LENGTH * _turned(seen, axis)], axis=2)
+            images = target.vertices[tree.query(asked.reshape(-1, 6))[1]].reshape(_ANGLES, -1, 3)
+            rest = source.vertices[ring.vertices]
+            misfits, _ = _rigid_misfits(rest, images, ring.weights)
+            costs.append(ring.area / radius**2 * misfits)
+            rotations.append(_rigid_misfits(rest, positions[ring.vertices][None], ring.weights)[1][0])
+        angles = _best_angles(limb, np.array(costs), _twists(np.array(rotations), axes))
+        if np.abs(angles).max() > _LEAST_TURN:
+            _turn(limb, centres, axes, angles, turned)
+    return turned
+
+
+def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
+    """Find limbs and the rings around them, as far as they are no wider than limbs are."""
+    tips = spread_extremities(shape, _LIMBS, _APART, filled=False)
+    if not len(tips):
+        return []
+    rows = shape.sample_rows[tips].astype(np.float64)
+    apart = shape.sample_distances[np.ix_(tips, tips)] + np.diag(np.full(len(tips), np.inf))
+    nearest = rows.argmin(axis=0)
+    limbs = []
+    for number, row in enumerate(rows):
+        own = np.flatnonzero(nearest == number)
+        rings = _rings(source, own, row[own], min(_SHARE * apart[number].min(), _LONGEST))
+        radii = _radii(source, rings)
+        wide = [k for k in range(2, len(rings)) if radii[k] > _WIDER * np.median(radii[:k])]
+        rings = rings[: min(wide, default=len(rings))]
+        if len(rings) >= _FEWEST_RINGS:
+            inside = own[row[own] < rings[-1].distance]
+            limbs.append(_Limb(inside, row[inside], rings, radii[: len(rings)]))
+    return limbs
+
+
+def _rings(
+    source: DeformableSurface, vertices: NDArray[np.int64], distances: NDArray[np.float64], length: float
+) -> list[_Ring]:
+    """Cut the vertices (v,) of a limb into rings by their distances (v,) from its tip, up to where some are missing."""
+    rings: list[_Ring] = []
+    for distance in (np.arange(int(length / _WIDTH)) + 0.5) * _WIDTH:
+        away = np.abs(distances - distance)
+        around = vertices[away < _WIDTH]
+        if len(around) >= _FEWEST_VERTICES:
+            mass = source.mass[around]
+            area = float(source.mass[vertices[away < _WIDTH / 2]].sum())
+            rings.append(_Ring(float(distance), around, mass / mass.sum(), area))
+        elif rings:
+            break
+    return rings
+
+
+def _radii(source: DeformableSurface, rings: list[_Ring]) -> NDArray[np.float64]:
+    """Root mean square distances of rings from the axis through their centres, at rest, (k,)."""
+    if len(rings) < _FEWEST_RINGS:
+        return np.ones(len(rings))
+    centres, axes = _axis(source.vertices, rings)
+    radii = []
+    for ring, centre, axis in zip(rings, centres, axes, strict=True):
+        places = source.vertices[ring.vertices] - centre
+        across = np.square(places).sum(axis=1) - np.square(places @ axis)
+        radii.append(float(np.sqrt(max(ring.weights @ across, _POINT))))
+    return np.array(radii)
+
+
+def _axis(positions: NDArray[np.float64], rings: list[_Ring]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Centres (k, 3) of rings, and unit vectors (k, 3) along the curve through them."""
+    centres = np.array([ring.weights @ positions[ring.vertices] for ring in rings])
+    return centres, _unit(np.gradient(centres, axis=0))
+
+
+def _turned(vectors: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn vectors (m, 3) about a unit axis by all angles, (a, m, 3)."""
+    rotations = Rotation.from_rotvec(_angles()[:, None] * axis).as_matrix()
+    return vectors @ rotations.transpose(0, 2, 1)
+
+
+def _angles() -> NDArray[np.float64]:
+    return np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
+
+
+def _rigid_misfits(
+    rest: NDArray[np.float64], images: NDArray[np.float64], weights: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Mean squared distances (a,) of points (m, 3), moved as a rigid body, from images (a, m, 3), and rotations."""
+    rest = rest - weights @ rest
+    images = images - np.einsum("m,amd->ad", weights, images)[:, None]
+    products = np.einsum("m,amd,me->ade", weights, images, rest)
+    rotations = nearest_rotations(products)
+    spreads = weights @ np.square(rest).sum(axis=1) + np.square(images).sum(axis=2) @ weights
+    return spreads - 2 * np.einsum("ade,ade->a", rotations, products), rotations
+
+
+def _twists(rotations: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles (k - 1,) about the axis by which each of the rotations (k, 3, 3) turns more than the one before."""
+    between = Rotation.from_matrix(rotations[1:] @ rotations[:-1].transpose(0, 2, 1)).as_quat()
+    along = np.einsum("kd,kd->k", between[:, :3], _unit(axes[1:] + axes[:-1]))
+    return _wrapped(2 * np.arctan2(along, between[:, 3]))
+
+
+def _best_angles(limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles (k,) to turn the rings by, of least cost; all zero if that saves too little."""
+    stiffness = np.pi * ((limb.radii[1:] + limb.radii[:-1]) / 2) ** 3 / _WIDTH
+    tried = _angles()
+    differences = tried[None, :] - tried[:, None]  # the next ring's angle less this one's
+    total = np.where(tried == 0, costs[-1], np.inf)
+    choices = []
+    for number in range(len(stiffness) - 1, -1, -1):
+        torsion = stiffness[number] * np.square(_wrapped(twists[number] + differences))
+        whole = total[None, :] + torsion
+        choices.append(whole.argmin(axis=1))
+        total = costs[number] + whole.min(axis=1)
+    now = costs[:, 0].sum() + (stiffness * np.square(twists)).sum()
+    if total.min() > (1 - _GAIN) * now:
+        return np.zeros(len(limb.radii))
+    path = [int(total.argmin())]
+    for choice in choices[::-1]:
+        path.append(int(choice[path[-1]]))
+    # The last ring is held; from there on the angles change as little as can be from ring to ring.
+    angles: NDArray[np.float64] = np.unwrap(tried[path][::-1])[::-1]
+    return angles
+
+
+def _turn(
+    limb: _Limb,
+    centres: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    angles: NDArray[np.float64],
+    positions: NDArray[np.float64],
+) -> None:
+    """Turn a limb in place: each vertex by the angle, and about the axis, between those of the rings beside it."""
+    centre, axis = (_between(limb, values) for values in (centres, axes))
+    angle = np.interp(limb.distances, [ring.distance for ring in limb.rings], angles)
+    turns = Rotation.from_rotvec(angle[:, None] * _unit(axis))
+    positions[limb.vertices] = centre + turns.apply(positions[limb.vertices] - centre)
+
+
+def _between(limb: _Limb, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Interpolate values (k, 3) at the rings for the vertices, (v, 3)."""
+    at = [ring.distance for ring in limb.rings]
+    return np.stack([np.interp(limb.distances, at, column) for column in values.T], axis=1)
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vectors (k, 3) of unit length."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(float).tiny)
+
+
+def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles from -pi to pi."""
+    return (angles + np.pi) % (2 * np.pi) - np.pi

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Limbs that are turned about their axes, and turned back."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from engine import Shape, TriangleMesh, run
+from engine.deformable import DeformableSurface
+from engine.laplacian import laplace_beltrami
+from engine.limb_twists import untwisted
+from tests.shapes import icosphere, rotation
+
+BEND = 1.5
+"""Curvature of the bent blade's axis."""
+
+
+def blade():
+    """A flat, pointed body along x, much wider than it is thick."""
+    vertices, triangles = icosphere(24)
+    return vertices * [1, 0.2, 0.07], triangles
+
+
+def bent(vertices):
+    """Bend what lies along x upwards, to an arc."""
+    x, y, z = vertices.T
+    return np.stack([(1 / BEND - z) * np.sin(BEND * x), y, 1 / BEND - (1 / BEND - z) * np.cos(BEND * x)], axis=1)
+
+
+def twisted(vertices, most):
+    """Turn what lies along x about it: the more the nearer to one end, and not at all in the middle."""
+    angles = most * np.clip((vertices[:, 0] - 0.45) / 0.3, 0, 1)
+    x, y, z = vertices.T
+    return np.stack([x, np.cos(angles) * y - np.sin(angles) * z, np.sin(angles) * y + np.cos(angles) * z], axis=1)
+
+
+def surface(mesh):
+    return DeformableSurface(mesh, laplace_beltrami(mesh))
+
+
+def shape(mesh):
+    made = Shape(mesh)
+    run(made.sample_steps(150))
+    return made
+
+
+def on_surface(target, positions):
+    """Take positions to the nearest vertices of a surface, as a registration does."""
+    return target.vertices[cKDTree(target.vertices).query(positions)[1]]
+
+
+def mean_distance(surface, first, second):
+    return surface.mass @ np.linalg.norm(first - second, axis=1)
+
+
+@pytest.fixture(scope="module")
+def straight():
+    return TriangleMesh(*blade())
+
+
+@pytest.fixture(scope="module")
+def made(straight):
+    return shape(straight)
+
+
+@pytest.mark.parametrize("most", [2.5, -1.5, np.pi])
+@pytest.mark.parametrize("form", [np.asarray, bent])
+def test_a_limb_that_is_turned_about_its_axis_is_turned_back(form, most, straight, made):
+    vertices, triangles = blade()
+    target = surface(TriangleMesh(form(vertices), triangles))
+    wrong = on_surface(target, target.in_unit_size(form(twisted(vertices, most))))
+    source = surface(straight)
+    before = mean_distance(target, wrong, target.vertices)
+    after = mean_distance(target, untwisted(made, source, target, wrong), target.vertices)
+    assert before > 0.008
+    assert after < 0.6 * before  # turned and brought onto the flat surface, some vertices coincide
+
+
+@pytest.mark.parametrize("form", [np.asarray, bent])
+def test_what_is_right_stays_as_it_is(form, straight, made):
+    vertices, triangles = blade()
+    target = surface(TriangleMesh(form(vertices), triangles))
+    np.testing.assert_array_equal(untwisted(made, surface(straight), target, target.vertices), target.vertices)
+
+
+def test_order_of_the_vertices_and_motion_do_not_matter(straight, made):
+    vertices, triangles = blade()
+    target = surface(straight)
+    wrong = on_surface(target, target.in_unit_size(twisted(vertices, 2.5)))
+    found = untwisted(made, target, target, wrong)
+    assert np.abs(found - wrong).max() > 0.05
+    order = np.random.default_rng(0).permutation(len(vertices))
+    back = np.argsort(order)
+    other = TriangleMesh(3 * vertices[order] + 1, back[triangles])
+    turn = rotation([1, 2, 3], 2.0)
+    moved = surface(TriangleMesh(straight.vertices @ turn.T, triangles))
+    again = untwisted(shape(other), surface(other), moved, wrong[order] @ turn.T)
+    np.testing.assert_allclose(again[back], found @ turn.T, atol=0.02)
+
+
+def test_bodies_without_limbs_stay_as_they_are():
+    mesh = TriangleMesh(*icosphere(8))
+    ball = surface(mesh)
+    turned = ball.vertices @ rotation([0, 0, 1], 1.0).T
+    np.testing.assert_array_equal(untwisted(shape(mesh), ball, ball, turned), turned)
