@@ -85,6 +85,8 @@ def _by_singular_values(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
 def _by_quaternions(matrices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Nearest rotations to matrices (n, 3, 3), and which of them can be believed, (n,)."""
     entries = np.ascontiguousarray(matrices.reshape(-1, 9).T)
+    # First by the largest, as squares of very small numbers vanish.
+    entries /= np.maximum(np.abs(entries).max(axis=0), _TINY)
     entries /= np.maximum(np.sqrt(np.einsum("en,en->n", entries, entries)), _TINY)
     xx, xy, xz, yx, yy, yz, zx, zy, zz = entries
     # The rows of the symmetric matrix are (a, b, c, d), (b, e, f, g), (c, f, h, i), (d, g, i, j).

@@ -299,7 +299,7 @@ def register_steps(
     """
     positions = start
     # A smooth start has no cross-sections left where limbs are thin: which way round they are, its matches tell.
-    posed = start if first is None else _at(first[0], target.triangles, target.vertices)
+    posed = start if first is None else (start + _at(first[0], target.triangles, target.vertices)) / 2
     total = sum(len(stage.weights) for stage in stages)
     done = 0
     matches = first

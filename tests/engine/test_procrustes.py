@@ -57,7 +57,7 @@ def test_covariances_of_edges_in_a_plane_have_a_nearest_rotation(rng):
 
 def test_size_does_not_matter(rng):
     matrices = rng.standard_normal((50, 3, 3))
-    for size in (1e-100, 1e-9, 1e9):
+    for size in (1e-170, 1e-100, 1e-9, 1e9):
         assert np.allclose(nearest_rotations(size * matrices), nearest_rotations(matrices), atol=1e-9)
 
 
