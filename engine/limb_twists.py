@@ -36,7 +36,7 @@ _WIDTH = 0.03
 _FEWEST_VERTICES, _FEWEST_RINGS = 15, 4
 
 _WIDER = 1.8
-"""How many times as wide as those before a ring is where the limb ends at the body."""
+"""How many times as wide as those before all rings are from where on the limb is the body."""
 
 _ANGLES = 16
 """Angles about the axis that are tried."""
@@ -141,8 +141,9 @@ def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
         own = np.flatnonzero(nearest == number)
         rings = _rings(source, own, row[own], min(_SHARE * apart[number].min(), _LONGEST))
         radii = _radii(source, rings)
-        wide = [k for k in range(2, len(rings)) if radii[k] > _WIDER * np.median(radii[:k])]
-        rings = rings[: min(wide, default=len(rings))]
+        # A hand is wider than its fingers, but the forearm is not: only what is wide from there on is the body.
+        slender = [k for k in range(1, len(rings)) if radii[k] <= _WIDER * np.median(radii[:k])]
+        rings = rings[: max(slender, default=-1) + 1]
         if len(rings) >= _FEWEST_RINGS:
             inside = own[row[own] < rings[-1].distance]
             limbs.append(_Limb(inside, row[inside], rings, radii[: len(rings)]))

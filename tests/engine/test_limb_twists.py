@@ -21,6 +21,16 @@ def blade():
     return vertices * [1, 0.2, 0.07], triangles
 
 
+def paddle():
+    """A body along x with flat hands at both ends: a thin finger, the palm, a thin wrist, and the trunk."""
+    vertices, triangles = icosphere(24)
+    along, radii = np.abs(vertices[:, 0]), np.maximum(np.linalg.norm(vertices[:, 1:], axis=1), 1e-9)
+    wide = np.interp(
+        along, [0, 0.35, 0.45, 0.55, 0.62, 0.8, 0.86, 0.97, 1], [0.2, 0.18, 0.05, 0.05, 0.14, 0.14, 0.03, 0.03, 0]
+    )
+    return vertices * np.stack([np.ones_like(wide), wide / radii, 0.4 * wide / radii], axis=1), triangles
+
+
 def bent(vertices):
     """Bend what lies along x upwards, to an arc."""
     x, y, z = vertices.T
@@ -74,6 +84,17 @@ def test_a_limb_that_is_turned_about_its_axis_is_turned_back(form, most, straigh
     after = mean_distance(target, untwisted(made, source, target, wrong), target.vertices)
     assert before > 0.008
     assert after < 0.6 * before  # turned and brought onto the flat surface, some vertices coincide
+
+
+def test_a_hand_is_turned_back_though_it_is_wider_than_its_finger():
+    vertices, triangles = paddle()
+    mesh = TriangleMesh(vertices, triangles)
+    target = surface(mesh)
+    wrong = on_surface(target, target.in_unit_size(twisted(vertices, 2.5)))
+    before = mean_distance(target, wrong, target.vertices)
+    after = mean_distance(target, untwisted(shape(mesh), target, target, wrong), target.vertices)
+    assert before > 0.004
+    assert after < 0.6 * before
 
 
 @pytest.mark.parametrize("form", [np.asarray, bent])
