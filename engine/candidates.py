@@ -113,16 +113,24 @@ class Follower:
     @cached_property
     def _smooth(self) -> NDArray[np.float64]:
         """Functions that the source is placed by before it is registered, (n_x, k)."""
-        return _functions(self.x, _SMOOTH)
+        return self._functions[:, :_SMOOTH]
+
+    @cached_property
+    def _functions(self) -> NDArray[np.float64]:
+        """All functions of the source, (n_x, k)."""
+        return _functions(self.x, len(self.x.spectrum))
 
     def steps(self, hypothesis: MapHypothesis) -> Steps[Candidate]:
         """Register the source from where a hypothesis takes it, and judge what comes of it."""
         source, target = self.source, self.target
         images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
         start = self.start(images)
+        detailed = smooth_start(self.source, self.target, images.on_y, self._functions)
         first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
         guides = self._guides(hypothesis, images)
-        steps = register_steps(source, target, start, (GUIDED, SOFT), first, ties=self.ties, guides=guides)
+        posed = (start + detailed) / 2
+        stages = GUIDED, SOFT
+        steps = register_steps(source, target, start, stages, first, posed=posed, ties=self.ties, guides=guides)
         registration = yield from within(steps, 0.2, 1.0)
         cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
         elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))

@@ -236,7 +236,10 @@ def _margin(
     areas: NDArray[np.float64],
 ) -> float | None:
     """By how much the second choice is less credible; hypotheses that were not registered count by their own score."""
-    gaps = [fit.score - fits[0].score for fit in fits[1:]]
+    # Starts that differ in a limb may lead to the same place at last.
+    last = fits[0].registration.positions
+    rivals = [fit for fit in fits[1:] if are_distinct(last, fit.registration.positions, areas)]
+    gaps = [fit.score - fits[0].score for fit in rivals]
     closely = {id(fit.candidate) for fit in fits}
     for other in others:
         taken = other.registration.positions

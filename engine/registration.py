@@ -177,9 +177,14 @@ class _Matcher:
     def matches(self, source: ClosestPoints, *, last: bool = False) -> tuple[FoundPoints, FoundPoints]:
         """Match every vertex of either surface, by the features of the deformed source."""
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
-        coarse = min(len(self.source.vertices), len(self.target.vertices)) < _COARSE
+        coarse = _are_coarse(self.source, self.target)
         find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
         return find(self.target_search, source.vertices), find(source, self.target_features)
+
+
+def _are_coarse(source: DeformableSurface, target: DeformableSurface) -> bool:
+    """Say whether one of two surfaces has so few vertices that what is between them counts."""
+    return min(len(source.vertices), len(target.vertices)) < _COARSE
 
 
 def _nearest_vertices(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
@@ -247,7 +252,7 @@ def restarted_steps(
     """
     places = _at(matches[0], target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
-    return (yield from register_steps(source, target, start, stages, matches, ties=ties))
+    return (yield from register_steps(source, target, start, stages, matches, posed=(start + places) / 2, ties=ties))
 
 
 def register_steps(
@@ -257,6 +262,7 @@ def register_steps(
     stages: tuple[Stage, ...] = (GUIDED, SOFT, FINE, CLOSE, LAST),
     first: tuple[FoundPoints, FoundPoints] | None = None,
     *,
+    posed: NDArray[np.float64] | None = None,
     ties: Ties | None = None,
     guides: Guides | None = None,
 ) -> Steps[Registration]:
@@ -277,6 +283,9 @@ def register_steps(
         How stiff the surface is, round after round.
     first : pair of FoundPoints, optional
         Matches of the source's and of the target's vertices for the first round; by default the closest.
+    posed : (n_x, 3) array of float, optional
+        Positions that the first rotations are fitted to, less smooth than those to begin with, which have no
+        cross-sections left where limbs are thin.  Not for surfaces of few vertices.
     ties : Ties, optional
         Points of the source that are held at places in the space of the target, in every round.
     guides : pair of arrays of float, (n_x, g) and (n_y, g), optional
@@ -298,8 +307,9 @@ def register_steps(
        CVPR 2007.
     """
     positions = start
-    # A smooth start has no cross-sections left where limbs are thin: which way round they are, its matches tell.
-    posed = start if first is None else (start + _at(first[0], target.triangles, target.vertices)) / 2
+    if posed is None or _are_coarse(source, target):
+        # The few vertices around a limb could not tell which way round it is.
+        posed = start
     total = sum(len(stage.weights) for stage in stages)
     done = 0
     matches = first

@@ -270,3 +270,12 @@ def test_guides_lead_to_what_is_far_in_space():
     start = np.linalg.norm(turned - ball.vertices, axis=1).mean()
     assert error(guides=guides) < 0.1 * start
     assert error() > 0.8 * start
+
+
+@pytest.mark.parametrize(("subdivisions", "decides"), [(16, True), (8, False)])
+def test_of_a_start_without_cross_sections_other_positions_say_which_way_round_it_is(subdivisions, decides):
+    vertices, triangles = icosphere(subdivisions)
+    blade = deformable(vertices * [1, 0.2, 0.07], triangles)
+    turned = blade.vertices * [1, -1, -1]
+    steps = register_steps(blade, blade, blade.vertices * [1, 0, 0], (SOFT,), posed=turned)
+    np.testing.assert_allclose(run(steps).positions, turned if decides else blade.vertices, atol=1e-3)
