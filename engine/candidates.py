@@ -125,10 +125,9 @@ class Follower:
         source, target = self.source, self.target
         images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
         start = self.start(images)
-        detailed = smooth_start(self.source, self.target, images.on_y, self._functions)
+        posed = (start + smooth_start(source, target, images.on_y, self._functions)) / 2
         first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
         guides = self._guides(hypothesis, images)
-        posed = (start + detailed) / 2
         stages = GUIDED, SOFT
         steps = register_steps(source, target, start, stages, first, posed=posed, ties=self.ties, guides=guides)
         registration = yield from within(steps, 0.2, 1.0)
@@ -141,7 +140,7 @@ class Follower:
         """Register closely: the source, then the target from where it lies, then the source again."""
         source, target = self.source, self.target
         positions = candidate.registration.positions
-        if self.ties is None:
+        if self.ties is None:  # what landmarks hold stays the way round it is
             positions = untwisted(self.x, source, target, positions)
         steps = register_steps(source, target, positions, (FINE,), ties=self.ties)
         first = yield from within(steps, 0.0, 0.2)
