@@ -68,7 +68,7 @@ class RegisteredPair:
     reverse : Registration
         The target on the source.
     candidates : tuple of Candidate
-        What was compared, the most credible first.
+        What was compared: the chosen one, then the others by growing score.
     margin : float or None
         By how much the best candidate that is another map is less credible; None if there was none.
     landmarks : Landmarks or None

@@ -34,6 +34,7 @@ _WIDTH = 0.03
 """Distance between two rings around a limb, and how far a ring reaches to either side, in sqrt(area)."""
 
 _FEWEST_VERTICES, _FEWEST_RINGS = 15, 4
+"""Vertices around a limb, and rings along it, that are needed to say which way round it lies."""
 
 _WIDER = 1.8
 """How many times as wide as those before all rings are from where on the limb is the body."""
@@ -140,6 +141,8 @@ def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
     for number, row in enumerate(rows):
         own = np.flatnonzero(nearest == number)
         rings = _rings(source, own, row[own], min(_SHARE * apart[number].min(), _LONGEST))
+        if len(rings) < _FEWEST_RINGS:
+            continue
         radii = _radii(source, rings)
         # A hand is wider than its fingers, but the forearm is not: only what is wide from there on is the body.
         slender = [k for k in range(1, len(rings)) if radii[k] <= _WIDER * np.median(radii[:k])]
@@ -169,8 +172,6 @@ def _rings(
 
 def _radii(source: DeformableSurface, rings: list[_Ring]) -> NDArray[np.float64]:
     """Root mean square distances of rings from the axis through their centres, at rest, (k,)."""
-    if len(rings) < _FEWEST_RINGS:
-        return np.ones(len(rings))
     centres, axes = _axis(source.vertices, rings)
     radii = []
     for ring, centre, axis in zip(rings, centres, axes, strict=True):
