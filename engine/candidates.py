@@ -11,7 +11,7 @@ import numpy as np
 
 from .closest_points import FoundPoints
 from .functional_maps import PointMaps
-from .limb_twists import untwisted
+from .limb_twists import rolled_back, untwisted
 from .map_hypotheses import MapHypothesis, refined_hypothesis_steps, score_everywhere
 from .progress import Steps, within
 from .registration import CLOSE, FINE, GUIDED, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
@@ -37,6 +37,9 @@ _GUIDES = 10
 
 _DETAILED = 100
 """Eigenfunctions that either surface is placed by before it is registered again."""
+
+_ROLLS = 3
+"""How often a long body is turned back at most: the better it lies, the better is seen how it is turned."""
 
 _STAGES = FINE, CLOSE, LAST
 _MISFIT_WEIGHT = 20.0
@@ -131,6 +134,28 @@ class Follower:
         stages = GUIDED, SOFT
         steps = register_steps(source, target, start, stages, first, posed=posed, ties=self.ties, guides=guides)
         registration = yield from within(steps, 0.2, 1.0)
+        return self._judged(hypothesis, registration)
+
+    def rolled_back_steps(self, candidate: Candidate) -> Steps[Candidate]:
+        """Turn a long body back where it is turned about its axis; the candidate itself if that is not more credible.
+
+        What landmarks hold stays the way round it is.
+        """
+        for number in range(_ROLLS if self.ties is None else 0):
+            positions = candidate.registration.positions
+            turned = rolled_back(self.x, self.source, self.target, positions)
+            if turned is positions:
+                break
+            steps = register_steps(self.source, self.target, turned, (GUIDED, SOFT))
+            registration = yield from within(steps, number / _ROLLS, (number + 1) / _ROLLS)
+            rolled = self._judged(candidate.hypothesis, registration)
+            if rolled.score >= candidate.score:
+                break
+            candidate = rolled
+        return candidate
+
+    def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
+        """Say how credible a hypothesis is by the soft registration that it led to."""
         cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
         elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
         score = self._score(hypothesis, registration)

@@ -157,10 +157,11 @@ def registered_pair_steps(
         candidates = yield from within(_unrefined_steps(follow, candidates, rough), 0.62, 0.68)
     if search:
         # Where no map is looked for, the one that is given is followed as it is.
-        repaired = yield from within(_limbs_repaired_steps(follow, candidates[0]), 0.68, 0.7)
+        repaired = yield from within(_limbs_repaired_steps(follow, candidates[0]), 0.68, 0.69)
         if repaired is not None:
             hypotheses = [h for h in hypotheses if h is not candidates[0].hypothesis]
             candidates[0] = repaired
+        candidates = yield from within(_rolled_back_steps(follow, candidates), 0.69, 0.7)
     fits = yield from within(_contest_steps(follow, candidates), 0.7, 1.0)
     closest, best = fits[0], fits[0].candidate
     others = [candidate for candidate in candidates if candidate is not best]
@@ -194,13 +195,30 @@ def _unrefined_steps(
     return sorted(candidates, key=lambda candidate: candidate.score)
 
 
-def _contest_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[CloseFit]]:
-    """Register the best candidate closely, and other maps that are nearly as credible; the most credible first."""
+def _rolled_back_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[Candidate]]:
+    """Turn a long body back where those that may be chosen turn it about its axis; the most credible first."""
+    contenders = _contenders(follow, candidates)
+    rolled = []
+    for number, candidate in enumerate(contenders):
+        begin, end = ((number + i) / len(contenders) for i in (0, 1))
+        rolled.append((yield from within(follow.rolled_back_steps(candidate), begin, end)))
+    others = [candidate for candidate in candidates if not any(candidate is c for c in contenders)]
+    return sorted([*rolled, *others], key=lambda candidate: candidate.score)
+
+
+def _contenders(follow: Follower, candidates: list[Candidate]) -> list[Candidate]:
+    """Take the best candidate, and other maps that are nearly as credible."""
     contenders: list[Candidate] = []
     for candidate in candidates:
         close = not contenders or candidate.score < contenders[0].score + _CONTESTED
         if close and len(contenders) < _MOST_CANDIDATES and all(_distinct(follow, candidate, c) for c in contenders):
             contenders.append(candidate)
+    return contenders
+
+
+def _contest_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[CloseFit]]:
+    """Register the candidates that may be chosen closely; the most credible first."""
+    contenders = _contenders(follow, candidates)
     fits = []
     for number, candidate in enumerate(contenders):
         begin, end = ((number + i) / len(contenders) for i in (0, 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limbs that a registration has turned about their own axes, and how they are turned back."""
+"""Limbs and long bodies that a registration has turned about their own axes, and how they are turned back."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from .extremities import spread_extremities
+from .orientation import tangent_gradient
 from .procrustes import nearest_rotations
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from .deformable import DeformableSurface
     from .shape import Shape
 
-__all__ = ["untwisted"]
+__all__ = ["rolled_back", "untwisted"]
 
 _LIMBS, _APART = 8, 0.25
 """How many limbs are looked at, and how far apart, in sqrt(area), their tips are at least."""
@@ -38,6 +39,12 @@ _FEWEST_VERTICES, _FEWEST_RINGS = 15, 4
 
 _WIDER = 1.8
 """How many times as wide as those before all rings are from where on the limb is the body."""
+
+_LONG = 2.5
+"""Ratio of the two lowest eigenvalues from which on a body is turned back like a limb; that of a rod is 4."""
+
+_SLICES = 60
+"""Parts of a long body, each of the same difference of its first eigenfunction, whose lengths are measured."""
 
 _ANGLES = 16
 """Angles about the axis that are tried."""
@@ -66,12 +73,27 @@ class _Ring(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Limb:
-    """A limb: its vertices (v,), their distances (v,) from the tip, the rings, tip first, and their radii at rest."""
+    """A limb, or a whole body, and the rings around it.
+
+    Attributes
+    ----------
+    vertices : (v,) array of int
+        Its vertices.
+    distances : (v,) array of float
+        How far they are from the tip, along the limb.
+    rings : list of _Ring
+        The rings, tip first.
+    radii : (k,) array of float
+        Their radii at rest.
+    held : bool
+        Whether the last ring stays where it is.
+    """
 
     vertices: NDArray[np.int64]
     distances: NDArray[np.float64]
     rings: list[_Ring]
     radii: NDArray[np.float64]
+    held: bool
 
 
 def untwisted(
@@ -86,10 +108,11 @@ def untwisted(
     .. math:: \sum_k \frac{A_k}{r_k^2} D_k(\theta_k)
         + \sum_k \frac{\pi \bar r_k^3}{h} (\tau_k + \theta_{k+1} - \theta_k)^2,
 
-    which dynamic programming finds [1]_, with the last ring held: :math:`D_k` is the mean squared distance of a ring at
-    rest, moved as a rigid body, from where it meets the target if it is turned; :math:`A_k` and :math:`r_k` are its
-    area and radius.  The second sum is what it takes to twist a tube of the mean radius :math:`\bar r_k` between rings
-    at the distance h, where they are turned by :math:`\tau_k` against each other already.
+    which dynamic programming finds [1]_, with the last ring, at the body, held: :math:`D_k` is the mean squared
+    distance of a ring at rest, moved as a rigid body, from where it meets the target if it is turned; :math:`A_k` and
+    :math:`r_k` are its area and radius.  The second sum is what it takes to twist a tube of the mean radius
+    :math:`\bar r_k` between rings at the distance h, where they are turned by :math:`\tau_k` against each other
+    already.
 
     Parameters
     ----------
@@ -109,10 +132,45 @@ def untwisted(
     ----------
     .. [1] R. Bellman, "Dynamic Programming", Princeton University Press 1957.
     """
-    turned = positions.copy()
+    return _turned_back(_limbs(shape, source), source, target, positions)
+
+
+def rolled_back(
+    shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Turn back what a registration has turned about the axis of a long body: a snake's, a fish's, a whale's.
+
+    The lowest eigenfunctions of such a body say where along it a point is, but not which way round it lies, and the
+    tail may end the other way round than the head.  It is treated as `untwisted` treats limbs, with no ring held.
+
+    Parameters
+    ----------
+    shape : Shape
+        The source, with its spectrum.
+    source, target : DeformableSurface
+        The surfaces.
+    positions : (n, 3) array of float
+        Where a registration takes the vertices of the source.
+
+    Returns
+    -------
+    (n, 3) array of float
+        The same, with parts of the body turned where that makes them fit better; `positions` themselves if there are
+        none, or if the body is not long.
+    """
+    return _turned_back(_long_body(shape, source), source, target, positions)
+
+
+def _turned_back(
+    limbs: list[_Limb], source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Turn back limbs that have no vertex in common; the positions themselves if there is nothing to be turned."""
+    if not limbs:
+        return positions
+    turned = positions
     normals = source.search.moved(positions).vertex_normals
     tree = cKDTree(np.concatenate([target.vertices, _NORMAL_LENGTH * target.normals], axis=1))
-    for limb in _limbs(shape, source):
+    for limb in limbs:
         centres, axes = _axis(positions, limb.rings)
         costs, rotations = [], []
         for ring, radius, centre, axis in zip(limb.rings, limb.radii, centres, axes, strict=True):
@@ -125,6 +183,7 @@ def untwisted(
             rotations.append(_rigid_misfits(rest, positions[ring.vertices][None], ring.weights)[1][0])
         angles = _best_angles(limb, np.array(costs), _twists(np.array(rotations), axes))
         if np.abs(angles).max() > _LEAST_TURN:
+            turned = turned.copy() if turned is positions else turned
             _turn(limb, centres, axes, angles, turned)
     return turned
 
@@ -149,8 +208,36 @@ def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
         rings = rings[: max(slender, default=-1) + 1]
         if len(rings) >= _FEWEST_RINGS:
             inside = own[row[own] < rings[-1].distance]
-            limbs.append(_Limb(inside, row[inside], rings, radii[: len(rings)]))
+            limbs.append(_Limb(inside, row[inside], rings, radii[: len(rings)], held=True))
     return limbs
+
+
+def _long_body(shape: Shape, source: DeformableSurface) -> list[_Limb]:
+    """Take a body that is long for a limb; empty if it is not."""
+    values = shape.spectrum.values
+    if values[2] < _LONG * values[1]:
+        return []
+    everything, lengths = np.arange(len(source.vertices)), _lengthwise(shape)
+    rings = _rings(source, everything, lengths, float(lengths.max()))
+    if len(rings) < _FEWEST_RINGS:
+        return []
+    return [_Limb(everything, lengths, rings, _radii(source, rings), held=False)]
+
+
+def _lengthwise(shape: Shape) -> NDArray[np.float64]:
+    """Lengths, in sqrt(area), along a body up to each vertex, (n,): the first eigenfunction, made to grow evenly."""
+    # Distances from an end would not do: a whale's fluke has two.
+    function = shape.spectrum.functions[:, 1]
+    gradients = tangent_gradient(shape.mesh, np.arange(len(function))) @ function
+    slopes = np.linalg.norm(gradients.reshape(-1, 2), axis=1) * shape.scale
+    edges = np.linspace(function.min(), function.max(), _SLICES + 1)
+    slices = np.clip(np.searchsorted(edges, function) - 1, 0, _SLICES - 1)
+    areas = np.bincount(slices, shape.mesh.vertex_areas, _SLICES)
+    sums = np.bincount(slices, shape.mesh.vertex_areas * slopes, _SLICES)
+    known = np.flatnonzero(sums > 0)
+    steepness = np.interp(np.arange(_SLICES), known, sums[known] / areas[known])
+    lengths: NDArray[np.float64] = np.interp(function, edges, np.append(0, np.cumsum(np.diff(edges) / steepness)))
+    return lengths
 
 
 def _rings(
@@ -221,7 +308,7 @@ def _best_angles(limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.flo
     stiffness = np.pi * ((limb.radii[1:] + limb.radii[:-1]) / 2) ** 3 / _WIDTH
     tried = _angles()
     differences = tried[None, :] - tried[:, None]  # the next ring's angle less this one's
-    total = np.where(tried == 0, costs[-1], np.inf)
+    total = np.where(tried == 0, costs[-1], np.inf) if limb.held else costs[-1]
     choices = []
     for number in range(len(stiffness) - 1, -1, -1):
         torsion = stiffness[number] * np.square(_wrapped(twists[number] + differences))
@@ -234,8 +321,8 @@ def _best_angles(limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.flo
     path = [int(total.argmin())]
     for choice in choices[::-1]:
         path.append(int(choice[path[-1]]))
-    # The last ring is held; from there on the angles change as little as can be from ring to ring.
-    angles: NDArray[np.float64] = np.unwrap(tried[path][::-1])[::-1]
+    # From the last ring on the angles change as little as can be from ring to ring.
+    angles: NDArray[np.float64] = np.unwrap(_wrapped(tried[path])[::-1])[::-1]
     return angles
 
 

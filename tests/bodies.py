@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bodies for tests of symmetry, retrieval and many limbs, made as or from the creature of `tests.shapes`."""
+"""Bodies for tests of symmetry, retrieval, many limbs and none, most made as or from the creature of `tests.shapes`."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from tests.shapes import bent, capsule_surface, creature, irregular, posed
+from tests.shapes import bent, capsule_surface, creature, icosphere, irregular, posed
 
 
 def mirrored_body(pose=0.0, resolution=13, seed=None):
@@ -89,6 +89,18 @@ def octopus(pose, resolution, turn=0.0):
         for towards, angle in zip((np.array([0.0, 0.0, 1.0]), np.cross([0, 0, 1], axis)), both, strict=True):
             vertices[beyond] = bent(vertices[beyond] - 0.9 * axis, axis, towards, 1.5, angle) + 0.9 * axis
     return vertices, triangles, rest
+
+
+def fish(resolution=24):
+    """Long body along x with a fin on its back and, behind a thin stalk, a fluke that looks the same from below."""
+    vertices, triangles = icosphere(resolution)
+    x, y, z = vertices.T
+    radii = np.maximum(np.hypot(y, z), 1e-9)
+    places = [-1, -0.6, 0, 0.5, 0.7, 0.9, 1]
+    width = np.interp(x, places, [0, 0.12, 0.15, 0.08, 0.04, 0.24, 0]) / radii
+    height = np.interp(x, places, [0, 0.13, 0.16, 0.09, 0.05, 0.03, 0]) / radii
+    fin = 1 + np.where(z > 0, np.exp(-(((x - 0.1) / 0.15) ** 2)), 0)
+    return np.stack([x, width * y, height * fin * z], axis=1), triangles
 
 
 def _half(points, triangles):

@@ -12,8 +12,10 @@ from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
 from engine.functional_maps import PointMaps
 from engine.landmarks import LandmarkPlaces, Landmarks
 from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere
+from engine.registration import SOFT, register_steps
 from engine.steering import Steered
-from tests.bodies import mirrored_body
+from engine.ties import Ties
+from tests.bodies import fish, mirrored_body
 from tests.shapes import icosphere, rotation
 
 SAMPLES = 150
@@ -263,6 +265,62 @@ def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_sta
     pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False))
     assert closely == ["true"]
     assert pair.margin == pytest.approx(pair.candidates[1].score - pair.candidates[0].score)
+
+
+@pytest.fixture(scope="module")
+def long_bodies():
+    """A fish and the same bent sideways."""
+    vertices, triangles = fish(12)
+    bent = vertices.copy()
+    bent[:, 1] += 0.3 * vertices[:, 0] ** 2
+    return shape(vertices, triangles), shape(bent, triangles)
+
+
+@pytest.fixture(scope="module")
+def upset(long_bodies):
+    """The fish on the bent one, with its tail upside down, and what follows it."""
+    x, y = long_bodies
+    chosen = x.samples[:20]
+    pair = run(registered_pair_steps(x, y, [start_from(x, y, chosen, chosen)], search=False))
+    right = pair.candidates[0]
+    over = np.where(x.mesh.vertices[:, 0] > 0.65, -1, 1)
+    positions = pair.target.in_unit_size(y.mesh.vertices * np.stack([over**2, over, over], axis=1))
+    registration = run(register_steps(pair.source, pair.target, positions, (SOFT,)))
+    return Follower(x, y, pair.source, pair.target), replace(
+        right, registration=registration, score=right.score + 3, likeness=right.likeness - 3
+    )
+
+
+def misplaced(x, target, registration):
+    """Mean distance of the vertices of the tail from where they belong."""
+    tail = x.mesh.vertices[:, 0] > 0.75
+    return np.linalg.norm(registration.positions[tail] - target.vertices[tail], axis=1).mean()
+
+
+def test_long_bodies_are_turned_back_where_that_is_more_credible(upset):
+    follow, candidate = upset
+    rolled = run(follow.rolled_back_steps(candidate))
+    assert misplaced(follow.x, follow.target, candidate.registration) > 0.1
+    assert misplaced(follow.x, follow.target, rolled.registration) < 0.03
+    assert rolled.score < candidate.score
+    assert rolled.hypothesis is candidate.hypothesis
+
+
+def test_long_bodies_stay_where_turning_them_back_is_less_credible_or_landmarks_hold_them(upset):
+    follow, candidate = upset
+    better = replace(candidate, score=candidate.score - 100)
+    assert run(follow.rolled_back_steps(better)) is better
+    held = SurfacePoints.at_vertices(follow.x.mesh, follow.x.samples[:1])
+    ties = Ties.at(follow.x.mesh, held, follow.target.vertices[follow.x.samples[:1]])
+    assert run(replace(follow, ties=ties).rolled_back_steps(candidate)) is candidate
+
+
+def test_where_a_map_is_looked_for_long_bodies_are_turned_back(long_bodies, upset, monkeypatch):
+    x, y = long_bodies
+    monkeypatch.setattr(Follower, "steps", lambda _self, hypothesis: returned(replace(upset[1], hypothesis=hypothesis)))
+    pair = run(registered_pair_steps(x, y))
+    assert misplaced(x, pair.target, pair.registration) < 0.03
+    assert pair.candidates[0].score < upset[1].score
 
 
 def test_motion_and_scale_do_not_matter(registered, bodies):

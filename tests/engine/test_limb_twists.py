@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limbs that are turned about their axes, and turned back."""
+"""Limbs and long bodies that are turned about their axes, and turned back."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,8 @@ from scipy.spatial import cKDTree
 from engine import Shape, TriangleMesh, run
 from engine.deformable import DeformableSurface
 from engine.laplacian import laplace_beltrami
-from engine.limb_twists import untwisted
+from engine.limb_twists import rolled_back, untwisted
+from tests.bodies import fish
 from tests.shapes import icosphere, rotation
 
 BEND = 1.5
@@ -51,6 +52,7 @@ def surface(mesh):
 def shape(mesh):
     made = Shape(mesh)
     run(made.sample_steps(150))
+    run(made.spectrum_steps(3))
     return made
 
 
@@ -124,3 +126,41 @@ def test_bodies_without_limbs_stay_as_they_are():
     ball = surface(mesh)
     turned = ball.vertices @ rotation([0, 0, 1], 1.0).T
     np.testing.assert_array_equal(untwisted(shape(mesh), ball, ball, turned), turned)
+
+
+@pytest.mark.parametrize("most", [2.5, -1.5, np.pi])
+@pytest.mark.parametrize("form", [np.asarray, bent])
+def test_a_long_body_whose_tail_lies_the_other_way_round_is_turned_back(form, most):
+    vertices, triangles = fish()
+    mesh = TriangleMesh(vertices, triangles)
+    target = surface(TriangleMesh(form(vertices), triangles))
+    placed = target.in_unit_size(form(twisted(vertices, most)))
+    wrong = (placed + on_surface(target, placed)) / 2  # near the surface, as by a soft registration
+    before = mean_distance(target, wrong, target.vertices)
+    after = mean_distance(target, rolled_back(shape(mesh), surface(mesh), target, wrong), target.vertices)
+    assert before > 0.008
+    assert after < 0.5 * before
+
+
+@pytest.mark.parametrize("form", [np.asarray, bent])
+def test_a_long_body_that_lies_right_stays_as_it_is(form):
+    vertices, triangles = fish()
+    mesh = TriangleMesh(vertices, triangles)
+    target = surface(TriangleMesh(form(vertices), triangles))
+    assert rolled_back(shape(mesh), surface(mesh), target, target.vertices) is target.vertices
+
+
+def test_bodies_that_are_not_long_are_not_turned():
+    vertices, triangles = icosphere(12)
+    mesh = TriangleMesh(vertices * [1, 0.8, 0.6], triangles)
+    plump = surface(mesh)
+    wrong = on_surface(plump, plump.in_unit_size(twisted(mesh.vertices, 2.5)))
+    assert rolled_back(shape(mesh), plump, plump, wrong) is wrong
+
+
+def test_slices_without_vertices_do_not_matter():
+    # A rod of few rings of vertices: most slices of equal differences of the first eigenfunction hold none.
+    vertices, triangles = icosphere(2)
+    mesh = TriangleMesh(vertices * [1, 0.2, 0.1], triangles)
+    rod = surface(mesh)
+    assert np.isfinite(rolled_back(shape(mesh), rod, rod, rod.vertices[::-1].copy())).all()
