@@ -48,6 +48,9 @@ MEASURED = 64
 _POLISHED = 40_000
 """Vertices up to which meshes that have a proxy are registered once more in full resolution."""
 
+_STRAINED = 0.05
+"""Over what distance, in sqrt(area), the strain is averaged that is accepted then as how the bodies differ."""
+
 
 @dataclass(frozen=True, eq=False)
 class DenseMatch:
@@ -225,7 +228,9 @@ class _Polish:
         if self._places is not None:
             at = SurfacePoints.at_vertices(source.mesh, self._places[here])
             ties = Ties.at(source.mesh, at, target.vertices[self._places[1 - here]])
-        steps = register_steps(source, target, target.in_unit_size(points.positions), (self._stage,), ties=ties)
+        start = target.in_unit_size(points.positions)
+        elastic = source.elastic.strained(start, _STRAINED)
+        steps = register_steps(source, target, start, (self._stage,), elastic=elastic, ties=ties)
         fine = yield from within(steps, 0.0, 0.8)
         lift = lift_steps(
             source.mesh,

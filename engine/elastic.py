@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 
 from .procrustes import nearest_rotations
+from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,6 +23,12 @@ _LEAST_WEIGHT = 1e-4
 
 _MOST_ROUNDS = 60
 """Rounds of smoothing at most: finer meshes are meant to be worked on through a coarser one."""
+
+_DOUBTED, _MOST_STRETCHED = 0.1, float(np.log(2))
+"""Logarithm of a stretch up to which it is not accepted as how bodies differ, and the most of it that is looked at."""
+
+_PLANE = 1e-3
+"""Part of the covariance of edges that is given to all directions, also those in which a flat surface has no edge."""
 
 _LEAST_RATIO = 0.1
 """Least ratio of squared lengths that is believed: surfaces that collapse or explode locally are not followed there."""
@@ -46,6 +53,8 @@ class ElasticSurface:
         The operator of the surface.
     factors : (n,) array of float, optional
         What the energy around each vertex is multiplied by, see `softened`.  The rotations are the same for all.
+    edges : (e, 3) array of float, optional
+        The edges at rest, if not those between the vertices, see `strained`.
 
     Attributes
     ----------
@@ -58,7 +67,11 @@ class ElasticSurface:
     """
 
     def __init__(
-        self, vertices: NDArray[np.float64], laplace: LaplaceBeltrami, factors: NDArray[np.float64] | None = None
+        self,
+        vertices: NDArray[np.float64],
+        laplace: LaplaceBeltrami,
+        factors: NDArray[np.float64] | None = None,
+        edges: NDArray[np.float64] | None = None,
     ) -> None:
         n = len(vertices)
         self._vertices, self._laplace = vertices, laplace
@@ -66,7 +79,7 @@ class ElasticSurface:
         between = entries.row < entries.col
         self._tails, self._heads = entries.row[between], entries.col[between]
         self._weights = np.maximum(-entries.data[between], _LEAST_WEIGHT)  # (e,)
-        self._edges = vertices[self._tails] - vertices[self._heads]  # (e, 3)
+        self._edges = vertices[self._tails] - vertices[self._heads] if edges is None else edges  # (e, 3)
         count = len(self._tails)
         ends = (np.concatenate([self._tails, self._heads]), np.tile(np.arange(count), 2))
         # Sums over the edges around each vertex: of what does not, and of what does change sign with the direction.
@@ -150,7 +163,44 @@ class ElasticSurface:
         strains = self._averaged(strains, radius)
         mass = self._laplace.mass
         factors = 1 / np.sqrt(1 + strains / max(np.average(strains, weights=mass), np.finfo(float).tiny))
-        return ElasticSurface(self._vertices, self._laplace, factors / np.average(factors, weights=mass))
+        return ElasticSurface(self._vertices, self._laplace, factors / np.average(factors, weights=mass), self._edges)
+
+    def strained(self, positions: NDArray[np.float64], radius: float) -> ElasticSurface:
+        r"""Take the surface as at rest when strained as it is on average over a neighbourhood.
+
+        The arm of one body may be half as long again as that of another, and a stiff surface would pull it short.
+        With A the linear map that best takes the edges around a vertex to where they are, and :math:`A = R S` its
+        polar decomposition, the edges at rest are multiplied by S, whose eigenvalues are brought nearer to one by a
+        tenth: so much a map may be wrong.
+
+        Parameters
+        ----------
+        positions : (n, 3) array of float
+            Deformed positions.
+        radius : float
+            Standard deviation, in units of the rest positions, of the neighbourhoods, which heat spreads over.
+
+        Returns
+        -------
+        ElasticSurface
+            The surface with other edges at rest.
+        """
+        now = positions[self._tails] - positions[self._heads]
+        weighted = self._weights[:, None, None] * self._edges[:, None, :]
+        products = [ends[:, :, None] * weighted for ends in (now, self._edges)]
+        area = np.trace(products[1].sum(axis=0)) / 2  # the operator may be that of a surface of another size
+        mass = area / self._laplace.area * self._laplace.mass
+        factor = symmetric_factor(diags_array(mass) + radius**2 / 2 * self._laplace.stiffness)
+        moved, rest = (factor.solve(self._around @ each.reshape(-1, 9)).reshape(-1, 3, 3) for each in products)
+        least = _PLANE * np.einsum("nii->n", rest)[:, None, None]
+        linear = (moved + least * nearest_rotations(moved)) @ np.linalg.inv(rest + least * np.eye(3))
+        stretch = nearest_rotations(linear).transpose(0, 2, 1) @ linear
+        values, vectors = np.linalg.eigh((stretch + stretch.transpose(0, 2, 1)) / 2)
+        logarithms = np.log(np.maximum(values, np.exp(-_MOST_STRETCHED)))
+        accepted = np.clip(np.abs(logarithms), _DOUBTED, _MOST_STRETCHED) - _DOUBTED
+        stretch = np.einsum("nab,nb,ncb->nac", vectors, np.exp(np.sign(logarithms) * accepted), vectors)
+        edges = np.einsum("eab,eb->ea", (stretch[self._tails] + stretch[self._heads]) / 2, self._edges)
+        return ElasticSurface(self._vertices, self._laplace, edges=edges)
 
     def pull(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum of the rotated edges at each vertex, (n, 3): the right-hand side of the equilibrium."""

@@ -263,6 +263,7 @@ def register_steps(
     first: tuple[FoundPoints, FoundPoints] | None = None,
     *,
     posed: NDArray[np.float64] | None = None,
+    elastic: ElasticSurface | None = None,
     ties: Ties | None = None,
     guides: Guides | None = None,
 ) -> Steps[Registration]:
@@ -286,6 +287,8 @@ def register_steps(
     posed : (n_x, 3) array of float, optional
         Positions that the first rotations are fitted to, less smooth than those to begin with, which have no
         cross-sections left where limbs are thin.  Not for surfaces of few vertices.
+    elastic : ElasticSurface, optional
+        How the source resists deformation, if not as it is: with the same stiffness, but other edges at rest.
     ties : Ties, optional
         Points of the source that are held at places in the space of the target, in every round.
     guides : pair of arrays of float, (n_x, g) and (n_y, g), optional
@@ -315,15 +318,15 @@ def register_steps(
     matches = first
     for stage in stages:
         matcher = _Matcher(source, target, stage, guides)
-        elastic = source.elastic
+        resisting = source.elastic if elastic is None else elastic
         if stage.softened:
-            elastic = elastic.softened(positions, stage.rotation_radius)
+            resisting = resisting.softened(positions, stage.rotation_radius)
         step = np.zeros_like(positions)
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)
             if matches is None:
                 matches = matcher.matches(search)
-            solved = _solved(matcher, elastic, posed, normals, matches, weight=weight, ties=ties)
+            solved = _solved(matcher, resisting, posed, normals, matches, weight=weight, ties=ties)
             step = (1 + stage.lead) * (solved - positions) + stage.momentum * step
             positions = posed = positions + step
             matches = None

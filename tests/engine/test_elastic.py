@@ -185,3 +185,72 @@ def test_size_does_not_decide_what_is_softer(body):
     bent = creature(0.5, 9)[0]
     large = elastic_of(50 * vertices, triangles).softened(50 * bent, 50 * NEAR)
     assert abs(large.stiffness - elastic.softened(bent, NEAR).stiffness).max() < 1e-9
+
+
+def test_a_surface_that_is_stretched_as_a_whole_is_at_rest_so_but_for_a_tenth(ball):
+    vertices, _, elastic = ball
+    for scale in (1.5, 0.7):
+        rest = np.exp(np.sign(np.log(scale)) * (abs(np.log(scale)) - 0.1))
+        at_rest = rest * vertices
+        strained = elastic.strained(scale * vertices @ rotation([1, 2, 3], 1.0).T, NEAR)
+        assert strained.energy(at_rest, strained.rotations(at_rest, NEAR)) == pytest.approx(0, abs=1e-4)
+        assert abs(strained.stiffness - elastic.stiffness).max() < 1e-12
+
+
+def test_a_plane_that_is_stretched_one_way_is_at_rest_so():
+    vertices, triangles = plane(12, jitter=0.2)
+    elastic = elastic_of(vertices, triangles)
+    strained = elastic.strained(vertices * [1.4, 1, 1], NEAR)
+    at_rest = vertices * [1.4 * np.exp(-0.1), 1, 1]
+    assert strained.energy(at_rest, strained.rotations(at_rest, NEAR)) == pytest.approx(0, abs=1e-4)
+    assert strained.energy(vertices, strained.rotations(vertices, NEAR)) > 0.01
+
+
+def test_what_is_strained_by_less_than_a_tenth_is_at_rest_as_before(body):
+    vertices, _, elastic = body
+    strained = elastic.strained(1.08 * vertices, NEAR)
+    assert strained.energy(vertices, strained.rotations(vertices, NEAR)) == pytest.approx(0, abs=1e-12)
+
+
+def test_only_one_half_of_a_plane_is_at_rest_otherwise_if_only_that_is_stretched():
+    vertices, triangles = plane(40)
+    size = np.ptp(vertices[:, 0])
+    beyond = np.maximum(vertices[:, 0] - vertices[:, 0].min() - size / 2, 0)
+    elastic = elastic_of(vertices, triangles)
+    stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
+    strained = elastic.strained(stretched, 0.05 * size)
+    at_rest = vertices + (1.4 * np.exp(-0.1) - 1) * beyond[:, None] * [1, 0, 0]
+    costs = [strained.energy(each, strained.rotations(each, 0.05 * size)) for each in (vertices, at_rest)]
+    assert costs[1] < 0.1 * costs[0]  # the strain is averaged over where it begins
+
+
+def test_collapsed_and_exploded_surfaces_are_at_rest_at_most_twice_as_long_or_short(ball):
+    vertices, triangles, elastic = ball
+    area = TriangleMesh(vertices, triangles).area
+    for scale, rest in ((0.0, 2**-1), (1e9, 2)):
+        strained = elastic.strained(scale * vertices, NEAR)
+        at_rest = np.exp(np.sign(rest - 1) * (np.log(2) - 0.1)) * vertices
+        assert strained.energy(at_rest, strained.rotations(at_rest, NEAR)) < 1e-3 * area
+
+
+def test_size_does_not_decide_what_is_strained_and_softening_keeps_it(body):
+    vertices, triangles, elastic = body
+    bent = creature(0.5, 9)[0] * [1.3, 1, 1]
+    strained = elastic.strained(bent, NEAR)
+    rotations = strained.rotations(bent, NEAR)
+    large = elastic_of(50 * vertices, triangles).strained(50 * bent, 50 * NEAR)
+    np.testing.assert_allclose(large.pull(rotations), 50 * strained.pull(rotations), atol=1e-6)
+    assert strained.energy(bent, rotations) < 0.9 * elastic.energy(bent, rotations)
+    softened = strained.softened(bent, NEAR)
+    assert softened.energy(bent, rotations) < 0.9 * elastic.softened(bent, NEAR).energy(bent, rotations)
+    assert_equilibrium(softened, vertices, rotations)
+
+
+def test_the_operator_may_be_that_of_the_surface_in_another_size(body):
+    vertices, triangles, elastic = body
+    bent = creature(0.5, 9)[0] * [1.3, 1, 1]
+    other = ElasticSurface(vertices, laplace_beltrami(TriangleMesh(7 * vertices, triangles)))
+    rotations = elastic.rotations(bent, NEAR)
+    np.testing.assert_allclose(
+        other.strained(bent, NEAR).pull(rotations), elastic.strained(bent, NEAR).pull(rotations), atol=1e-6
+    )

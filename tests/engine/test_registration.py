@@ -11,6 +11,7 @@ from engine.deformable import DeformableSurface
 from engine.eigenpairs import eigenpairs_steps
 from engine.laplacian import laplace_beltrami
 from engine.registration import CLOSE, FINE, LAST, POLISH, SOFT, Stage, register_steps, smooth_start
+from tests.bodies import relative_of_creature
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 
 
@@ -98,6 +99,18 @@ def test_no_triangle_is_turned_over(registered, bodies):
     seen = at(registered.on_target, target, target.normals)[source.triangles].sum(axis=1)
     kept = np.einsum("td,td->t", np.cross(b - a, c - a), seen) > 0
     assert np.average(kept, weights=source.mesh.triangle_areas) > 0.97
+
+
+def test_a_stiff_body_that_is_taken_as_strained_does_not_pull_longer_legs_short():
+    source = deformable(*relative_of_creature())
+    target = deformable(*relative_of_creature(legs=1.6))
+    strained = source.elastic.strained(target.vertices, 0.05)
+    misplaced = []
+    for elastic in (None, strained):
+        stages = (Stage((40,) * 5, 0.05, 0.0, matched="around"),)
+        found = run(register_steps(source, target, target.vertices, stages, elastic=elastic))
+        misplaced.append(source.mass @ np.linalg.norm(found.positions - target.vertices, axis=1))
+    assert misplaced[1] < 0.6 * misplaced[0]
 
 
 def test_a_body_at_rest_stays_where_it_is(bodies):
