@@ -196,14 +196,15 @@ def _unrefined_steps(
 
 
 def _rolled_back_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[Candidate]]:
-    """Turn a long body back where those that may be chosen turn it about its axis; the most credible first."""
+    """Turn a long body back where those that may be chosen turn it about its axis; then the most credible is first."""
     contenders = _contenders(follow, candidates)
-    rolled = []
+    rolled = {}
     for number, candidate in enumerate(contenders):
         begin, end = ((number + i) / len(contenders) for i in (0, 1))
-        rolled.append((yield from within(follow.rolled_back_steps(candidate), begin, end)))
-    others = [candidate for candidate in candidates if not any(candidate is c for c in contenders)]
-    return sorted([*rolled, *others], key=lambda candidate: candidate.score)
+        rolled[id(candidate)] = yield from within(follow.rolled_back_steps(candidate), begin, end)
+    if all(rolled[id(candidate)] is candidate for candidate in contenders):
+        return candidates
+    return sorted((rolled.get(id(c), c) for c in candidates), key=lambda candidate: candidate.score)
 
 
 def _contenders(follow: Follower, candidates: list[Candidate]) -> list[Candidate]:

@@ -201,7 +201,7 @@ class ElasticSurface:
         mass = area / self._laplace.area * self._laplace.mass
         factor = symmetric_factor(diags_array(mass) + radius**2 / 2 * self._laplace.stiffness)
         moved, rest = (factor.solve(self._around @ each.reshape(-1, 9)).reshape(-1, 3, 3) for each in products)
-        least = _PLANE * np.einsum("nii->n", rest)[:, None, None]
+        least = np.maximum(_PLANE * np.einsum("nii->n", rest), np.finfo(float).tiny)[:, None, None]
         linear = (moved + least * nearest_rotations(moved)) @ np.linalg.inv(rest + least * np.eye(3))
         stretch = nearest_rotations(linear).transpose(0, 2, 1) @ linear
         values, vectors = np.linalg.eigh((stretch + stretch.transpose(0, 2, 1)) / 2)
