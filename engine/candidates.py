@@ -14,18 +14,7 @@ from .functional_maps import PointMaps
 from .limb_twists import rolled_back, untwisted
 from .map_hypotheses import MapHypothesis, refined_hypothesis_steps, score_everywhere
 from .progress import Steps, within
-from .registration import (
-    AGAIN,
-    CLOSE,
-    FINE,
-    GUIDED,
-    LAST,
-    SOFT,
-    Registration,
-    register_steps,
-    restarted_steps,
-    smooth_start,
-)
+from .registration import CLOSE, FINE, GUIDED, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
@@ -52,7 +41,7 @@ _DETAILED = 100
 _ROLLS = 3
 """How often a long body is turned back at most: the better it lies, the better is seen how it is turned."""
 
-_STAGES = AGAIN, CLOSE, LAST
+_STAGES = FINE, CLOSE, LAST
 _MISFIT_WEIGHT = 20.0
 """How much the mean squared distance that is left counts against the elastic energy."""
 

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     Guides = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 __all__ = [
-    "AGAIN",
     "CLOSE",
     "FINE",
     "GUIDED",
@@ -100,9 +99,6 @@ enough for the hands and feet of a body that crouches."""
 
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
-
-AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", softened=True)
-"""The same from a map that is nearly right, and says where the surface is strained."""
 
 CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=True)
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
