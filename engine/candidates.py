@@ -170,12 +170,12 @@ class Follower:
         steps = register_steps(source, target, positions, (FINE,), ties=self.ties)
         first = yield from within(steps, 0.0, 0.2)
         matches = first.on_source, first.on_target
-        functions, sparse = _functions(self.y, _DETAILED), candidate.hypothesis.isometry
-        steps = restarted_steps(target, source, functions, matches, stages=_STAGES, sparse=sparse, ties=self.ties_back)
+        functions = _functions(self.y, _DETAILED)
+        steps = restarted_steps(target, source, functions, matches, stages=_STAGES, ties=self.ties_back)
         reverse = yield from within(steps, 0.2, 0.6)
         matches = reverse.on_source, reverse.on_target
         functions = _functions(self.x, _DETAILED)
-        steps = restarted_steps(source, target, functions, matches, stages=_STAGES, sparse=sparse, ties=self.ties)
+        steps = restarted_steps(source, target, functions, matches, stages=_STAGES, ties=self.ties)
         final = yield from within(steps, 0.6, 1.0)
         score = (candidate.score + self._score(candidate.hypothesis, final)) / 2
         return CloseFit(candidate, final, reverse, score)

@@ -232,7 +232,6 @@ def restarted_steps(
     matches: tuple[FoundPoints, FoundPoints],
     *,
     stages: tuple[Stage, ...],
-    sparse: float = 0.0,
     ties: Ties | None = None,
 ) -> Steps[Registration]:
     """Register anew from the matches of an earlier registration, of these surfaces or of the two exchanged.
@@ -248,14 +247,12 @@ def restarted_steps(
         Eigenfunctions to smooth by, see `smooth_start`.
     matches : pair of FoundPoints
         The matching point of the target for each vertex of the source, and the other way round.
-    stages, sparse, ties
+    stages, ties
         As in `register_steps`.
     """
     places = _at(matches[0], target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
-    posed = (start + places) / 2
-    steps = register_steps(source, target, start, stages, matches, posed=posed, sparse=sparse, ties=ties)
-    return (yield from steps)
+    return (yield from register_steps(source, target, start, stages, matches, posed=(start + places) / 2, ties=ties))
 
 
 def register_steps(
@@ -267,7 +264,6 @@ def register_steps(
     *,
     posed: NDArray[np.float64] | None = None,
     elastic: ElasticSurface | None = None,
-    sparse: float = 0.0,
     ties: Ties | None = None,
     guides: Guides | None = None,
 ) -> Steps[Registration]:
@@ -293,8 +289,6 @@ def register_steps(
         cross-sections left where limbs are thin.  Not for surfaces of few vertices.
     elastic : ElasticSurface, optional
         How the source resists deformation, if not as it is: with the same stiffness, but other edges at rest.
-    sparse : float
-        How sparse strain is, from 0 to 1, for stages with a softened surface; see `ElasticSurface.softened`.
     ties : Ties, optional
         Points of the source that are held at places in the space of the target, in every round.
     guides : pair of arrays of float, (n_x, g) and (n_y, g), optional
@@ -326,7 +320,7 @@ def register_steps(
         matcher = _Matcher(source, target, stage, guides)
         resisting = source.elastic if elastic is None else elastic
         if stage.softened:
-            resisting = resisting.softened(positions, stage.rotation_radius, sparse)
+            resisting = resisting.softened(positions, stage.rotation_radius)
         step = np.zeros_like(positions)
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)
