@@ -12,11 +12,13 @@ from engine import (
     SurfaceMap,
     SurfacePoints,
     TriangleMesh,
+    dense_match,
     densify,
     densify_steps,
     match,
     match_steps,
 )
+from engine.elastic import ElasticSurface
 from engine.missing_parts import round_trips
 from tests.bodies import mirrored_body
 from tests.messes import together
@@ -201,6 +203,22 @@ def test_a_coarse_stand_in_gives_nearly_the_same_map(result, bodies):
     assert gaps.mean() < 0.22 * target.edge_lengths.mean()
     assert other.source_to_target.flipped_faces(source, fine) < 0.02
     assert np.isfinite(other.target_points.positions).all()
+
+
+def test_full_resolution_starts_from_the_strain_that_the_stand_ins_led_to(bodies, monkeypatch):
+    strained, registered = [], []
+    own, steps = ElasticSurface.strained, dense_match.register_steps
+
+    def recorded(*given, elastic, **others):
+        registered.append(elastic)
+        return steps(*given, elastic=elastic, **others)
+
+    monkeypatch.setattr(ElasticSurface, "strained", lambda *given: strained.append(own(*given)) or strained[-1])
+    monkeypatch.setattr(dense_match, "register_steps", recorded)
+    fine = TriangleMesh(*subdivided(bodies[1].vertices, bodies[1].triangles, 2))
+    match(bodies[0], Shape(fine, "target", proxy_vertices=700), QUICK)
+    assert len(registered) == 2  # there and back
+    assert registered == strained
 
 
 def test_what_is_excluded_follows_what_is_around_it(bodies):
