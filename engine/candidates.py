@@ -14,7 +14,18 @@ from .functional_maps import PointMaps
 from .limb_twists import rolled_back, untwisted
 from .map_hypotheses import MapHypothesis, refined_hypothesis_steps, score_everywhere
 from .progress import Steps, within
-from .registration import CLOSE, FINE, GUIDED, LAST, SOFT, Registration, register_steps, restarted_steps, smooth_start
+from .registration import (
+    AGAIN,
+    CLOSE,
+    FINE,
+    GUIDED,
+    LAST,
+    SOFT,
+    Registration,
+    register_steps,
+    restarted_steps,
+    smooth_start,
+)
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
@@ -41,7 +52,7 @@ _DETAILED = 100
 _ROLLS = 3
 """How often a long body is turned back at most: the better it lies, the better is seen how it is turned."""
 
-_STAGES = FINE, CLOSE, LAST
+_STAGES = AGAIN, CLOSE, LAST
 _MISFIT_WEIGHT = 20.0
 """How much the mean squared distance that is left counts against the elastic energy."""
 
@@ -170,12 +181,12 @@ class Follower:
         steps = register_steps(source, target, positions, (FINE,), ties=self.ties)
         first = yield from within(steps, 0.0, 0.2)
         matches = first.on_source, first.on_target
-        functions = _functions(self.y, _DETAILED)
-        steps = restarted_steps(target, source, functions, matches, stages=_STAGES, ties=self.ties_back)
+        functions, sparse = _functions(self.y, _DETAILED), candidate.hypothesis.isometry
+        steps = restarted_steps(target, source, functions, matches, stages=_STAGES, sparse=sparse, ties=self.ties_back)
         reverse = yield from within(steps, 0.2, 0.6)
         matches = reverse.on_source, reverse.on_target
         functions = _functions(self.x, _DETAILED)
-        steps = restarted_steps(source, target, functions, matches, stages=_STAGES, ties=self.ties)
+        steps = restarted_steps(source, target, functions, matches, stages=_STAGES, sparse=sparse, ties=self.ties)
         final = yield from within(steps, 0.6, 1.0)
         score = (candidate.score + self._score(candidate.hypothesis, final)) / 2
         return CloseFit(candidate, final, reverse, score)

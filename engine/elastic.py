@@ -24,6 +24,9 @@ _LEAST_WEIGHT = 1e-4
 _MOST_ROUNDS = 60
 """Rounds of smoothing at most: finer meshes are meant to be worked on through a coarser one."""
 
+_SPREAD, _SPARSE = (0.5, 1.0), (0.75, 0.3)
+"""Exponent and constant of how much softer strained parts are, where strain is spread out and where it is sparse."""
+
 _DOUBTED, _MOST_STRETCHED = 0.1, float(np.log(2))
 """Logarithm of a stretch up to which it is not accepted as how bodies differ, and the most of it that is looked at."""
 
@@ -132,13 +135,14 @@ class ElasticSurface:
         logarithms = np.log(np.clip(ratio, _LEAST_RATIO, 1 / _LEAST_RATIO)) / 2
         return np.exp(self._averaged(logarithms, radius))
 
-    def softened(self, positions: NDArray[np.float64], radius: float) -> ElasticSurface:
+    def softened(self, positions: NDArray[np.float64], radius: float, sparse: float = 0.0) -> ElasticSurface:
         r"""Take the surface as softer where a deformation strains it more.
 
         Poses stretch skin where it bends, and bodies differ more in some parts than in others: elsewhere little is to
         be strained.  With s the squared strain around a vertex and m its mean over the surface, the energy there is
-        multiplied by :math:`(1 + s / m)^{-1/2}`, which is a step of iteratively reweighted least squares [1]_ for the
-        robust energy :math:`\sum \sqrt{1 + s / m}`; then so that the mean stays one.  Rotations are fitted as before.
+        multiplied by :math:`(c + s / m)^{-p}`, which is a step of iteratively reweighted least squares [1]_ for the
+        robust energy :math:`\sum (c + s / m)^{1 - p}`; then so that the mean stays one.  Rotations are fitted as
+        before.
 
         Parameters
         ----------
@@ -146,6 +150,9 @@ class ElasticSurface:
             Deformed positions.
         radius : float
             Over what distance, in units of the rest positions, rotations and strains are averaged.
+        sparse : float
+            From 0, bodies of unlike build, which are strained everywhere: p = 1/2 and c = 1; to 1, one body in two
+            poses, which is strained at joints alone: p = 3/4 and c = 0.3.
 
         Returns
         -------
@@ -162,7 +169,9 @@ class ElasticSurface:
         strains = (self._around @ (self._weights * misfit)) / np.maximum(lengths, np.finfo(float).tiny)
         strains = self._averaged(strains, radius)
         mass = self._laplace.mass
-        factors = 1 / np.sqrt(1 + strains / max(np.average(strains, weights=mass), np.finfo(float).tiny))
+        relative = strains / max(np.average(strains, weights=mass), np.finfo(float).tiny)
+        power, constant = (1 - sparse) * np.array(_SPREAD) + sparse * np.array(_SPARSE)
+        factors = (constant + relative) ** -power
         return ElasticSurface(self._vertices, self._laplace, factors / np.average(factors, weights=mass), self._edges)
 
     def strained(self, positions: NDArray[np.float64], radius: float) -> ElasticSurface:

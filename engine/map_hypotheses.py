@@ -51,7 +51,7 @@ _HOPELESS = 3.0  # excess of the score over the best of the same orientation
 # Rigidity is the strongest cue against half turns; in distances and spectra these are hardly worse than the truth.
 _WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
 _LEAST_TERM = 1e-6
-_ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
+_ISOMETRIC, _UNLIKE = 0.05, 0.08  # isometric defect up to which functional maps agree with the truth; of unlike bodies
 _ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
 
 
@@ -126,6 +126,11 @@ class MapHypothesis:
     def isometric_defect(self) -> float:
         """How far the map is from keeping all distances; below 0.1 where it is nearly an isometry."""
         return self.terms["commutator"]
+
+    @property
+    def isometry(self) -> float:
+        """How near it is to an isometry, from 0, as between bodies of unlike build, to 1, as between two poses."""
+        return float(np.clip((_UNLIKE - self.isometric_defect) / (_UNLIKE - _ISOMETRIC), 0, 1))
 
     @property
     def is_doubtful(self) -> bool:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     Guides = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 __all__ = [
+    "AGAIN",
     "CLOSE",
     "FINE",
     "GUIDED",
@@ -99,6 +100,9 @@ enough for the hands and feet of a body that crouches."""
 
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
+
+AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around")
+"""The same from a map that is nearly right: stiffer, the surface would leave it first."""
 
 CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=True)
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
@@ -232,6 +236,7 @@ def restarted_steps(
     matches: tuple[FoundPoints, FoundPoints],
     *,
     stages: tuple[Stage, ...],
+    sparse: float = 0.0,
     ties: Ties | None = None,
 ) -> Steps[Registration]:
     """Register anew from the matches of an earlier registration, of these surfaces or of the two exchanged.
@@ -247,12 +252,14 @@ def restarted_steps(
         Eigenfunctions to smooth by, see `smooth_start`.
     matches : pair of FoundPoints
         The matching point of the target for each vertex of the source, and the other way round.
-    stages, ties
+    stages, sparse, ties
         As in `register_steps`.
     """
     places = _at(matches[0], target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
-    return (yield from register_steps(source, target, start, stages, matches, posed=(start + places) / 2, ties=ties))
+    posed = (start + places) / 2
+    steps = register_steps(source, target, start, stages, matches, posed=posed, sparse=sparse, ties=ties)
+    return (yield from steps)
 
 
 def register_steps(
@@ -264,6 +271,7 @@ def register_steps(
     *,
     posed: NDArray[np.float64] | None = None,
     elastic: ElasticSurface | None = None,
+    sparse: float = 0.0,
     ties: Ties | None = None,
     guides: Guides | None = None,
 ) -> Steps[Registration]:
@@ -289,6 +297,8 @@ def register_steps(
         cross-sections left where limbs are thin.  Not for surfaces of few vertices.
     elastic : ElasticSurface, optional
         How the source resists deformation, if not as it is: with the same stiffness, but other edges at rest.
+    sparse : float
+        How sparse strain is, from 0 to 1, for stages with a softened surface; see `ElasticSurface.softened`.
     ties : Ties, optional
         Points of the source that are held at places in the space of the target, in every round.
     guides : pair of arrays of float, (n_x, g) and (n_y, g), optional
@@ -310,9 +320,11 @@ def register_steps(
        CVPR 2007.
     """
     positions = start
-    if posed is None or _are_coarse(source, target):
-        # The few vertices around a limb could not tell which way round it is.
+    if posed is None:
         posed = start
+    if _are_coarse(source, target):
+        # The few vertices around a limb could not tell which way round it is, nor those of a joint how it is strained.
+        posed, sparse = start, 0.0
     total = sum(len(stage.weights) for stage in stages)
     done = 0
     matches = first
@@ -320,7 +332,7 @@ def register_steps(
         matcher = _Matcher(source, target, stage, guides)
         resisting = source.elastic if elastic is None else elastic
         if stage.softened:
-            resisting = resisting.softened(positions, stage.rotation_radius)
+            resisting = resisting.softened(positions, stage.rotation_radius, sparse)
         step = np.zeros_like(positions)
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)

@@ -9,6 +9,7 @@ import pytest
 from engine import Shape, SurfacePoints, TriangleMesh, dense_map, map_hypotheses, run
 from engine.candidates import Follower
 from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
+from engine.elastic import ElasticSurface
 from engine.functional_maps import PointMaps
 from engine.landmarks import LandmarkPlaces, Landmarks
 from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere
@@ -255,6 +256,20 @@ def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, bot
     assert pair.margin == pytest.approx(fits[1].score - fits[0].score)
     np.testing.assert_array_equal(fits[0].registration.positions, pair.registration.positions)
     np.testing.assert_array_equal(fits[0].reverse.positions, pair.reverse.positions)
+
+
+@pytest.mark.parametrize(("few", "expected"), [(0, 0.5), (10**9, 0.0)], ids=["fine", "coarse"])
+def test_strain_is_taken_for_as_sparse_as_the_map_is_near_to_an_isometry(few, expected, bodies, starts, monkeypatch):
+    monkeypatch.setattr("engine.registration._COARSE", few)
+    x, y = bodies[:2]
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    follow, candidate = Follower(x, y, pair.source, pair.target), pair.candidates[0]
+    sparse = []
+    own = ElasticSurface.softened
+    monkeypatch.setattr(ElasticSurface, "softened", lambda *given: sparse.append(given[3]) or own(*given))
+    terms = {**candidate.hypothesis.terms, "commutator": 0.065}
+    run(follow.close_steps(replace(candidate, hypothesis=replace(candidate.hypothesis, terms=terms))))
+    assert sparse == pytest.approx([expected] * 2)  # there and back
 
 
 def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_starts, monkeypatch):
