@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -175,18 +175,17 @@ class Follower:
     def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
         """Register closely: the source, then the target from where it lies, then the source again."""
         source, target = self.source, self.target
-        positions = candidate.registration.positions
+        positions, isometry = candidate.registration.positions, candidate.hypothesis.isometry
         if self.ties is None:  # what landmarks hold stays the way round it is
             positions = untwisted(self.x, source, target, positions)
-        steps = register_steps(source, target, positions, (FINE,), ties=self.ties)
+        steps = register_steps(source, target, positions, (FINE,), isometry=isometry, ties=self.ties)
         first = yield from within(steps, 0.0, 0.2)
         matches = first.on_source, first.on_target
-        functions, sparse = _functions(self.y, _DETAILED), candidate.hypothesis.isometry
-        steps = restarted_steps(target, source, functions, matches, stages=_STAGES, sparse=sparse, ties=self.ties_back)
+        restart = partial(restarted_steps, stages=_STAGES, isometry=isometry)
+        steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back)
         reverse = yield from within(steps, 0.2, 0.6)
         matches = reverse.on_source, reverse.on_target
-        functions = _functions(self.x, _DETAILED)
-        steps = restarted_steps(source, target, functions, matches, stages=_STAGES, sparse=sparse, ties=self.ties)
+        steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties)
         final = yield from within(steps, 0.6, 1.0)
         score = (candidate.score + self._score(candidate.hypothesis, final)) / 2
         return CloseFit(candidate, final, reverse, score)

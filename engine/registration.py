@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -58,7 +58,7 @@ class Stage:
         How many units of length (in sqrt(area)) a unit of difference of the normals, and of the curvatures, counts when
         points are matched.
     rotation_radius : float
-        Over what distance the rotations are averaged, in sqrt(area).
+        Over what distance the rotations are averaged, in sqrt(area), if not more because bodies are unlike.
     matched : str
         What points are matched with in each round: "vertices", the most similar one; the triangles "around" it; or
         points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place, unless
@@ -144,6 +144,10 @@ class Registration:
 
 
 _MATCHED = ("vertices", "around", "anywhere")
+
+_EVENER = 0.04
+"""What is added to the radius that rotations are averaged over between bodies of unlike build: these bend at joints, as
+poses do, but for the rest they differ everywhere, and gently."""
 
 _COARSE = 2000
 """Below so many vertices, those of a surface are too far apart for it to slide from one to the next; and any search is
@@ -236,7 +240,7 @@ def restarted_steps(
     matches: tuple[FoundPoints, FoundPoints],
     *,
     stages: tuple[Stage, ...],
-    sparse: float = 0.0,
+    isometry: float = 1.0,
     ties: Ties | None = None,
 ) -> Steps[Registration]:
     """Register anew from the matches of an earlier registration, of these surfaces or of the two exchanged.
@@ -252,13 +256,13 @@ def restarted_steps(
         Eigenfunctions to smooth by, see `smooth_start`.
     matches : pair of FoundPoints
         The matching point of the target for each vertex of the source, and the other way round.
-    stages, sparse, ties
+    stages, isometry, ties
         As in `register_steps`.
     """
     places = _at(matches[0], target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
     posed = (start + places) / 2
-    steps = register_steps(source, target, start, stages, matches, posed=posed, sparse=sparse, ties=ties)
+    steps = register_steps(source, target, start, stages, matches, posed=posed, isometry=isometry, ties=ties)
     return (yield from steps)
 
 
@@ -271,7 +275,7 @@ def register_steps(
     *,
     posed: NDArray[np.float64] | None = None,
     elastic: ElasticSurface | None = None,
-    sparse: float = 0.0,
+    isometry: float = 1.0,
     ties: Ties | None = None,
     guides: Guides | None = None,
 ) -> Steps[Registration]:
@@ -297,8 +301,9 @@ def register_steps(
         cross-sections left where limbs are thin.  Not for surfaces of few vertices.
     elastic : ElasticSurface, optional
         How the source resists deformation, if not as it is: with the same stiffness, but other edges at rest.
-    sparse : float
-        How sparse strain is, from 0 to 1, for stages with a softened surface; see `ElasticSurface.softened`.
+    isometry : float
+        From 0, bodies of unlike build, to 1, one body in two poses: how sparse strain is where a stage has the surface
+        softened, see `ElasticSurface.softened`; and rotations are averaged over more, the less it is.
     ties : Ties, optional
         Points of the source that are held at places in the space of the target, in every round.
     guides : pair of arrays of float, (n_x, g) and (n_y, g), optional
@@ -322,13 +327,15 @@ def register_steps(
     positions = start
     if posed is None:
         posed = start
+    sparse = isometry
     if _are_coarse(source, target):
         # The few vertices around a limb could not tell which way round it is, nor those of a joint how it is strained.
         posed, sparse = start, 0.0
     total = sum(len(stage.weights) for stage in stages)
     done = 0
     matches = first
-    for stage in stages:
+    further = _EVENER * (1 - isometry)
+    for stage in [replace(stage, rotation_radius=stage.rotation_radius + further) for stage in stages]:
         matcher = _Matcher(source, target, stage, guides)
         resisting = source.elastic if elastic is None else elastic
         if stage.softened:
