@@ -24,9 +24,6 @@ _LEAST_WEIGHT = 1e-4
 _MOST_ROUNDS = 60
 """Rounds of smoothing at most: finer meshes are meant to be worked on through a coarser one."""
 
-_SPREAD, _SPARSE = (0.5, 1.0), (0.75, 0.3)
-"""Exponent and constant of how much softer strained parts are, where strain is spread out and where it is sparse."""
-
 _DOUBTED, _MOST_STRETCHED = 0.1, float(np.log(2))
 """Logarithm of a stretch up to which it is not accepted as how bodies differ, and the most of it that is looked at."""
 
@@ -135,7 +132,9 @@ class ElasticSurface:
         logarithms = np.log(np.clip(ratio, _LEAST_RATIO, 1 / _LEAST_RATIO)) / 2
         return np.exp(self._averaged(logarithms, radius))
 
-    def softened(self, positions: NDArray[np.float64], radius: float, sparse: float = 0.0) -> ElasticSurface:
+    def softened(
+        self, positions: NDArray[np.float64], radius: float, power: float = 0.5, constant: float = 1.0
+    ) -> ElasticSurface:
         r"""Take the surface as softer where a deformation strains it more.
 
         Poses stretch skin where it bends, and bodies differ more in some parts than in others: elsewhere little is to
@@ -150,9 +149,8 @@ class ElasticSurface:
             Deformed positions.
         radius : float
             Over what distance, in units of the rest positions, rotations and strains are averaged.
-        sparse : float
-            From 0, bodies of unlike build, which are strained everywhere: p = 1/2 and c = 1; to 1, one body in two
-            poses, which is strained at joints alone: p = 3/4 and c = 0.3.
+        power, constant : float
+            p and c: the more the strain is expected to be in few places, the larger is p, below 1, and the smaller c.
 
         Returns
         -------
@@ -170,7 +168,6 @@ class ElasticSurface:
         strains = self._averaged(strains, radius)
         mass = self._laplace.mass
         relative = strains / max(np.average(strains, weights=mass), np.finfo(float).tiny)
-        power, constant = (1 - sparse) * np.array(_SPREAD) + sparse * np.array(_SPARSE)
         factors = (constant + relative) ** -power
         return ElasticSurface(self._vertices, self._laplace, factors / np.average(factors, weights=mass), self._edges)
 

@@ -51,7 +51,9 @@ _HOPELESS = 3.0  # excess of the score over the best of the same orientation
 # Rigidity is the strongest cue against half turns; in distances and spectra these are hardly worse than the truth.
 _WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
 _LEAST_TERM = 1e-6
-_ISOMETRIC, _UNLIKE = 0.05, 0.08  # isometric defect up to which functional maps agree with the truth; of unlike bodies
+_ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
+_UNLIKE = {"commutator": 0.08, "waves": 0.4}  # terms of maps between extreme poses, and between bodies of unlike build
+_POSED, _BUILT = 1.8, 2.1  # sum of terms relative to those up to which only poses differ, and from which builds do
 _ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
 
 
@@ -129,8 +131,12 @@ class MapHypothesis:
 
     @property
     def isometry(self) -> float:
-        """How near it is to an isometry, from 0, as between bodies of unlike build, to 1, as between two poses."""
-        return float(np.clip((_UNLIKE - self.isometric_defect) / (_UNLIKE - _ISOMETRIC), 0, 1))
+        """How near it is to an isometry, from 0, as between bodies of unlike build, to 1, as between two poses.
+
+        Extreme poses take it as far from an isometry as another build does, but leave its parts as they were.
+        """
+        unlike = sum(self.terms[name] / scale for name, scale in _UNLIKE.items())
+        return float(np.clip((_BUILT - unlike) / (_BUILT - _POSED), 0, 1))
 
     @property
     def is_doubtful(self) -> bool:

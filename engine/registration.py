@@ -71,8 +71,9 @@ class Stage:
     momentum : float
         What part of the way of the round before is gone once more [1]_, below one: steps that agree add up, so sliding
         takes a fraction of the rounds, also where fit counts most.
-    softened : bool
-        Whether the surface is softer where the stages before have strained it, see `ElasticSurface.softened`.
+    softened : pair of float
+        How much softer the surface is where it is strained to begin with, if bodies are unlike and if it is one body in
+        two poses: the power in `ElasticSurface.softened`.
 
     References
     ----------
@@ -88,7 +89,7 @@ class Stage:
     lead: float = 0.0
     guide_length: float = 0.0
     momentum: float = 0.0
-    softened: bool = False
+    softened: tuple[float, float] = (0.0, 0.0)
 
 
 GUIDED = Stage((5, 5, 10, 10, 20, 20, 40, 40), 0.2, 0.2, matched="vertices", guide_length=0.05)
@@ -101,10 +102,10 @@ enough for the hands and feet of a body that crouches."""
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
-AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around")
-"""The same from a map that is nearly right: stiffer, the surface would leave it first."""
+AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
+"""The same from a map that is nearly right, and says where a pose strains the surface."""
 
-CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=True)
+CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=(0.5, 0.75))
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
 LAST = Stage((2560,), 0.05, 0.0)
@@ -144,6 +145,9 @@ class Registration:
 
 
 _MATCHED = ("vertices", "around", "anywhere")
+
+_SPARSE = 0.3
+"""Part of the mean strain up to which strain hardly softens the surface, where it is in few places; else the mean."""
 
 _EVENER = 0.04
 """What is added to the radius that rotations are averaged over between bodies of unlike build: these bend at joints, as
@@ -302,8 +306,8 @@ def register_steps(
     elastic : ElasticSurface, optional
         How the source resists deformation, if not as it is: with the same stiffness, but other edges at rest.
     isometry : float
-        From 0, bodies of unlike build, to 1, one body in two poses: how sparse strain is where a stage has the surface
-        softened, see `ElasticSurface.softened`; and rotations are averaged over more, the less it is.
+        From 0, bodies of unlike build, to 1, one body in two poses, which are strained in few places: how stages have
+        the surface softened; and rotations are averaged over more, the less it is.
     ties : Ties, optional
         Points of the source that are held at places in the space of the target, in every round.
     guides : pair of arrays of float, (n_x, g) and (n_y, g), optional
@@ -338,8 +342,10 @@ def register_steps(
     for stage in [replace(stage, rotation_radius=stage.rotation_radius + further) for stage in stages]:
         matcher = _Matcher(source, target, stage, guides)
         resisting = source.elastic if elastic is None else elastic
-        if stage.softened:
-            resisting = resisting.softened(positions, stage.rotation_radius, sparse)
+        spread, few = stage.softened
+        power = spread + (few - spread) * sparse
+        if power > 0:
+            resisting = resisting.softened(positions, stage.rotation_radius, power, 1 - (1 - _SPARSE) * sparse)
         step = np.zeros_like(positions)
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)

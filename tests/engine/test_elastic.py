@@ -154,8 +154,8 @@ def test_a_surface_strained_alike_everywhere_is_as_stiff_as_before(ball):
     assert abs(softened.stiffness - elastic.stiffness).max() < 1e-9
 
 
-@pytest.mark.parametrize(("sparse", "power", "constant"), [(0, 0.5, 1), (1, 0.75, 0.3), (0.5, 0.625, 0.65)])
-def test_the_strained_half_of_a_plane_is_softer_by_what_the_robust_energy_says(sparse, power, constant):
+@pytest.mark.parametrize(("power", "constant"), [(0.5, 1), (0.75, 0.3), (0.0, 0.3)])
+def test_the_strained_half_of_a_plane_is_softer_by_what_the_robust_energy_says(power, constant):
     """One half strained and one not: the strain is twice its mean there, and the factors have the mean one."""
     vertices, triangles = plane(40)
     size = np.ptp(vertices[:, 0])
@@ -163,7 +163,7 @@ def test_the_strained_half_of_a_plane_is_softer_by_what_the_robust_energy_says(s
     beyond = np.maximum(vertices[:, 0] - middle, 0)
     elastic = elastic_of(vertices, triangles)
     stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
-    softened = elastic.softened(stretched, 0.02 * size, sparse)
+    softened = elastic.softened(stretched, 0.02 * size, power, constant)
     ratio = softened.stiffness.diagonal() / elastic.stiffness.diagonal()
     still, strained = vertices[:, 0] < middle - 0.2 * size, beyond > 0.2 * size
     factors = (constant + np.array([0.0, 2.0])) ** -power

@@ -200,9 +200,11 @@ def test_maps_that_are_no_isometries_or_turn_parts_over_are_doubtful(proposed):
     assert replace(best, terms={**best.terms, "commutator": 0.06}).is_doubtful
 
 
-@pytest.mark.parametrize(("defect", "isometry"), [(0.0, 1), (0.05, 1), (0.065, 0.5), (0.08, 0), (0.3, 0)])
-def test_between_two_poses_and_unlike_bodies_a_map_is_an_isometry_in_part(defect, isometry, proposed):
-    hypothesis = replace(proposed[0], terms={**proposed[0].terms, "commutator": defect})
+@pytest.mark.parametrize(
+    ("defect", "waves", "isometry"), [(0.0, 0.0, 1), (0.076, 0.32, 1), (0.076, 0.4, 0.5), (0.076, 0.46, 0), (0.3, 1, 0)]
+)
+def test_between_two_poses_and_unlike_bodies_a_map_is_an_isometry_in_part(defect, waves, isometry, proposed):
+    hypothesis = replace(proposed[0], terms={**proposed[0].terms, "commutator": defect, "waves": waves})
     assert hypothesis.isometry == pytest.approx(isometry)
 
 
