@@ -12,7 +12,7 @@ import numpy as np
 from .closest_points import FoundPoints
 from .functional_maps import PointMaps
 from .limb_twists import rolled_back, untwisted
-from .map_hypotheses import MapHypothesis, refined_hypothesis_steps, score_everywhere
+from .map_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
 from .progress import Steps, within
 from .registration import (
     AGAIN,
@@ -29,6 +29,8 @@ from .registration import (
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from .deformable import DeformableSurface
@@ -52,6 +54,9 @@ _DETAILED = 100
 _ROLLS = 3
 """How often a long body is turned back at most: the better it lies, the better is seen how it is turned."""
 
+_POSED, _BUILT = 0.38, 0.48
+"""Mean difference of wave kernel signatures up to which only poses differ, and from which on bodies are unlike."""
+
 _STAGES = AGAIN, CLOSE, LAST
 _MISFIT_WEIGHT = 20.0
 """How much the mean squared distance that is left counts against the elastic energy."""
@@ -72,12 +77,15 @@ class Candidate:
     likeness : float
         How much alike the surfaces are, if this is the map, larger for more: by the score of the hypothesis and the
         logarithm of what the deformation costs.
+    isometry : float
+        From 0, bodies of unlike build, to 1, one body in two poses, by wave kernel signatures where it was registered.
     """
 
     hypothesis: MapHypothesis
     registration: Registration
     score: float
     likeness: float
+    isometry: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,13 +177,15 @@ class Follower:
         """Say how credible a hypothesis is by the soft registration that it led to."""
         cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
         elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
-        score = self._score(hypothesis, registration)
-        return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic))
+        score, terms = self._assessed(hypothesis, registration)
+        # The rough map that it began with may be no isometry though the bodies are alike.
+        isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))
+        return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic), isometry)
 
     def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
         """Register closely: the source, then the target from where it lies, then the source again."""
         source, target = self.source, self.target
-        positions, isometry = candidate.registration.positions, candidate.hypothesis.isometry
+        positions, isometry = candidate.registration.positions, candidate.isometry
         if self.ties is None:  # what landmarks hold stays the way round it is
             positions = untwisted(self.x, source, target, positions)
         steps = register_steps(source, target, positions, (FINE,), isometry=isometry, ties=self.ties)
@@ -187,16 +197,16 @@ class Follower:
         matches = reverse.on_source, reverse.on_target
         steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties)
         final = yield from within(steps, 0.6, 1.0)
-        score = (candidate.score + self._score(candidate.hypothesis, final)) / 2
+        score = (candidate.score + self._assessed(candidate.hypothesis, final)[0]) / 2
         return CloseFit(candidate, final, reverse, score)
 
-    def _score(self, hypothesis: MapHypothesis, registration: Registration) -> float:
-        """Score what a hypothesis has led to."""
+    def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:
+        """Score what a hypothesis has led to; and the terms of the score, without the gaps that are left."""
         # A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.  The
         # true one may take more deforming than a wrong one where proportions differ, but the surfaces meet closer.
         gaps = np.maximum(registration.gaps, _LEAST_GAP)
-        score = score_everywhere(hypothesis.domains, self.vertex_maps(registration))
-        return score + _GAP_WEIGHT * float(np.log(gaps).sum())
+        lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
+        return lead.score + _GAP_WEIGHT * float(np.log(gaps).sum()), lead.terms
 
     def start(self, images: PointMaps) -> NDArray[np.float64]:
         """Place the source where a map between all vertices puts it, smoothly."""

@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 __all__ = [
     "LandmarkStart",
     "MapHypothesis",
+    "assessed_everywhere",
     "map_hypotheses_steps",
     "refined_hypothesis_steps",
-    "score_everywhere",
     "unrefined_hypotheses_steps",
     "unrefined_hypothesis",
 ]
@@ -52,8 +52,6 @@ _HOPELESS = 3.0  # excess of the score over the best of the same orientation
 _WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
 _LEAST_TERM = 1e-6
 _ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
-_UNLIKE = {"commutator": 0.08, "waves": 0.4}  # terms of maps between extreme poses, and between bodies of unlike build
-_POSED, _BUILT = 1.8, 2.1  # sum of terms relative to those up to which only poses differ, and from which builds do
 _ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
 
 
@@ -128,15 +126,6 @@ class MapHypothesis:
     def isometric_defect(self) -> float:
         """How far the map is from keeping all distances; below 0.1 where it is nearly an isometry."""
         return self.terms["commutator"]
-
-    @property
-    def isometry(self) -> float:
-        """How near it is to an isometry, from 0, as between bodies of unlike build, to 1, as between two poses.
-
-        Extreme poses take it as far from an isometry as another build does, but leave its parts as they were.
-        """
-        unlike = sum(self.terms[name] / scale for name, scale in _UNLIKE.items())
-        return float(np.clip((_BUILT - unlike) / (_BUILT - _POSED), 0, 1))
 
     @property
     def is_doubtful(self) -> bool:
@@ -260,9 +249,9 @@ def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: LandmarkSt
     return _hypothesis(domains, lead, nearest_both_ways(*rows))
 
 
-def score_everywhere(domains: tuple[MapDomain, MapDomain], images: PointMaps) -> float:
+def assessed_everywhere(domains: tuple[MapDomain, MapDomain], images: PointMaps) -> MapLead:
     """Score maps between all vertices like a hypothesis: smaller is more credible."""
-    return _assessed(*domains, _at_fine_samples(*domains, images), "").score
+    return _assessed(*domains, _at_fine_samples(*domains, images), "")
 
 
 def refined_hypothesis_steps(

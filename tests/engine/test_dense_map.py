@@ -12,7 +12,7 @@ from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
 from engine.elastic import ElasticSurface
 from engine.functional_maps import PointMaps
 from engine.landmarks import LandmarkPlaces, Landmarks
-from engine.map_hypotheses import LandmarkStart, map_hypotheses_steps, score_everywhere
+from engine.map_hypotheses import LandmarkStart, assessed_everywhere, map_hypotheses_steps
 from engine.registration import SOFT, register_steps
 from engine.steering import Steered
 from engine.ties import Ties
@@ -106,8 +106,10 @@ def test_candidates_are_ordered_and_cost_what_their_registration_costs(registere
             )
         )
         cost = 4 * np.log(found.energy + 20 * found.misfit)
-        assert candidate.score == pytest.approx(score_everywhere(domains, maps) + 4 * np.log(found.gaps).sum())
+        assert candidate.score == pytest.approx(assessed_everywhere(domains, maps).score + 4 * np.log(found.gaps).sum())
         assert candidate.likeness == pytest.approx(-candidate.hypothesis.score - cost)
+        waves = assessed_everywhere(domains, maps).terms["waves"]
+        assert candidate.isometry == pytest.approx(np.clip((0.48 - waves) / 0.1, 0, 1))
         assert candidate.hypothesis.orientation > 0
     assert registered.likeness == registered.candidates[0].likeness
     assert registered.margin is None or registered.margin > 0
@@ -259,7 +261,7 @@ def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, bot
 
 
 @pytest.mark.parametrize(("few", "expected"), [(0, [0.375, 0.625] * 2), (10**9, [0.5] * 2)], ids=["fine", "coarse"])
-def test_strain_is_taken_for_as_sparse_as_the_map_is_near_to_an_isometry(few, expected, bodies, starts, monkeypatch):
+def test_strain_is_taken_for_as_sparse_as_bodies_are_alike(few, expected, bodies, starts, monkeypatch):
     monkeypatch.setattr("engine.registration._COARSE", few)
     x, y = bodies[:2]
     pair = run(registered_pair_steps(x, y, starts[:1], search=False))
@@ -267,8 +269,7 @@ def test_strain_is_taken_for_as_sparse_as_the_map_is_near_to_an_isometry(few, ex
     powers = []
     own = ElasticSurface.softened
     monkeypatch.setattr(ElasticSurface, "softened", lambda *given: powers.append(given[3]) or own(*given))
-    terms = {**candidate.hypothesis.terms, "commutator": 0.076, "waves": 0.4}
-    run(follow.close_steps(replace(candidate, hypothesis=replace(candidate.hypothesis, terms=terms))))
+    run(follow.close_steps(replace(candidate, isometry=0.5)))
     assert powers == pytest.approx(expected)  # there and back
 
 
