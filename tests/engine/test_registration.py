@@ -269,6 +269,16 @@ def test_what_the_target_lacks_keeps_its_shape():
     assert np.linalg.norm(back.positions - source.in_unit_size(cut.vertices), axis=1).max() < 0.02
 
 
+def test_rotations_are_averaged_over_more_between_unlike_bodies(bodies, near_truth, functions):
+    source, target = bodies[:2]
+    start = smooth_start(source, target, near_truth, functions)
+    wider = replace(FINE, rotation_radius=FINE.rotation_radius + 0.02)
+    halfway = run(register_steps(source, target, start, (FINE,), isometry=0.5))
+    np.testing.assert_array_equal(halfway.positions, run(register_steps(source, target, start, (wider,))).positions)
+    alike = run(register_steps(source, target, start, (FINE,))).positions
+    assert 1e-4 < np.abs(halfway.positions - alike).mean() < 0.02
+
+
 def test_guides_lead_to_what_is_far_in_space():
     ball = deformable(*icosphere(6))
     turned = ball.vertices @ rotation([0.0, 0.0, 1.0], 1.2).T
