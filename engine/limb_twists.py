@@ -49,8 +49,8 @@ _SLICES = 60
 _ANGLES = 16
 """Angles about the axis that are tried."""
 
-_NORMAL_LENGTH, _CURVATURE_LENGTH = 0.05, 0.1
-"""How many units of length a unit of difference of the normals, and of the curvatures, counts for matched points."""
+_NORMAL_LENGTH = 0.05
+"""How many units of length a unit of difference of the normals counts when points are matched."""
 
 _POINT = 1e-12
 """Squared radius, in units of the area, of what is no more than a point."""
@@ -109,10 +109,10 @@ def untwisted(
         + \sum_k \frac{\pi \bar r_k^3}{h} (\tau_k + \theta_{k+1} - \theta_k)^2,
 
     which dynamic programming finds [1]_, with the last ring, at the body, held: :math:`D_k` is the mean squared
-    distance of a ring at rest, moved as a rigid body, from where it meets the target if it is turned, and of its
-    curvatures, as lengths, from those there: an arm is nearly round, but has an elbow; :math:`A_k` and :math:`r_k` are
-    its area and radius.  The second sum is what it takes to twist a tube of the mean radius :math:`\bar r_k` between
-    rings at the distance h, where they are turned by :math:`\tau_k` against each other already.
+    distance of a ring at rest, moved as a rigid body, from where it meets the target if it is turned; :math:`A_k` and
+    :math:`r_k` are its area and radius.  The second sum is what it takes to twist a tube of the mean radius
+    :math:`\bar r_k` between rings at the distance h, where they are turned by :math:`\tau_k` against each other
+    already.
 
     Parameters
     ----------
@@ -169,19 +169,16 @@ def _turned_back(
         return positions
     turned = positions
     normals = source.search.moved(positions).vertex_normals
-    marks, own = (_CURVATURE_LENGTH * surface.curvatures for surface in (target, source))
-    tree = cKDTree(np.concatenate([target.vertices, _NORMAL_LENGTH * target.normals, marks], axis=1))
+    tree = cKDTree(np.concatenate([target.vertices, _NORMAL_LENGTH * target.normals], axis=1))
     for limb in limbs:
         centres, axes = _axis(positions, limb.rings)
         costs, rotations = [], []
         for ring, radius, centre, axis in zip(limb.rings, limb.radii, centres, axes, strict=True):
             places, seen = positions[ring.vertices] - centre, normals[ring.vertices]
-            alike = np.broadcast_to(own[ring.vertices], (_ANGLES, len(places), own.shape[1]))
-            turned_so = _turned(places, axis) + centre, _NORMAL_LENGTH * _turned(seen, axis), alike
-            images = tree.query(np.concatenate(turned_so, axis=2))[1]  # (a, m)
+            asked = np.concatenate([_turned(places, axis) + centre, _NORMAL_LENGTH * _turned(seen, axis)], axis=2)
+            images = target.vertices[tree.query(asked.reshape(-1, 6))[1]].reshape(_ANGLES, -1, 3)
             rest = source.vertices[ring.vertices]
-            misfits, _ = _rigid_misfits(rest, target.vertices[images], ring.weights)
-            misfits += np.square(marks[images] - alike).sum(axis=2) @ ring.weights
+            misfits, _ = _rigid_misfits(rest, images, ring.weights)
             costs.append(ring.area / radius**2 * misfits)
             rotations.append(_rigid_misfits(rest, positions[ring.vertices][None], ring.weights)[1][0])
         angles = _best_angles(limb, np.array(costs), _twists(np.array(rotations), axes))

@@ -99,22 +99,6 @@ def test_a_hand_is_turned_back_though_it_is_wider_than_its_finger():
     assert after < 0.6 * before
 
 
-def test_a_round_limb_is_turned_to_where_its_curvatures_are():
-    """They say which side of an arm the elbow is on, where no shape does; here they are made up."""
-    vertices, triangles = icosphere(24)
-    mesh = TriangleMesh(vertices * [1, 0.15, 0.15], triangles)
-    source, target, made = surface(mesh), surface(mesh), shape(mesh)
-    np.testing.assert_array_equal(untwisted(made, source, target, source.vertices), source.vertices)
-    right = target.in_unit_size(twisted(mesh.vertices, 1.5))
-    marks = np.repeat(np.sin(np.arctan2(vertices[:, 2], vertices[:, 1]))[:, None], 2, axis=1)
-    source.__dict__["curvatures"] = marks
-    target.__dict__["curvatures"] = marks[cKDTree(right).query(target.vertices)[1]]
-    before = mean_distance(source, source.vertices, right)
-    after = mean_distance(source, untwisted(made, source, target, source.vertices), right)
-    assert before > 0.008
-    assert after < 0.6 * before
-
-
 @pytest.mark.parametrize("form", [np.asarray, bent])
 def test_what_is_right_stays_as_it_is(form, straight, made):
     vertices, triangles = blade()
