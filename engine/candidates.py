@@ -12,6 +12,7 @@ import numpy as np
 from .closest_points import FoundPoints
 from .functional_maps import PointMaps
 from .limb_twists import rolled_back, untwisted
+from .limb_windings import wound_steps
 from .map_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
 from .progress import Steps, within
 from .registration import (
@@ -186,9 +187,11 @@ class Follower:
         """Register closely: the source, then the target from where it lies, then the source again."""
         source, target = self.source, self.target
         positions, isometry = candidate.registration.positions, candidate.isometry
-        if self.ties is None:  # what landmarks hold stays the way round it is
-            positions = untwisted(self.x, source, target, positions)
-        steps = register_steps(source, target, positions, (FINE,), isometry=isometry, ties=self.ties)
+        register = partial(register_steps, source, target, stages=(FINE,), isometry=isometry, ties=self.ties)
+        if self.ties is None:
+            steps = wound_steps(register, source, target, untwisted(self.x, source, target, positions))
+        else:  # what landmarks hold stays the way round it is
+            steps = register(positions)
         first = yield from within(steps, 0.0, 0.2)
         matches = first.on_source, first.on_target
         restart = partial(restarted_steps, stages=_STAGES, isometry=isometry)

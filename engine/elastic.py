@@ -217,6 +217,11 @@ class ElasticSurface:
         """Energy of a deformation, an area: a number without unit for a surface of unit area."""
         return float(self._resisting @ self._misfit(positions, rotations))
 
+    def energies(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Share of each vertex in the energy of a deformation, (n,): half of what its edges have."""
+        shares: NDArray[np.float64] = self._around @ (self._resisting * self._misfit(positions, rotations)) / 2
+        return shares
+
     def _averaged(self, values: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
         """Average values (n, ...) over a neighbourhood."""
         # Each round spreads by the root of half the squared edge length.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .deformable import DeformableSurface
     from .shape import Shape
 
-__all__ = ["rolled_back", "untwisted"]
+__all__ = ["Untwisted", "Winding", "rolled_back", "untwisted"]
 
 _LIMBS, _APART = 8, 0.25
 """How many limbs are looked at, and how far apart, in sqrt(area), their tips are at least."""
@@ -46,8 +46,8 @@ _LONG = 2.5
 _SLICES = 60
 """Parts of a long body, each of the same difference of its first eigenfunction, whose lengths are measured."""
 
-_ANGLES = 16
-"""Angles about the axis that are tried."""
+_ANGLES, _TURNS = 16, 2
+"""Angles about the axis that are tried in each turn, and how many turns either way."""
 
 _NORMAL_LENGTH = 0.05
 """How many units of length a unit of difference of the normals counts when points are matched."""
@@ -60,6 +60,23 @@ _GAIN = 0.02
 
 _LEAST_TURN = 0.35
 """Turn of any ring, in radians, below which a limb is left to the registration."""
+
+_NEARLY = 1.25
+"""How many times as much it may cost to wind a limb the other way that is worth a try."""
+
+
+class Winding(NamedTuple):
+    """Vertices (v,) of a limb, and their positions (v, 3) if it is wound about its axis a full turn otherwise."""
+
+    vertices: NDArray[np.int64]
+    positions: NDArray[np.float64]
+
+
+class Untwisted(NamedTuple):
+    """Positions (n, 3) with limbs turned back, and what else might be meant for some of them."""
+
+    positions: NDArray[np.float64]
+    otherwise: list[Winding]
 
 
 class _Ring(NamedTuple):
@@ -98,7 +115,7 @@ class _Limb:
 
 def untwisted(
     shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
-) -> NDArray[np.float64]:
+) -> Untwisted:
     r"""Turn back what a registration has turned about the axis of a limb.
 
     A thin limb that is placed by smooth functions is no more than a curve: which way round it lies is left to chance,
@@ -114,6 +131,10 @@ def untwisted(
     :math:`\bar r_k` between rings at the distance h, where they are turned by :math:`\tau_k` against each other
     already.
 
+    An arm whose hand lies right may still be wound about itself by a full turn, and twisted by half a turn it costs as
+    much as by half a turn the other way.  So the best angles that end about a full turn away are found as well, and
+    offered if they cost little more.
+
     Parameters
     ----------
     shape : Shape
@@ -125,8 +146,8 @@ def untwisted(
 
     Returns
     -------
-    (n, 3) array of float
-        The same, with limbs turned where that makes them fit better.
+    Untwisted
+        The same, with limbs turned where that makes them fit better, and other windings of limbs, one for each at most.
 
     References
     ----------
@@ -158,16 +179,17 @@ def rolled_back(
         The same, with parts of the body turned where that makes them fit better; `positions` themselves if there are
         none, or if the body is not long.
     """
-    return _turned_back(_long_body(shape, source), source, target, positions)
+    return _turned_back(_long_body(shape, source), source, target, positions).positions
 
 
 def _turned_back(
     limbs: list[_Limb], source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
-) -> NDArray[np.float64]:
+) -> Untwisted:
     """Turn back limbs that have no vertex in common; the positions themselves if there is nothing to be turned."""
     if not limbs:
-        return positions
+        return Untwisted(positions, [])
     turned = positions
+    otherwise = []
     normals = source.search.moved(positions).vertex_normals
     tree = cKDTree(np.concatenate([target.vertices, _NORMAL_LENGTH * target.normals], axis=1))
     for limb in limbs:
@@ -181,11 +203,13 @@ def _turned_back(
             misfits, _ = _rigid_misfits(rest, images, ring.weights)
             costs.append(ring.area / radius**2 * misfits)
             rotations.append(_rigid_misfits(rest, positions[ring.vertices][None], ring.weights)[1][0])
-        angles = _best_angles(limb, np.array(costs), _twists(np.array(rotations), axes))
+        angles, other = _best_angles(limb, np.array(costs), _twists(np.array(rotations), axes))
+        if other is not None:
+            otherwise.append(Winding(limb.vertices, _moved(limb, centres, axes, other, positions)))
         if np.abs(angles).max() > _LEAST_TURN:
             turned = turned.copy() if turned is positions else turned
-            _turn(limb, centres, axes, angles, turned)
-    return turned
+            turned[limb.vertices] = _moved(limb, centres, axes, angles, positions)
+    return Untwisted(turned, otherwise)
 
 
 def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
@@ -275,13 +299,10 @@ def _axis(positions: NDArray[np.float64], rings: list[_Ring]) -> tuple[NDArray[n
 
 
 def _turned(vectors: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Turn vectors (m, 3) about a unit axis by all angles, (a, m, 3)."""
-    rotations = Rotation.from_rotvec(_angles()[:, None] * axis).as_matrix()
+    """Turn vectors (m, 3) about a unit axis by all angles of a turn, (a, m, 3)."""
+    angles = np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
+    rotations = Rotation.from_rotvec(angles[:, None] * axis).as_matrix()
     return vectors @ rotations.transpose(0, 2, 1)
-
-
-def _angles() -> NDArray[np.float64]:
-    return np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
 
 
 def _rigid_misfits(
@@ -303,41 +324,53 @@ def _twists(rotations: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArra
     return _wrapped(2 * np.arctan2(along, between[:, 3]))
 
 
-def _best_angles(limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angles (k,) to turn the rings by, of least cost; all zero if that saves too little."""
+def _best_angles(
+    limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    """Find the angles (k,) of least cost to turn the rings by, all zero if they save too little, and others.
+
+    The others are the best that turn the tip by about a full turn more or less, if these cost little more.
+    """
+    steps = np.arange(-_TURNS * _ANGLES, _TURNS * _ANGLES + 1)
+    tried, costs = steps * (2 * np.pi / _ANGLES), costs[:, steps % _ANGLES]
     stiffness = np.pi * ((limb.radii[1:] + limb.radii[:-1]) / 2) ** 3 / _WIDTH
-    tried = _angles()
     differences = tried[None, :] - tried[:, None]  # the next ring's angle less this one's
-    total = np.where(tried == 0, costs[-1], np.inf) if limb.held else costs[-1]
+    begun = steps == 0 if limb.held else np.abs(steps) <= _ANGLES // 2
+    total = np.where(begun, costs[-1], np.inf)
     choices = []
     for number in range(len(stiffness) - 1, -1, -1):
-        torsion = stiffness[number] * np.square(_wrapped(twists[number] + differences))
-        whole = total[None, :] + torsion
+        whole = total[None, :] + stiffness[number] * np.square(twists[number] + differences)
         choices.append(whole.argmin(axis=1))
         total = costs[number] + whole.min(axis=1)
-    now = costs[:, 0].sum() + (stiffness * np.square(twists)).sum()
-    if total.min() > (1 - _GAIN) * now:
-        return np.zeros(len(limb.radii))
-    path = [int(total.argmin())]
-    for choice in choices[::-1]:
-        path.append(int(choice[path[-1]]))
-    # From the last ring on the angles change as little as can be from ring to ring.
-    angles: NDArray[np.float64] = np.unwrap(_wrapped(tried[path])[::-1])[::-1]
-    return angles
+
+    def angles(tip: int) -> NDArray[np.float64]:
+        path = [tip]
+        for choice in choices[::-1]:
+            path.append(int(choice[path[-1]]))
+        return tried[path]
+
+    best, unturned = int(total.argmin()), int(np.flatnonzero(steps == 0)[0])
+    now = costs[:, unturned].sum() + (stiffness * np.square(twists)).sum()
+    chosen = np.zeros(len(limb.radii)) if total[best] > (1 - _GAIN) * now else angles(best)
+    turns_away = np.abs(np.abs(steps - steps[best]) - _ANGLES) <= _ANGLES // 8
+    other = int(np.where(turns_away, total, np.inf).argmin())
+    possible = limb.held and total[other] < _NEARLY * total[best]
+    return chosen, angles(other) if possible else None
 
 
-def _turn(
+def _moved(
     limb: _Limb,
     centres: NDArray[np.float64],
     axes: NDArray[np.float64],
     angles: NDArray[np.float64],
     positions: NDArray[np.float64],
-) -> None:
-    """Turn a limb in place: each vertex by the angle, and about the axis, between those of the rings beside it."""
+) -> NDArray[np.float64]:
+    """Turn a limb: each vertex by the angle, and about the axis, between those of the rings beside it, (v, 3)."""
     centre, axis = (_between(limb, values) for values in (centres, axes))
     angle = np.interp(limb.distances, [ring.distance for ring in limb.rings], angles)
     turns = Rotation.from_rotvec(angle[:, None] * _unit(axis))
-    positions[limb.vertices] = centre + turns.apply(positions[limb.vertices] - centre)
+    moved: NDArray[np.float64] = centre + turns.apply(positions[limb.vertices] - centre)
+    return moved
 
 
 def _between(limb: _Limb, values: NDArray[np.float64]) -> NDArray[np.float64]:

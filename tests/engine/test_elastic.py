@@ -64,6 +64,7 @@ def test_the_energy_is_an_area(body):
     bent = creature(0.5, 9)[0]
     cost = elastic.energy(bent, elastic.rotations(bent, NEAR))
     assert cost > 0
+    assert elastic.energies(bent, elastic.rotations(bent, NEAR)).sum() == pytest.approx(cost)
     large = elastic_of(50 * vertices, triangles)
     assert large.energy(50 * bent, large.rotations(50 * bent, 50 * NEAR)) == pytest.approx(2500 * cost)
 

@@ -22,6 +22,14 @@ def blade():
     return vertices * [1, 0.2, 0.07], triangles
 
 
+def lopsided():
+    """The blade, narrower on one side, so that half a turn does not bring it onto itself."""
+    vertices, triangles = blade()
+    return vertices * np.stack(
+        [np.ones(len(vertices)), np.where(vertices[:, 1] > 0, 0.4, 1), np.ones(len(vertices))], 1
+    ), triangles
+
+
 def paddle():
     """A body along x with flat hands at both ends: a thin finger, the palm, a thin wrist, and the trunk."""
     vertices, triangles = icosphere(24)
@@ -83,7 +91,7 @@ def test_a_limb_that_is_turned_about_its_axis_is_turned_back(form, most, straigh
     wrong = on_surface(target, target.in_unit_size(form(twisted(vertices, most))))
     source = surface(straight)
     before = mean_distance(target, wrong, target.vertices)
-    after = mean_distance(target, untwisted(made, source, target, wrong), target.vertices)
+    after = mean_distance(target, untwisted(made, source, target, wrong).positions, target.vertices)
     assert before > 0.008
     assert after < 0.6 * before  # turned and brought onto the flat surface, some vertices coincide
 
@@ -94,7 +102,7 @@ def test_a_hand_is_turned_back_though_it_is_wider_than_its_finger():
     target = surface(mesh)
     wrong = on_surface(target, target.in_unit_size(twisted(vertices, 2.5)))
     before = mean_distance(target, wrong, target.vertices)
-    after = mean_distance(target, untwisted(shape(mesh), target, target, wrong), target.vertices)
+    after = mean_distance(target, untwisted(shape(mesh), target, target, wrong).positions, target.vertices)
     assert before > 0.004
     assert after < 0.6 * before
 
@@ -103,21 +111,39 @@ def test_a_hand_is_turned_back_though_it_is_wider_than_its_finger():
 def test_what_is_right_stays_as_it_is(form, straight, made):
     vertices, triangles = blade()
     target = surface(TriangleMesh(form(vertices), triangles))
-    np.testing.assert_array_equal(untwisted(made, surface(straight), target, target.vertices), target.vertices)
+    kept = untwisted(made, surface(straight), target, target.vertices)
+    np.testing.assert_array_equal(kept.positions, target.vertices)
+    assert not kept.otherwise
+
+
+def test_what_is_twisted_by_less_than_half_a_turn_might_be_twisted_the_other_way():
+    vertices, triangles = lopsided()
+    mesh, target = TriangleMesh(vertices, triangles), surface(TriangleMesh(twisted(vertices, 2.5), triangles))
+    found = untwisted(shape(mesh), surface(mesh), target, target.vertices)
+    np.testing.assert_array_equal(found.positions, target.vertices)
+    (other,) = found.otherwise
+    along = vertices[other.vertices, 0]
+    moved = other.positions - target.vertices[other.vertices]
+    apart, radii = (np.linalg.norm(places, axis=1) for places in (moved, target.vertices[other.vertices, 1:]))
+    # Only one end is twisted; what is half-way there lies on the other side, and the tip nearly where it was.
+    halfway, tip = np.abs(along - 0.65) < 0.02, along > 0.95
+    assert along.min() > 0.4
+    assert apart[halfway].max() > 1.2 * radii[halfway].max()
+    assert apart[tip].max() < 0.45 * apart.max()
 
 
 def test_order_of_the_vertices_and_motion_do_not_matter(straight, made):
     vertices, triangles = blade()
     target = surface(straight)
     wrong = on_surface(target, target.in_unit_size(twisted(vertices, 2.5)))
-    found = untwisted(made, target, target, wrong)
+    found = untwisted(made, target, target, wrong).positions
     assert np.abs(found - wrong).max() > 0.05
     order = np.random.default_rng(0).permutation(len(vertices))
     back = np.argsort(order)
     other = TriangleMesh(3 * vertices[order] + 1, back[triangles])
     turn = rotation([1, 2, 3], 2.0)
     moved = surface(TriangleMesh(straight.vertices @ turn.T, triangles))
-    again = untwisted(shape(other), surface(other), moved, wrong[order] @ turn.T)
+    again = untwisted(shape(other), surface(other), moved, wrong[order] @ turn.T).positions
     np.testing.assert_allclose(again[back], found @ turn.T, atol=0.02)
 
 
@@ -125,7 +151,7 @@ def test_bodies_without_limbs_stay_as_they_are():
     mesh = TriangleMesh(*icosphere(8))
     ball = surface(mesh)
     turned = ball.vertices @ rotation([0, 0, 1], 1.0).T
-    np.testing.assert_array_equal(untwisted(shape(mesh), ball, ball, turned), turned)
+    np.testing.assert_array_equal(untwisted(shape(mesh), ball, ball, turned).positions, turned)
 
 
 @pytest.mark.parametrize("most", [2.5, -1.5, np.pi])

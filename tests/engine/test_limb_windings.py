@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Limbs that are wound about their axes, and the other way."""
+
+import numpy as np
+import pytest
+
+from engine import Progress, TriangleMesh, run
+from engine.deformable import DeformableSurface
+from engine.laplacian import laplace_beltrami
+from engine.limb_twists import Untwisted, Winding
+from engine.limb_windings import local_costs, wound_steps
+from engine.registration import FINE, Registration, register_steps
+from tests.shapes import icosphere
+
+FULL = 2 * np.pi
+
+
+def blade():
+    """A flat, pointed body along x, much wider than it is thick."""
+    vertices, triangles = icosphere(16)
+    return TriangleMesh(vertices * [1, 0.2, 0.07], triangles)
+
+
+@pytest.fixture(scope="module")
+def straight():
+    mesh = blade()
+    return DeformableSurface(mesh, laplace_beltrami(mesh))
+
+
+def end(surface, side):
+    """Vertices of one end."""
+    return np.flatnonzero(side * surface.vertices[:, 0] > 0.1 * np.ptp(surface.vertices[:, 0]))
+
+
+def wound(surface, side, most=FULL):
+    """Positions of all vertices, where one end is wound about the axis and right at its tip."""
+    x, y, z = surface.vertices.T
+    angles = most * np.clip((side * x / np.abs(x).max() - 0.3) / 0.4, 0, 1)
+    return np.stack([x, np.cos(angles) * y - np.sin(angles) * z, np.sin(angles) * y + np.cos(angles) * z], axis=1)
+
+
+class Laid:
+    """Stands for a registration that leaves the source where it is, and counts how often it was asked for."""
+
+    def __init__(self, source, target):
+        self.source, self.target, self.count = source, target, 0
+
+    def __call__(self, positions):
+        self.count += 1
+        yield Progress(1.0, "Fitting the surfaces")
+        on_target = self.target.search.moved(self.target.vertices).nearest(positions)
+        on_source = self.source.search.moved(positions).nearest(self.target.vertices)
+        elastic = self.source.elastic
+        energy = elastic.energy(positions, elastic.rotations(positions, 0.03))
+        misfit = float(self.source.mass @ on_target.squared_distances)
+        return Registration(positions, on_target, on_source, energy, misfit, (0.0, 0.0))
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_limb_is_wound_otherwise_where_that_costs_less(side, straight):
+    limb = end(straight, side)
+    laid = Laid(straight, straight)
+    untwisted = Untwisted(wound(straight, side), [Winding(limb, straight.vertices[limb])])
+    found = run(wound_steps(laid, straight, straight, untwisted))
+    np.testing.assert_array_equal(found.positions, straight.vertices)
+    assert laid.count == 2
+
+
+def test_a_limb_stays_as_it_is_where_the_other_way_costs_more(straight):
+    limb = end(straight, 1)
+    untwisted = Untwisted(straight.vertices, [Winding(limb, wound(straight, 1)[limb])])
+    found = run(wound_steps(Laid(straight, straight), straight, straight, untwisted))
+    np.testing.assert_array_equal(found.positions, straight.vertices)
+
+
+def test_each_limb_is_chosen_for_itself(straight):
+    first, second = end(straight, 1), end(straight, -1)
+    laid = Laid(straight, straight)
+    otherwise = [Winding(first, straight.vertices[first]), Winding(second, wound(straight, -1)[second])]
+    found = run(wound_steps(laid, straight, straight, Untwisted(wound(straight, 1), otherwise)))
+    np.testing.assert_array_equal(found.positions, straight.vertices)
+    assert laid.count == 3
+
+
+def test_nothing_is_registered_twice_where_nothing_else_might_be_meant(straight):
+    laid = Laid(straight, straight)
+    run(wound_steps(laid, straight, straight, Untwisted(straight.vertices, [])))
+    assert laid.count == 1
+
+
+def test_costs_of_all_vertices_are_those_of_the_registration(straight):
+    moved = straight.vertices * [1.02, 0.9, 1.1]
+    registration = run(Laid(straight, straight)(moved))
+    back = straight.mass @ registration.on_source.squared_distances
+    whole = registration.energy + 1280 * (registration.misfit + back)
+    assert local_costs(straight, straight, registration).sum() == pytest.approx(whole, rel=1e-6)
+
+
+def test_costs_are_where_the_surface_is_wound(straight):
+    costs = local_costs(straight, straight, run(Laid(straight, straight)(wound(straight, 1))))
+    x = straight.vertices[:, 0]
+    assert costs[x > 0].sum() > 0.99 * costs.sum() > 0
+
+
+def test_winding_the_other_way_is_better_after_a_registration_too(straight):
+    """The registration does not undo a full turn by itself: that is what the other way is tried for."""
+    limb = end(straight, 1)
+
+    def register(positions):
+        return register_steps(straight, straight, positions, (FINE,))
+
+    def error(found):
+        return straight.mass @ np.linalg.norm(found.positions - straight.vertices, axis=1)
+
+    start = wound(straight, 1)
+    kept = error(run(wound_steps(register, straight, straight, Untwisted(start, []))))
+    other = Untwisted(start, [Winding(limb, straight.vertices[limb])])
+    assert kept > 0.005
+    assert error(run(wound_steps(register, straight, straight, other))) < 0.1 * kept
