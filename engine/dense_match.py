@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS, registered_pair_steps
-from .followers import follow
+from .followers import follow_steps
 from .functional_maps import nearest_both_ways
 from .handle_cutting import evened_steps
 from .landmarks import placed_at_vertices
@@ -201,9 +201,11 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     yield Progress(0.8, "Judging the map")
     quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness)
     yield Progress(0.85, "Mapping every vertex")
-    forward = _followed(x, y, there, map_confidence(main_x, main_y, there, back, likeness=pair.likeness))
-    yield Progress(0.9, "Mapping every vertex")
-    backward = _followed(y, x, back, map_confidence(main_y, main_x, back, there, likeness=pair.likeness))
+    trusted = map_confidence(main_x, main_y, there, back, likeness=pair.likeness)
+    forward = yield from within(_followed_steps(x, y, there, trusted), 0.85, 0.92)
+    yield Progress(0.92, "Mapping every vertex")
+    trusted = map_confidence(main_y, main_x, back, there, likeness=pair.likeness)
+    backward = yield from within(_followed_steps(y, x, back, trusted), 0.92, 1.0)
     if pair.landmarks is not None:
         given, partners = pair.landmarks.source.original, pair.landmarks.target.original
         forward = _at_landmarks(forward, y.original, given, partners)
@@ -266,11 +268,11 @@ def _nearest(points: FoundPoints, mesh: TriangleMesh) -> NDArray[np.int64]:
     return vertices
 
 
-def _followed(
+def _followed_steps(
     x: PreparedSurface, y: PreparedSurface, main_map: SurfacePoints, confidence: NDArray[np.float64]
-) -> SurfaceMap:
+) -> Steps[SurfaceMap]:
     """Extend a map of the main part to all vertices of the original mesh."""
-    followed = follow(x.cleaned, y.cleaned, main_map)
+    followed = yield from follow_steps(x.cleaned, y.cleaned, main_map)
     triangles = y.kept_triangles[followed.points.triangles]
     points = SurfacePoints.from_barycentric(y.original, triangles, followed.points.barycentric)
     return SurfaceMap(points, followed.confidence * confidence[followed.surroundings], y.original.vertex_count)

@@ -7,37 +7,41 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from .closest_points import ClosestPoints
+from .mesh import TriangleMesh
+from .part_pairs import contact_with, paired_parts
+from .part_placement import laid_onto_steps
+from .progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .surroundings import Surroundings
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from .clean_surface import CleanSurface
-    from .closest_points import FoundPoints
-    from .mesh import TriangleMesh
+    from .clean_surface import CleanSurface, SurfacePart
+    from .part_pairs import Contact
 
-__all__ = ["FollowedMap", "follow"]
-
-_LARGEST_OFFSET = 1.5
-"""How far from where it is expected a partner may be, in sums of the two radii."""
-
-_BLUR = 0.01
-"""How exactly the place of a part can be known from its surroundings, in units of the root of the main part's area."""
-
-_LARGEST_RATIO = 2.0
-"""By what factor the radii of partners may differ, once the scale of the surroundings is allowed for."""
-
-_LARGEST_DEFORMATION = 0.3
-"""How much the widths of partners along their main axes may differ, in radii."""
+__all__ = ["FollowedMap", "follow_steps"]
 
 _TRUSTED_DISTANCE = 0.05
-"""Distance from the main part at which confidence is halved, in units of the root of its area."""
+"""Distance from what is followed at which confidence is halved, in units of the root of the main part's area."""
+
+_NEAR, _NEARLY = 0.02, 2.0
+"""Parts follow what is mapped if they are as near to it, in units of the root of the main part's area, or at most so
+many times as far from it as the nearest is; the others wait for those."""
+
+_LARGE, _MOST_LARGE, _THOROUGHLY = 0.005, 24, 40_000
+"""Parts of at least so much of the main part's area are laid onto their partners thoroughly: so many at most, with so
+many vertices together."""
+
+_MOST_WAVES = 12
+"""How often parts that were found are followed by further ones."""
+
+_RATHER = 0.5
+"""What is so much nearer to another mapped part than to the main one follows that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +59,7 @@ class FollowedMap:
         The vertex of the main part of X that each is, or that is nearest to it.
     partners : (p,) array of int
         For each part of X, the part of Y that it is mapped to; 0 for the main part.  A part other than the main one
-        with 0 follows its surroundings onto the main part of Y.
+        with 0 follows its surroundings onto what those are mapped to.
     """
 
     points: SurfacePoints
@@ -64,7 +68,7 @@ class FollowedMap:
     partners: NDArray[np.int64]
 
 
-def follow(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> FollowedMap:
+def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> Steps[FollowedMap]:
     """Extend a map of the main part to every vertex of the mesh.
 
     Parameters
@@ -74,6 +78,11 @@ def follow(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> Followe
     main_map : SurfacePoints
         For each vertex of ``x.mesh``, a point of ``y.mesh``.
 
+    Yields
+    ------
+    Progress
+        After each part that was mapped.
+
     Returns
     -------
     FollowedMap
@@ -81,130 +90,156 @@ def follow(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> Followe
 
     Notes
     -----
-    Beside the main part there may be eyes, teeth, buttons, and loose vertices.  Where they are expected on Y is known
-    from how the main part moves around them.  If Y has a part there of about the same size and shape, that part
-    is the partner: the two are laid over each other, centre on centre, and each vertex is mapped to the closest point.
-    What finds no partner goes to the closest point of the main part of Y, searched from the image of the nearest vertex
-    along the surface, so that it does not jump to another limb.
+    Beside the main part there may be eyes, teeth, buttons, and loose vertices, or sleeves, hands and boots.  Where they
+    are expected on Y is known from how the main part moves around them.  If Y has a part there of about the same size
+    and shape, that part is the partner: the two are laid over each other, and each vertex is mapped to the closest
+    point.  What touches such parts only, as a hand does a sleeve, follows them in turn.  What finds no partner goes to
+    the closest point of what it follows, searched from the image of the nearest vertex along the surface, so that it
+    does not jump to another limb.
     """
     n = x.original.vertex_count
     triangles, barycentric, confidence = np.empty(n, np.int64), np.empty((n, 3)), np.ones(n)
     surroundings = np.maximum(x.vertex_images, 0)
     partners = np.zeros(len(x.pieces), np.int64)
-    main = np.flatnonzero(x.vertex_parts == 0)
+    known = x.vertex_parts == 0
+    main = np.flatnonzero(known)
     images = x.vertex_images[main]
     triangles[main], barycentric[main] = y.main.to_original(main_map.triangles[images], main_map.barycentric[images])
-    others = np.flatnonzero(x.vertex_parts != 0)
+    others = np.flatnonzero(~known)
     if len(others):
-        around = Surroundings(x.mesh, y.mesh, main_map)
-        distances, surroundings[others] = around.nearest(x.original.vertices[others])
-        partners[1:], pairs = _partners(x.parts, y.parts, around, y.mesh)
-        single = partners[x.vertex_parts[others]] == 0
-        single |= x.vertex_parts[others] < 0
-        alone = others[single]
-        if len(alone):
-            points, distances = x.original.vertices[alone], distances[single]
-            moved = around.similarities(points, distances)(points)
-            found = ClosestPoints(y.mesh).walk(moved, main_map.nearest_vertices[surroundings[alone]])
-            triangles[alone], barycentric[alone] = y.main.to_original(found.triangles, found.barycentric)
-            confidence[alone] = 1 / (1 + (distances / (_TRUSTED_DISTANCE * np.sqrt(x.mesh.area))) ** 2)
-        members = others[~single]
-        members = members[np.argsort(x.vertex_parts[members], kind="stable")]
-        starts = np.searchsorted(x.vertex_parts[members], np.arange(len(x.pieces) + 1))
-        for pair in pairs:
-            vertices = members[starts[pair.part] : starts[pair.part + 1]]
-            found = _onto_partner(x, y, pair, vertices)
-            partner = y.pieces[pair.partner]
-            triangles[vertices], barycentric[vertices] = partner.to_original(found.triangles, found.barycentric)
-            confidence[vertices] = 1 / (1 + pair.difference)
+        body = _Mapped(x.pieces, y.pieces, {0: _Image(0, main_map)})
+        distances, surroundings[others] = body.around.nearest(x.original.vertices[others])
+        maps = _PartMaps(x, y, body)
+        yield from maps.find_steps()
+        parts = maps.mapped
+        for number, image in parts.items():
+            vertices = np.flatnonzero(x.vertex_parts == number)
+            partner, at = y.pieces[image.partner], x.vertex_images[vertices]
+            triangles[vertices], barycentric[vertices] = partner.to_original(
+                image.points.triangles[at], image.points.barycentric[at]
+            )
+            confidence[vertices] = 1 / (1 + image.difference)
+            partners[number] = image.partner
+            known[vertices] = True
+        alone, distances = others[~known[others]], distances[~known[others]]
+        followed = [body] if not parts else [body, _Mapped(x.pieces, y.pieces, parts)]
+        for vertices, away, mapped in _by_what_they_follow(x.original.vertices, alone, distances, followed):
+            triangles[vertices], barycentric[vertices] = mapped.carried(x.original.vertices[vertices], away)
+            confidence[vertices] = 1 / (1 + (away / (_TRUSTED_DISTANCE * np.sqrt(x.mesh.area))) ** 2)
     points = SurfacePoints.from_barycentric(y.original, triangles, barycentric)
     return FollowedMap(points, confidence, surroundings, partners)
 
 
 @dataclass(frozen=True, eq=False)
-class _Pair:
-    """Parts that belong together, by their numbers: how x -> centre + ratio R (x - old centre) lays one on the other.
+class _Image:
+    """The part that another one is mapped to, a point there for each of its vertices, and how unlike the two are."""
 
-    `radius` is that of the partner, `difference` how far they are from alike: 0 if they are.
-    """
-
-    part: int
     partner: int
-    rotation: NDArray[np.float64]
-    ratio: float
-    old_centre: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    radius: float
-    difference: float
+    points: SurfacePoints
+    difference: float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class _Extents:
-    """Centres (p, 3), areas (p,), root mean square radii (p,) and widths along the main axes in radii (p, 3)."""
+class _Mapped:
+    """Parts that are mapped, by their numbers: what is near to them moves as they do."""
 
-    centres: NDArray[np.float64]
-    areas: NDArray[np.float64]
-    radii: NDArray[np.float64]
-    widths: NDArray[np.float64]
+    def __init__(
+        self, x_pieces: Sequence[SurfacePart], y_pieces: Sequence[SurfacePart], images: Mapping[int, _Image]
+    ) -> None:
+        self._partners = [y_pieces[image.partner] for image in images.values()]
+        here = _joined([x_pieces[number].mesh for number in images])
+        self._there = _joined([partner.mesh for partner in self._partners])
+        counts = [partner.mesh.triangle_count for partner in self._partners]
+        self._firsts = np.concatenate([[0], np.cumsum(counts)])
+        found = [image.points for image in images.values()]
+        triangles = [points.triangles + first for points, first in zip(found, self._firsts[:-1], strict=True)]
+        barycentric = np.concatenate([points.barycentric for points in found])
+        self._images = SurfacePoints.from_barycentric(self._there, np.concatenate(triangles), barycentric)
+        self.around = Surroundings(here, self._there, self._images)
 
-    @classmethod
-    def of(cls, parts: Sequence[TriangleMesh]) -> _Extents:
-        """Integrate over the surfaces of parts."""
-        centres, moments = np.empty((len(parts), 3)), np.empty((len(parts), 3, 3))
-        areas = np.array([part.area for part in parts])
-        for index, part in enumerate(parts):
-            shares = part.triangle_areas / part.area
-            corners = part.vertices[part.triangles]
-            middles = corners.mean(axis=1)
-            centres[index] = shares @ middles
-            away, middles = corners - centres[index], middles - centres[index]
-            moments[index] = np.einsum("m,mci,mcj->ij", shares, away, away) / 12
-            moments[index] += np.einsum("m,mi,mj->ij", shares, middles, middles) * 9 / 12
-        spreads = np.sqrt(np.linalg.eigvalsh(moments).clip(min=0))
-        radii = np.linalg.norm(spreads, axis=1)
-        return cls(centres, areas, radii, spreads / radii[:, None])
-
-
-def _partners(
-    x_parts: Sequence[TriangleMesh], y_parts: Sequence[TriangleMesh], around: Surroundings, y_main: TriangleMesh
-) -> tuple[NDArray[np.int64], list[_Pair]]:
-    """Find which parts of X and Y, numbered from 1, belong together: the partner of each or 0, and the pairs."""
-    partners = np.zeros(len(x_parts), np.int64)
-    if not x_parts or not y_parts:
-        return partners, []
-    x, y = _Extents.of(x_parts), _Extents.of(y_parts)
-    distances, _ = around.nearest(x.centres)
-    similarities = around.similarities(x.centres, np.maximum(x.radii, distances))
-    expected, radii = similarities(x.centres), similarities.scales * x.radii
-
-    gap = np.linalg.norm(expected[:, None] - y.centres, axis=2)
-    offset = gap / (radii[:, None] + y.radii + _BLUR * np.sqrt(y_main.area))
-    size = np.abs(np.log(radii[:, None] / y.radii)) / np.log(_LARGEST_RATIO)
-    areas = similarities.scales**2 * x.areas
-    size = np.maximum(size, np.abs(np.log(areas[:, None] / y.areas)) / np.log(_LARGEST_RATIO**2))
-    shape = np.abs(x.widths[:, None] - y.widths).max(axis=2) / _LARGEST_DEFORMATION
-    difference = offset / _LARGEST_OFFSET + size + shape
-    possible = (offset <= _LARGEST_OFFSET) & (size <= 1) & (shape <= 1)
-    # No pair costs more than leaving a part alone, so that as many as possible are made.
-    rows, columns = linear_sum_assignment(np.where(possible, difference, 10.0))
-
-    pairs = []
-    for i, j in zip(rows, columns, strict=True):
-        if possible[i, j]:
-            partners[i] = j + 1
-            ratio = float(y.radii[j] / x.radii[i])
-            rotation, weight = similarities.rotations[i], float(difference[i, j])
-            pair = _Pair(int(i) + 1, int(j) + 1, rotation, ratio, x.centres[i], y.centres[j], float(y.radii[j]), weight)
-            pairs.append(pair)
-    return partners, pairs
+    def carried(
+        self, points: NDArray[np.float64], distances: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Take points (k, 3), at distances (k,), along: triangles of the other original mesh (k,), and (k, 3) there."""
+        moved = self.around.similarities(points, distances)(points)
+        _, nearest = self.around.nearest(points)
+        found = ClosestPoints(self._there).walk(moved, self._images.nearest_vertices[nearest])
+        triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
+        owners = np.searchsorted(self._firsts, found.triangles, side="right") - 1
+        for number in np.unique(owners):
+            its = owners == number
+            inside = found.triangles[its] - self._firsts[number]
+            triangles[its], barycentric[its] = self._partners[number].to_original(inside, found.barycentric[its])
+        return triangles, barycentric
 
 
-def _onto_partner(x: CleanSurface, y: CleanSurface, pair: _Pair, vertices: NDArray[np.int64]) -> FoundPoints:
-    """Map vertices of a part to the closest points of its partner."""
-    normals = x.pieces[pair.part].mesh.vertex_normals[x.vertex_images[vertices]] @ pair.rotation.T
-    away = x.original.vertices[vertices] - pair.old_centre
-    moved = pair.centre + pair.ratio * (away @ pair.rotation.T)
-    # The normals tell the two sides of a thin part from each other.
-    return ClosestPoints(y.pieces[pair.partner].mesh).nearest(
-        moved, normals, normal_length=pair.radius / 4, normal_weight=pair.radius**2 / 4
-    )
+def _joined(meshes: list[TriangleMesh]) -> TriangleMesh:
+    """Put meshes into one."""
+    if len(meshes) == 1:
+        return meshes[0]
+    firsts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes[:-1])])
+    triangles = [mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]
+    return TriangleMesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+
+
+class _PartMaps:
+    """Maps parts beside the main one onto their partners, those next to the main one first."""
+
+    def __init__(self, x: CleanSurface, y: CleanSurface, body: _Mapped) -> None:
+        self._x, self._y, self._body = x, y, body
+        self._free = set(range(1, len(y.pieces)))
+        areas = np.array([piece.mesh.area for piece in x.pieces])
+        counts = np.array([piece.mesh.vertex_count for piece in x.pieces])
+        counts[0] = 0
+        thoroughly = (areas >= _LARGE * areas[0]) & (np.cumsum(counts) <= _THOROUGHLY)
+        self._large = frozenset(np.flatnonzero(thoroughly[: _MOST_LARGE + 1]))
+        self.mapped: dict[int, _Image] = {}
+
+    def find_steps(self) -> Steps[None]:
+        """Fill `mapped`."""
+        meshes = {number: piece.mesh for number, piece in enumerate(self._x.pieces) if number}
+        waiting = {number: contact_with(self._body.around, mesh) for number, mesh in meshes.items()}
+        parts: _Mapped | None = None
+        for wave in range(_MOST_WAVES):
+            if not waiting or not self._free:
+                break
+            touching: dict[int, Contact] = {}
+            if parts is not None:
+                others = {number: contact_with(parts.around, meshes[number]) for number in waiting}
+                touching = {number: contact for number, contact in others.items() if contact.gap < waiting[number].gap}
+            gaps = {number: touching.get(number, contact).gap for number, contact in waiting.items()}
+            farthest = max(_NEAR * np.sqrt(self._x.mesh.area), _NEARLY * min(gaps.values()))
+            ready = {number for number, gap in gaps.items() if gap <= farthest or wave == _MOST_WAVES - 1}
+            before = len(self.mapped)
+            yield from self._map_steps({number: waiting[number] for number in ready - touching.keys()}, self._body)
+            if parts is not None:
+                yield from self._map_steps({number: touching[number] for number in ready & touching.keys()}, parts)
+            waiting = {number: contact for number, contact in waiting.items() if number not in ready}
+            if len(self.mapped) > before:
+                parts = _Mapped(self._x.pieces, self._y.pieces, self.mapped)
+
+    def _map_steps(self, contacts: Mapping[int, Contact], followed: _Mapped) -> Steps[None]:
+        """Map those of some parts that have a partner among the free ones."""
+        numbers, candidates = sorted(contacts), sorted(self._free)
+        here, there = ([c.pieces[i].mesh for i in chosen] for c, chosen in ((self._x, numbers), (self._y, candidates)))
+        unit = float(np.sqrt(self._y.mesh.area))
+        for pair in paired_parts(here, [contacts[number] for number in numbers], there, followed.around, unit):
+            part, partner, number = here[pair.part], there[pair.partner], numbers[pair.part]
+            done = len(self.mapped) / len(self._x.pieces), (len(self.mapped) + 1) / len(self._x.pieces)
+            steps = laid_onto_steps(part, partner, pair, thoroughly=number in self._large)
+            found = yield from within(steps, *done)
+            points = SurfacePoints.from_barycentric(partner, found.triangles, found.barycentric)
+            self.mapped[number] = _Image(candidates[pair.partner], points, pair.difference)
+            self._free.remove(candidates[pair.partner])
+            yield Progress(done[1], "Mapping every vertex")
+
+
+def _by_what_they_follow(
+    vertices: NDArray[np.float64], alone: NDArray[np.int64], distances: NDArray[np.float64], followed: list[_Mapped]
+) -> list[tuple[NDArray[np.int64], NDArray[np.float64], _Mapped]]:
+    """Group vertices by what they follow, with the distances from that: the main part, or others that are nearer."""
+    if len(followed) == 1 or not len(alone):
+        return [(alone, distances, followed[0])] if len(alone) else []
+    from_parts, _ = followed[1].around.nearest(vertices[alone])
+    nearer = from_parts < _RATHER * distances
+    groups = (~nearer, distances, followed[0]), (nearer, from_parts, followed[1])
+    return [(alone[chosen], away[chosen], mapped) for chosen, away, mapped in groups if chosen.any()]

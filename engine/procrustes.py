@@ -25,6 +25,9 @@ is believed; 12.3 for rotations."""
 _MOST_STEPS = 30
 _STEP = 1e-14
 
+_LEAST_SLOPE = 1e-10
+"""Where two eigenvalues are the same, as for matrices of rank one, the slope vanishes with what is left to be found."""
+
 _BLOCK = 4096
 """Matrices at once: what is computed from them stays in the cache."""
 
@@ -120,7 +123,7 @@ def _largest_eigenvalue(entries: NDArray[np.float64]) -> tuple[NDArray[np.float6
     for _ in range(_MOST_STEPS):
         square = value * value
         slope = 4 * value * (square - 1) - linear
-        step = ((square - 2) * square - linear * value + constant) / np.maximum(slope, _TINY)
+        step = ((square - 2) * square - linear * value + constant) / np.maximum(slope, _LEAST_SLOPE)
         np.maximum(step, 0, out=step)  # rounding aside, it approaches from above
         value -= step
         if not (step > _STEP).any():

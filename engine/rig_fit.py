@@ -15,7 +15,7 @@ from .closest_points import ClosestPoints, FoundPoints
 from .digit_fit import with_digits
 from .errors import RigError
 from .fitted_rig import FittedRig
-from .followers import follow
+from .followers import follow_steps
 from .homes import Homes
 from .laplacian import laplace_beltrami
 from .posed_registration import PosedRegistration, facing
@@ -310,7 +310,8 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     if not proxy.is_identity:
         positions = whole + _evaluation(proxy.points, body) @ (positions - posed)
     yield Progress(0.85, "Mapping every vertex")
-    maps = _maps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back))
+    steps = _maps_steps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back))
+    maps = yield from within(steps, 0.85, 1.0)
     bones = BoneTransforms(bones.linear, bones.translations, bones.rotations, bones.scales, whole)
     return _Slid(bones, positions, maps)
 
@@ -337,7 +338,7 @@ def _proxy_weights(proxy: Proxy, weights: csr_array) -> csr_array:
     return averaged
 
 
-def _maps(pair: _Pair, positions: NDArray[np.float64], homes: Homes) -> tuple[SurfaceMap, SurfaceMap]:
+def _maps_steps(pair: _Pair, positions: NDArray[np.float64], homes: Homes) -> Steps[tuple[SurfaceMap, SurfaceMap]]:
     """Read the maps between the original meshes off the body that lies on the target at positions (n, 3)."""
     x, y = pair.x, pair.y
     size = float(np.sqrt(y.mesh.area))
@@ -347,12 +348,16 @@ def _maps(pair: _Pair, positions: NDArray[np.float64], homes: Homes) -> tuple[Su
     back = homes.on_body(lying, facing(lying, y.mesh.vertices, y.mesh.vertex_normals, size), y.mesh.vertices)
     on_y = SurfacePoints.from_barycentric(y.mesh, there.triangles, there.barycentric)
     on_x = SurfacePoints.from_barycentric(x.mesh, back.triangles, back.barycentric)
-    forward = _followed(x, y, on_y, map_confidence(x.mesh, y.mesh, on_y, on_x))
-    return forward, _followed(y, x, on_x, map_confidence(y.mesh, x.mesh, on_x, on_y))
+    trusted = map_confidence(x.mesh, y.mesh, on_y, on_x)
+    forward = yield from within(_followed_steps(x, y, on_y, trusted), 0.0, 0.5)
+    trusted = map_confidence(y.mesh, x.mesh, on_x, on_y)
+    return forward, (yield from within(_followed_steps(y, x, on_x, trusted), 0.5, 1.0))
 
 
-def _followed(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints, confidence: NDArray[np.float64]) -> SurfaceMap:
+def _followed_steps(
+    x: CleanSurface, y: CleanSurface, main_map: SurfacePoints, confidence: NDArray[np.float64]
+) -> Steps[SurfaceMap]:
     """Extend a map of the main part to all vertices of the original mesh."""
-    followed = follow(x, y, main_map)
+    followed = yield from follow_steps(x, y, main_map)
     trusted = followed.confidence * confidence[followed.surroundings]
     return SurfaceMap(followed.points, trusted, y.original.vertex_count)

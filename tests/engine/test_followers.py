@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from engine import SurfacePoints, TriangleMesh
+from engine import SurfacePoints, TriangleMesh, run
 from engine.cleaning import clean
-from engine.followers import follow
+from engine.followers import follow_steps
 from tests.messes import cut_along_seam, partly_turned, together
 from tests.shapes import creature, icosphere, permuted, posed, rotation
 
@@ -38,7 +38,7 @@ def followed(x_mesh, y_mesh, body_count, images=None):
     target = np.zeros(x.mesh.vertex_count, np.int64)
     known = x.main.original_vertices
     target[known >= 0] = y.vertex_images[images[known[known >= 0]]]
-    return x, y, follow(x, y, SurfacePoints.at_vertices(y.mesh, target))
+    return x, y, run(follow_steps(x, y, SurfacePoints.at_vertices(y.mesh, target)))
 
 
 def assert_valid(result, y):
@@ -182,3 +182,94 @@ def test_a_few_triangles_are_enough_to_follow():
     assert_valid(result, y)
     assert np.array_equal(result.partners, [0, 1])
     assert np.allclose(result.points.positions[:-1], 2 * mesh[0][:-1])
+
+
+def limb(start, end, width):
+    """A part along a line, thicker at its start and flat, so that no turn about the line brings it onto itself."""
+    vertices, triangles = icosphere(6)
+    start, end = np.asarray(start, float), np.asarray(end, float)
+    along = (end - start) / np.linalg.norm(end - start)
+    side = np.cross(along, [0, 0, 1])
+    side /= np.linalg.norm(side)
+    x, y, z = vertices.T
+    sizes = width * (1.3 - 0.5 * x), 0.6 * width * np.where(z > 0, 1, 0.4)
+    across = np.outer(sizes[0] * y, side) + np.outer(sizes[1] * z, np.cross(along, side))
+    return (start + end) / 2 + np.outer(x * np.linalg.norm(end - start) / 2, along) + across, triangles
+
+
+def swung(points, joint, axis, angle):
+    return (points - joint) @ rotation(axis, angle).T + joint
+
+
+TRUNK = icosphere(10)[0] * [0.5, 0.5, 1.0], icosphere(10)[1]
+SHOULDER, ELBOW, WRIST = np.array([0.45, 0, 0.3]), np.array([1.1, 0, 0.3]), np.array([1.7, 0, 0.3])
+
+
+def in_parts(*more):
+    """A trunk, and beside it an upper arm and a forearm that are parts of their own, and others."""
+    return together(TRUNK, limb(SHOULDER - [0.05, 0, 0], ELBOW, 0.12), limb(ELBOW - [0.05, 0, 0], WRIST, 0.1), *more)
+
+
+def arm_swung(vertices, counts, shoulder, elbow):
+    """Swing the arm at the shoulder and at the elbow; what is beyond the forearm in the file goes with it."""
+    first, second = counts
+    vertices = vertices.copy()
+    vertices[second:] = swung(vertices[second:], ELBOW, [0, 1, 0.3], elbow)
+    vertices[first:] = swung(vertices[first:], SHOULDER, [0, 1, -0.5], shoulder)
+    return vertices
+
+
+@pytest.mark.parametrize(("shoulder", "elbow"), [(0.4, 0.5), (-0.9, 1.2), (1.0, -1.4)])
+def test_a_forearm_follows_the_upper_arm_that_is_a_part_as_well(shoulder, elbow):
+    vertices, triangles = in_parts()
+    trunk, arm = len(TRUNK[0]), len(limb(SHOULDER, ELBOW, 1)[0])
+    moved = arm_swung(vertices, (trunk, trunk + arm), shoulder, elbow)
+    order = np.r_[:trunk, trunk + arm : trunk + 2 * arm, trunk : trunk + arm]  # the forearm first in the file
+    back = np.argsort(order)
+    _, y, result = followed((vertices, triangles), (moved[order], back[triangles]), trunk)
+    assert_valid(result, y)
+    errors = np.linalg.norm(result.points.positions - moved, axis=1)
+    assert (result.partners[1:] > 0).all()
+    assert errors[trunk:].max() < 0.02
+    assert (result.confidence[trunk:] > 0.3).all()
+
+
+def test_what_has_no_partner_follows_the_part_that_it_is_next_to():
+    button = ball((ELBOW + WRIST) / 2 + [0, 0.09, 0], 0.02, 2)
+    loose = (ELBOW + WRIST)[None] / 2 + [0, -0.1, 0.02], np.empty((0, 3), np.int64)
+    vertices, triangles = in_parts(button, loose)
+    trunk, arm = len(TRUNK[0]), len(limb(SHOULDER, ELBOW, 1)[0])
+    bare, its_triangles = in_parts()
+    moved = arm_swung(vertices, (trunk, trunk + arm), 0.8, 1.2)
+    x, y, result = followed((vertices, triangles), (moved[: len(bare)], its_triangles), trunk)
+    assert_valid(result, y)
+    others = np.arange(len(bare), len(vertices))
+    assert (y.original.triangles[result.points.triangles[others]] >= trunk + arm).all()
+    assert np.linalg.norm(result.points.positions[others] - moved[others], axis=1).max() < 0.08
+    assert result.partners[x.vertex_parts[others[0]]] == 0
+
+
+def tail(bend):
+    """A thin, flat part behind the trunk, bent upwards or downwards from its root on."""
+    vertices, triangles = icosphere(10)
+    x, y, z = vertices.T
+    along, taper = 0.9 * (x + 1), 0.15 * (1 - 0.3 * x)
+    height = taper * z * np.where(z > 0, 0.7, 0.3)
+    radius = 1 / bend
+    bent = np.stack(
+        [(radius - height) * np.sin(along / radius), taper * y, radius - (radius - height) * np.cos(along / radius)], 1
+    )
+    return [-0.4, 0, -0.3] + bent * [-1, 1, 1], triangles
+
+
+@pytest.mark.parametrize(("before", "after"), [(0.2, 1.0), (0.9, -0.2), (-0.5, 0.5)])
+def test_a_tail_that_is_bent_otherwise_is_deformed(before, after):
+    vertices, triangles = together(TRUNK, tail(before))
+    moved = together(TRUNK, tail(after))[0]
+    trunk = len(TRUNK[0])
+    _, y, result = followed((vertices, triangles), (moved, triangles), trunk)
+    assert_valid(result, y)
+    errors = np.linalg.norm(result.points.positions - moved, axis=1)[trunk:]
+    assert np.array_equal(result.partners, [0, 1])
+    assert errors.mean() < 0.04  # the tail is 1.8 long
+    assert errors.max() < 0.15

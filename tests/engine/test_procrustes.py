@@ -55,6 +55,16 @@ def test_covariances_of_edges_in_a_plane_have_a_nearest_rotation(rng):
     assert np.allclose(agreement(rotations, flat), np.linalg.svd(flat, compute_uv=False).sum(axis=1), atol=SMALL)
 
 
+@pytest.mark.filterwarnings("error")
+def test_covariances_of_edges_along_a_line_have_a_nearest_rotation(rng):
+    directions = rng.standard_normal((50, 3))
+    matrices = -directions[:, :, None] * directions[:, None, :] * (1 + 1e-7 * rng.standard_normal((50, 3, 3)))
+    for matrix in matrices[:, None]:  # one after the other: the search ends when all are found
+        rotations = nearest_rotations(matrix)
+        assert_rotations(rotations)
+        assert np.allclose(agreement(rotations, matrix), best_agreement(matrix))
+
+
 def test_size_does_not_matter(rng):
     matrices = rng.standard_normal((50, 3, 3))
     for size in (1e-170, 1e-100, 1e-9, 1e9):

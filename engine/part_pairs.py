@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which parts of two meshes belong together: by size, shape and place, and where they touch what is mapped already."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+    from .surroundings import Surroundings
+
+__all__ = ["Contact", "PartPair", "contact_with", "paired_parts"]
+
+_LARGEST_OFFSET = 1.5
+"""How far from where it is expected a partner may be, in sums of the two radii."""
+
+_BLUR = 0.01
+"""How exactly the place of a part can be known from its surroundings, in units of the root of the main part's area."""
+
+_LARGEST_RATIO = 2.0
+"""By what factor the radii of partners may differ, once the scale of the surroundings is allowed for."""
+
+_LARGEST_DEFORMATION = 0.3
+"""How much the widths of partners along their main axes may differ, in radii."""
+
+_TOUCHING = 0.2
+"""How much farther than its nearest vertex, in radii, those of a part may be that touch its surroundings."""
+
+_SWUNG = 0.25
+"""What a part that has swung about where it touches counts as out of place, against one that was moved so far."""
+
+_NOT_POSSIBLE = 10.0
+"""No pair costs more than that of leaving a part alone, so that as many as possible are made."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """Where a part is next to its surroundings: the vertices that touch (v,), their middle (3,), and the distance."""
+
+    vertices: NDArray[np.int64]
+    place: NDArray[np.float64]
+    gap: float
+
+
+@dataclass(frozen=True, eq=False)
+class PartPair:
+    """Parts that belong together.
+
+    Attributes
+    ----------
+    part, partner : int
+        Their positions in the sequences that were given.
+    rotations : list of (3, 3) array of float
+        How the part may be turned: as its surroundings are, and as it may have swung about where it touches them.
+    ratio : float
+        By how much the partner is larger.
+    radius : float
+        Root mean square distance of the partner from its centre.
+    difference : float
+        How far they are from alike, 0 if they are.
+    centres : pair of (3,) arrays of float
+        Centres of both.
+    touching : (v,) array of int
+        Vertices of the part that touch its surroundings.
+    joint : (3,) array of float
+        Where these are expected on Y.
+    """
+
+    part: int
+    partner: int
+    rotations: list[NDArray[np.float64]]
+    ratio: float
+    radius: float
+    difference: float
+    centres: tuple[NDArray[np.float64], NDArray[np.float64]]
+    touching: NDArray[np.int64]
+    joint: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class _Extents:
+    """Centres (p, 3), areas (p,), root mean square radii (p,) and widths along the main axes in radii (p, 3)."""
+
+    centres: NDArray[np.float64]
+    areas: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    widths: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, parts: Sequence[TriangleMesh]) -> _Extents:
+        """Integrate over the surfaces of parts."""
+        centres, moments = np.empty((len(parts), 3)), np.empty((len(parts), 3, 3))
+        areas = np.array([part.area for part in parts])
+        for index, part in enumerate(parts):
+            shares = part.triangle_areas / part.area
+            corners = part.vertices[part.triangles]
+            middles = corners.mean(axis=1)
+            centres[index] = shares @ middles
+            away, middles = corners - centres[index], middles - centres[index]
+            moments[index] = np.einsum("m,mci,mcj->ij", shares, away, away) / 12
+            moments[index] += np.einsum("m,mi,mj->ij", shares, middles, middles) * 9 / 12
+        spreads = np.sqrt(np.linalg.eigvalsh(moments).clip(min=0))
+        radii = np.linalg.norm(spreads, axis=1)
+        return cls(centres, areas, radii, spreads / radii[:, None])
+
+
+def contact_with(around: Surroundings, part: TriangleMesh) -> Contact:
+    """Find where a part is next to a mapped surface."""
+    distances, _ = around.nearest(part.vertices)
+    centre = part.vertices.mean(axis=0)
+    radius = float(np.sqrt(np.square(part.vertices - centre).sum(axis=1).mean()))
+    touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * radius)
+    return Contact(touching, part.vertices[touching].mean(axis=0), float(distances.min()))
+
+
+def paired_parts(
+    x_parts: Sequence[TriangleMesh],
+    contacts: Sequence[Contact],
+    y_parts: Sequence[TriangleMesh],
+    around: Surroundings,
+    unit: float,
+) -> list[PartPair]:
+    """Find which parts of X and Y belong together.
+
+    A part is expected where its surroundings have moved it, or somewhere around where it touches them: a forearm that
+    is a part of its own swings about the elbow.
+
+    Parameters
+    ----------
+    x_parts, y_parts : sequence of TriangleMesh
+        The parts.
+    contacts : sequence of Contact
+        Where each part of X is next to the surroundings.
+    around : Surroundings
+        What is mapped already, and how space moves around it.
+    unit : float
+        Root of the area of the main part of Y.
+
+    Returns
+    -------
+    list of PartPair
+        Each part is in one pair at most; the sum of the differences is the least for as many pairs as there can be.
+    """
+    if not x_parts or not y_parts:
+        return []
+    x, y = _Extents.of(x_parts), _Extents.of(y_parts)
+    distances, _ = around.nearest(x.centres)
+    similarities = around.similarities(x.centres, np.maximum(x.radii, distances))
+    expected, radii = similarities(x.centres), similarities.scales * x.radii
+    sums = radii[:, None] + y.radii + _BLUR * unit
+    moved = np.linalg.norm(expected[:, None] - y.centres, axis=2) / sums
+
+    places = np.array([contact.place for contact in contacts])
+    near = around.similarities(places, np.maximum([contact.gap for contact in contacts], x.radii / 2))
+    joints, arms = near(places), near.scales * np.linalg.norm(x.centres - places, axis=1)
+    away = np.stack([cKDTree(part.vertices).query(joints)[0] for part in y_parts], axis=1) / sums
+    reaching = np.abs(np.linalg.norm(joints[:, None] - y.centres, axis=2) - arms[:, None]) / sums
+    offset = np.minimum(moved, away + reaching + _SWUNG * moved)
+
+    size = np.abs(np.log(radii[:, None] / y.radii)) / np.log(_LARGEST_RATIO)
+    areas = similarities.scales**2 * x.areas
+    size = np.maximum(size, np.abs(np.log(areas[:, None] / y.areas)) / np.log(_LARGEST_RATIO**2))
+    shape = np.abs(x.widths[:, None] - y.widths).max(axis=2) / _LARGEST_DEFORMATION
+    difference = offset / _LARGEST_OFFSET + size + shape
+    possible = (offset <= _LARGEST_OFFSET) & (size <= 1) & (shape <= 1)
+    rows, columns = linear_sum_assignment(np.where(possible, difference, _NOT_POSSIBLE))
+    return [
+        PartPair(
+            int(i),
+            int(j),
+            [
+                similarities.rotations[i],
+                _swung(near.rotations[i], x.centres[i] - places[i], y.centres[j] - joints[i]),
+            ],
+            float(y.radii[j] / x.radii[i]),
+            float(y.radii[j]),
+            float(difference[i, j]),
+            (x.centres[i], y.centres[j]),
+            contacts[i].vertices,
+            joints[i],
+        )
+        for i, j in zip(rows, columns, strict=True)
+        if possible[i, j]
+    ]
+
+
+def _swung(rotation: NDArray[np.float64], arm: NDArray[np.float64], there: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn an arm (3,) as a rotation does, and then the shortest way to the direction where it is there (3,)."""
+    turned = rotation @ arm
+    lengths = np.linalg.norm(turned) * np.linalg.norm(there)
+    axis = np.cross(turned, there)
+    sine = np.linalg.norm(axis)
+    if not sine > 0:
+        return rotation
+    angle = np.arctan2(sine / lengths, turned @ there / lengths)
+    swung: NDArray[np.float64] = Rotation.from_rotvec(angle * axis / sine).as_matrix() @ rotation
+    return swung

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lays a part of one mesh onto the part of another that it belongs to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from .closest_points import ClosestPoints, FoundPoints
+from .deformable import DeformableSurface
+from .laplacian import laplace_beltrami
+from .procrustes import nearest_rotations
+from .progress import Steps, within
+from .registration import FINE, LAST, Stage, register_steps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+    from .part_pairs import PartPair
+
+__all__ = ["laid_onto_steps"]
+
+_NORMAL_LENGTH = 0.25
+"""How many radii a unit of difference of the normals counts: it tells the two sides of a thin part from each other."""
+
+_ROUNDS, _MOST_POINTS = 12, 1500
+"""Rounds of rigid fitting at most, and how many vertices of either part serve for it."""
+
+_CONVERGED = 0.99
+"""Mean squared distance, as part of that of the round before, from which on no further round is made."""
+
+_CLEARLY = 0.5
+"""Cost after another turn, as part of that after the usual one, from which on it is believed."""
+
+_TURNS = 8
+"""Angles about its direction that are tried where a part does not fit as it is expected."""
+
+_RIGID = 0.02
+"""Root mean square distance, in radii, up to which a part is rigid."""
+
+_DEFORMED = 40, 10_000
+"""Vertices that parts need, and may have, to be deformed."""
+
+_BENDING = Stage((5, 10, 20, 40, 80, 160), 0.1, 0.05)
+"""A tail or a sleeve may be bent otherwise as a whole."""
+
+_MISFIT_WEIGHT = 20.0
+"""How much the mean squared distance that is left counts against the elastic energy."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """A similarity x -> centre + ratio R (x - old centre).
+
+    It leaves a mean squared distance, in radii; it costs more where what touches the surroundings does not stay there.
+    """
+
+    rotation: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    distance: float
+    cost: float
+
+
+def laid_onto_steps(
+    part: TriangleMesh, partner: TriangleMesh, pair: PartPair, *, thoroughly: bool
+) -> Steps[FoundPoints]:
+    """Map the vertices of a part to points of its partner.
+
+    It is moved as a rigid body, of the partner's size, to where the two are closest [1]_.  If it does not fit then, it
+    is turned to other sides, and deformed, from there and as it may have swung about where it touches its surroundings;
+    what costs less is taken, and what touches there.
+
+    Parameters
+    ----------
+    part : TriangleMesh
+        The part, n vertices.
+    partner : TriangleMesh
+        Its partner.
+    pair : PartPair
+        How it may be turned.
+    thoroughly : bool
+        Whether more than the closest rigid motion is tried.
+
+    Yields
+    ------
+    Progress
+        While it is deformed.
+
+    Returns
+    -------
+    FoundPoints
+        The point of each vertex, n.
+
+    References
+    ----------
+    .. [1] P. J. Besl, N. D. McKay, "A method for registration of 3-D shapes", IEEE PAMI 14(2), 1992.
+    """
+    best = _rigidly(part, partner, pair, pair.rotations[0])
+    if thoroughly and best.distance > _RIGID**2:
+        others = [_rigidly(part, partner, pair, rotation) for rotation in _turned(pair)]
+        for other in (others[0], min(others[1:], key=lambda motion: motion.cost)):
+            best = other if other.cost < _CLEARLY * best.cost else best
+    placed = _placed(part, pair, best.rotation, best.centre)
+    fewest, most = _DEFORMED
+    sizes = part.vertex_count, partner.vertex_count
+    deformable = fewest <= min(sizes) and max(sizes) <= most and np.linalg.det(best.rotation) > 0
+    if best.distance < _RIGID**2 or not deformable or not thoroughly:
+        return _closest(partner, placed, part.vertex_normals @ best.rotation.T, pair.radius)
+    swung = _placed(part, pair, pair.rotations[-1], pair.centres[1])
+    return (yield from _deformed_steps(part, partner, pair, [placed, swung]))
+
+
+def _turned(pair: PartPair) -> list[NDArray[np.float64]]:
+    """Rotations of a part that has swung about where it touches its surroundings, by all angles about its direction."""
+    swung, arm = pair.rotations[-1], pair.centres[1] - pair.joint
+    axis = arm / np.maximum(np.linalg.norm(arm), np.finfo(float).tiny)
+    angles = np.arange(_TURNS) * (2 * np.pi / _TURNS)
+    return list(Rotation.from_rotvec(angles[:, None] * axis).as_matrix() @ swung)
+
+
+def _placed(
+    part: TriangleMesh, pair: PartPair, rotation: NDArray[np.float64], centre: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Vertices of the part where a motion takes them, (n, 3)."""
+    return centre + pair.ratio * (part.vertices - pair.centres[0]) @ rotation.T
+
+
+def _strayed(pair: PartPair, placed: NDArray[np.float64]) -> float:
+    """By what factor a placement (n, 3) is less credible for having moved what touches the surroundings away."""
+    away = placed[pair.touching].mean(axis=0) - pair.joint
+    return float(1 + (away @ away) / pair.radius**2)
+
+
+def _deformed_steps(
+    part: TriangleMesh, partner: TriangleMesh, pair: PartPair, starts: list[NDArray[np.float64]]
+) -> Steps[FoundPoints]:
+    """Deform a part onto its partner from each of some positions (n, 3), and take the most credible result."""
+    source, target = (DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (part, partner))
+    costs, found = [], []
+    for number, start in enumerate(starts):
+        steps = register_steps(source, target, target.in_unit_size(start), (_BENDING, FINE, LAST))
+        registration = yield from within(steps, number / len(starts), (number + 1) / len(starts))
+        strayed = _strayed(pair, target.in_its_units(registration.positions))
+        costs.append((registration.energy + _MISFIT_WEIGHT * registration.misfit) * strayed)
+        found.append(registration.on_target)
+    return found[int(np.argmin(costs))]
+
+
+def _rigidly(part: TriangleMesh, partner: TriangleMesh, pair: PartPair, rotation: NDArray[np.float64]) -> _Motion:
+    """Move a part to where it is closest to its partner, beginning with a rotation, centre on centre."""
+    handed = float(np.sign(np.linalg.det(rotation)))
+    here, there = (_points(mesh) for mesh in (part, partner))
+    old, centre = pair.centres
+    arms = pair.ratio * (here.places - old) / pair.radius
+    wanted = (there.places - centre) / pair.radius
+    features = np.concatenate([wanted, _NORMAL_LENGTH * there.normals], axis=1)
+    tree = cKDTree(features)
+    shift, before = np.zeros(3), np.inf
+    for number in range(_ROUNDS + 1):
+        moved = arms @ rotation.T + shift
+        own = np.concatenate([moved, _NORMAL_LENGTH * here.normals @ rotation.T], axis=1)
+        images, origins = tree.query(own)[1], cKDTree(own).query(features)[1]
+        ahead, back = np.square(moved - wanted[images]).sum(axis=1), np.square(moved[origins] - wanted).sum(axis=1)
+        distance = float(here.shares @ ahead + there.shares @ back) / 2
+        if number == _ROUNDS or distance > _CONVERGED * before or not distance > 0:
+            break
+        before = distance
+        sources, targets = np.concatenate([arms, arms[origins]]), np.concatenate([wanted[images], wanted])
+        shares = np.concatenate([here.shares, there.shares]) / 2
+        middle, aim = shares @ sources, shares @ targets
+        product = np.einsum("k,ki,kj->ij", shares, targets - aim, sources - middle)
+        rotation = handed * nearest_rotations(handed * product[None])[0]
+        shift = aim - rotation @ middle
+    centre = centre + pair.radius * shift
+    cost = (distance + _RIGID**2) * _strayed(pair, _placed(part, pair, rotation, centre))
+    return _Motion(rotation, centre, distance, cost)
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """Some vertices of a mesh, the normals there, and shares of the area."""
+
+    places: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    shares: NDArray[np.float64]
+
+
+def _points(mesh: TriangleMesh) -> _Points:
+    """Take evenly numbered vertices of a mesh."""
+    chosen = np.linspace(0, mesh.vertex_count - 1, min(mesh.vertex_count, _MOST_POINTS)).astype(int)
+    areas = mesh.vertex_areas[chosen] + 1e-9 * mesh.area
+    return _Points(mesh.vertices[chosen], mesh.vertex_normals[chosen], areas / areas.sum())
+
+
+def _closest(
+    partner: TriangleMesh, points: NDArray[np.float64], normals: NDArray[np.float64], radius: float
+) -> FoundPoints:
+    """Find the closest points of a part that look to the same side."""
+    length = _NORMAL_LENGTH * radius
+    return ClosestPoints(partner).nearest(points, normals, normal_length=length, normal_weight=4 * length**2)
