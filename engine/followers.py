@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from .closest_points import ClosestPoints
 from .mesh import TriangleMesh
@@ -156,6 +158,19 @@ class _Mapped:
         self._images = SurfacePoints.from_barycentric(self._there, np.concatenate(triangles), barycentric)
         self.around = Surroundings(here, self._there, self._images)
 
+    @cached_property
+    def _tree(self) -> cKDTree:
+        """Search for the vertices that these are mapped to."""
+        return cKDTree(self._there.vertices, balanced_tree=False, compact_nodes=False)
+
+    def contact(self, part: TriangleMesh) -> Contact:
+        """Find where a part of X is next to these."""
+        return contact_with(self.around.nearest(part.vertices)[0], part)
+
+    def contact_there(self, part: TriangleMesh) -> Contact:
+        """Find where a part of Y is next to what these are mapped to."""
+        return contact_with(self._tree.query(part.vertices)[0], part)
+
     def carried(
         self, points: NDArray[np.float64], distances: NDArray[np.float64]
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -197,14 +212,14 @@ class _PartMaps:
     def find_steps(self) -> Steps[None]:
         """Fill `mapped`."""
         meshes = {number: piece.mesh for number, piece in enumerate(self._x.pieces) if number}
-        waiting = {number: contact_with(self._body.around, mesh) for number, mesh in meshes.items()}
+        waiting = {number: self._body.contact(mesh) for number, mesh in meshes.items()}
         parts: _Mapped | None = None
         for wave in range(_MOST_WAVES):
             if not waiting or not self._free:
                 break
             touching: dict[int, Contact] = {}
             if parts is not None:
-                others = {number: contact_with(parts.around, meshes[number]) for number in waiting}
+                others = {number: parts.contact(meshes[number]) for number in waiting}
                 touching = {number: contact for number, contact in others.items() if contact.gap < waiting[number].gap}
             gaps = {number: touching.get(number, contact).gap for number, contact in waiting.items()}
             farthest = max(_NEAR * np.sqrt(self._x.mesh.area), _NEARLY * min(gaps.values()))
@@ -219,10 +234,14 @@ class _PartMaps:
 
     def _map_steps(self, contacts: Mapping[int, Contact], followed: _Mapped) -> Steps[None]:
         """Map those of some parts that have a partner among the free ones."""
+        if not contacts:
+            return
         numbers, candidates = sorted(contacts), sorted(self._free)
         here, there = ([c.pieces[i].mesh for i in chosen] for c, chosen in ((self._x, numbers), (self._y, candidates)))
         unit = float(np.sqrt(self._y.mesh.area))
-        for pair in paired_parts(here, [contacts[number] for number in numbers], there, followed.around, unit):
+        touching = [contacts[number] for number in numbers], [followed.contact_there(part) for part in there]
+        large = np.isin(numbers, list(self._large))
+        for pair in paired_parts((here, touching[0]), (there, touching[1]), followed.around, unit, large):
             part, partner, number = here[pair.part], there[pair.partner], numbers[pair.part]
             done = len(self.mapped) / len(self._x.pieces), (len(self.mapped) + 1) / len(self._x.pieces)
             steps = laid_onto_steps(part, partner, pair, thoroughly=number in self._large)

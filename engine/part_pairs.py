@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
@@ -39,7 +41,17 @@ _TOUCHING = 0.2
 _SWUNG = 0.25
 """What a part that has swung about where it touches counts as out of place, against one that was moved so far."""
 
-_NOT_POSSIBLE = 10.0
+_BENT, _LARGEST_LENGTHENING = 2.0, 1.25
+"""How many times as much a large part may be deformed that is as long for its area, up to this factor: a leg with its
+knee."""
+
+_JOINT, _LARGEST_ELSEWHERE = 0.3, 3.0
+"""Part of the sum of the radii by which a large part may touch its surroundings elsewhere to count as much as the
+largest offset, and what that counts at most."""
+
+_TINY = np.finfo(float).tiny
+
+_NOT_POSSIBLE = 20.0
 """No pair costs more than that of leaving a part alone, so that as many as possible are made."""
 
 
@@ -114,9 +126,21 @@ class _Extents:
         return cls(centres, areas, radii, spreads / radii[:, None])
 
 
-def contact_with(around: Surroundings, part: TriangleMesh) -> Contact:
-    """Find where a part is next to a mapped surface."""
-    distances, _ = around.nearest(part.vertices)
+def _length(part: TriangleMesh) -> float:
+    """Length along edges from one end of a part to the other, in the root of its area: it stays where a part bends."""
+    n, (tails, heads) = part.vertex_count, part.edges.T
+    graph = coo_array((part.edge_lengths, (tails, heads)), shape=(n, n)).tocsr()
+    end, length = 0, 0.0
+    for _ in range(2):
+        distances = dijkstra(graph, directed=False, indices=end)
+        distances[~np.isfinite(distances)] = 0
+        end = int(distances.argmax())
+        length = float(distances[end])
+    return max(length / np.sqrt(part.area), _TINY)
+
+
+def contact_with(distances: NDArray[np.float64], part: TriangleMesh) -> Contact:
+    """Find where a part is next to its surroundings by the distances (n,) of its vertices from there."""
     centre = part.vertices.mean(axis=0)
     radius = float(np.sqrt(np.square(part.vertices - centre).sum(axis=1).mean()))
     touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * radius)
@@ -124,11 +148,11 @@ def contact_with(around: Surroundings, part: TriangleMesh) -> Contact:
 
 
 def paired_parts(
-    x_parts: Sequence[TriangleMesh],
-    contacts: Sequence[Contact],
-    y_parts: Sequence[TriangleMesh],
+    here: tuple[Sequence[TriangleMesh], Sequence[Contact]],
+    there: tuple[Sequence[TriangleMesh], Sequence[Contact]],
     around: Surroundings,
     unit: float,
+    large: NDArray[np.bool_],
 ) -> list[PartPair]:
     """Find which parts of X and Y belong together.
 
@@ -137,20 +161,22 @@ def paired_parts(
 
     Parameters
     ----------
-    x_parts, y_parts : sequence of TriangleMesh
-        The parts.
-    contacts : sequence of Contact
-        Where each part of X is next to the surroundings.
+    here, there : pair of sequences of TriangleMesh and of Contact
+        The parts of X and of Y, and where each is next to the surroundings.
     around : Surroundings
         What is mapped already, and how space moves around it.
     unit : float
         Root of the area of the main part of Y.
+    large : (p,) array of bool
+        For each part of X, whether it matters where it touches its surroundings: left legs are like right ones in all
+        else, and cross them, but hang on other hips.  Of small parts it is not known so well.
 
     Returns
     -------
     list of PartPair
         Each part is in one pair at most; the sum of the differences is the least for as many pairs as there can be.
     """
+    (x_parts, contacts), (y_parts, its_contacts) = here, there
     if not x_parts or not y_parts:
         return []
     x, y = _Extents.of(x_parts), _Extents.of(y_parts)
@@ -172,8 +198,14 @@ def paired_parts(
     size = np.maximum(size, np.abs(np.log(areas[:, None] / y.areas)) / np.log(_LARGEST_RATIO**2))
     shape = np.abs(x.widths[:, None] - y.widths).max(axis=2) / _LARGEST_DEFORMATION
     difference = offset / _LARGEST_OFFSET + size + shape
-    possible = (offset <= _LARGEST_OFFSET) & (size <= 1) & (shape <= 1)
-    rows, columns = linear_sum_assignment(np.where(possible, difference, _NOT_POSSIBLE))
+    possible = (offset <= _LARGEST_OFFSET) & (size <= 1) & (shape <= np.where(large, _BENT, 1.0)[:, None])
+    for i, j in np.argwhere(possible & (shape > 1)):
+        longer = np.log(_length(x_parts[i]) / _length(y_parts[j]))
+        possible[i, j] = np.abs(longer) < np.log(_LARGEST_LENGTHENING)
+    apart = np.linalg.norm(joints[:, None] - [contact.place for contact in its_contacts], axis=2)
+    elsewhere = apart / (_JOINT * (radii[:, None] + y.radii) + _BLUR * unit)
+    costs = difference + np.where(large[:, None], np.minimum(elsewhere, _LARGEST_ELSEWHERE), 0)
+    rows, columns = linear_sum_assignment(np.where(possible, costs, _NOT_POSSIBLE))
     return [
         PartPair(
             int(i),

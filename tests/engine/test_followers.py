@@ -273,3 +273,48 @@ def test_a_tail_that_is_bent_otherwise_is_deformed(before, after):
     assert np.array_equal(result.partners, [0, 1])
     assert errors.mean() < 0.04  # the tail is 1.8 long
     assert errors.max() < 0.15
+
+
+def test_legs_that_cross_keep_to_their_hips():
+    hips = np.array([[0.0, 0.14, -0.8], [0.0, -0.14, -0.8]])
+    legs = [limb(np.add(hip, [0, 0, 0.05]), np.add(hip, [0.01, 0, -1.2]), 0.1) for hip in hips]
+    vertices, triangles = together(TRUNK, *legs)
+    moved, trunk, count = vertices.copy(), len(TRUNK[0]), len(legs[0][0])
+    for number, (hip, angle) in enumerate(zip(hips, (-0.6, 0.6), strict=True)):
+        its = slice(trunk + number * count, trunk + (number + 1) * count)
+        moved[its] = swung(moved[its], hip, [1, 0.2, 0], angle)
+    order = np.r_[:trunk, trunk + count : trunk + 2 * count, trunk : trunk + count]
+    back = np.argsort(order)
+    _, y, result = followed((vertices, triangles), (moved[order], back[triangles]), trunk)
+    assert_valid(result, y)
+    centres = [moved[trunk + number * count :][:count].mean(axis=0) for number in (0, 1)]
+    assert centres[0][1] < centres[1][1]  # they cross
+    assert np.linalg.norm(result.points.positions - moved, axis=1)[trunk:].max() < 0.02
+
+
+def test_a_leg_with_its_knee_bent_finds_the_straight_one():
+    hip = np.array([0.0, 0.2, -0.8])
+    vertices, triangles = together(TRUNK, limb(np.add(hip, [0, 0, 0.05]), np.add(hip, [0.01, 0, -1.6]), 0.1))
+    moved, trunk = vertices.copy(), len(TRUNK[0])
+    knee = hip - [0, 0, 0.8]
+    below = np.clip((knee[2] - moved[trunk:, 2]) / 0.2 + 0.5, 0, 1)
+    x, z = moved[trunk:, 0], moved[trunk:, 2] - knee[2]
+    angle = 1.6 * below
+    moved[trunk:, 0], moved[trunk:, 2] = (
+        np.cos(angle) * x + np.sin(angle) * z,
+        np.cos(angle) * z - np.sin(angle) * x + knee[2],
+    )
+    _, y, result = followed((vertices, triangles), (moved, triangles), trunk)
+    assert_valid(result, y)
+    assert np.array_equal(result.partners, [0, 1])
+    assert np.linalg.norm(result.points.positions - moved, axis=1)[trunk:].mean() < 0.15  # the leg is 1.65 long
+
+
+@pytest.mark.parametrize("turn", [1.5, -2.4])
+def test_an_arm_may_be_turned_about_itself(turn):
+    vertices, triangles = together(TRUNK, limb(SHOULDER - [0.05, 0, 0], ELBOW, 0.12))
+    moved, trunk = vertices.copy(), len(TRUNK[0])
+    moved[trunk:] = swung(swung(moved[trunk:], SHOULDER, [1, 0, 0], turn), SHOULDER, [0, 1, 0.2], 0.6)
+    _, y, result = followed((vertices, triangles), (moved, triangles), trunk)
+    assert_valid(result, y)
+    assert np.linalg.norm(result.points.positions - moved, axis=1)[trunk:].max() < 0.02
