@@ -2,35 +2,16 @@
 """Read characters and their animations in the Inter-Quake format: triangles, bones with weights, and frames."""
 
 import struct
-from dataclasses import dataclass
 
 import numpy as np
 
-from tests.benchmarks.game_models import transformations
+from tests.benchmarks.game_models import Model, transformations
 
 NAME = b"INTERQUAKEMODEL\0"
 POSITION, BONES, WEIGHTS = 0, 4, 5
 TYPES = {0: "i1", 1: "u1", 2: "<i2", 3: "<u2", 4: "<i4", 5: "<u4", 6: "<f2", 7: "<f4", 8: "<f8"}
 CHANNELS = 10
 """Numbers that place a bone: three for the place, four for the rotation, three for the scale."""
-
-
-@dataclass(frozen=True)
-class Character:
-    """A character at rest: vertices (n, 3), triangles (m, 3), four bones and weights for each vertex, and the bones."""
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    influences: np.ndarray
-    weights: np.ndarray
-    bones: np.ndarray
-
-    def posed(self, frame):
-        """Vertices with the bones at a frame (b, 4, 4)."""
-        motion = (frame @ np.linalg.inv(self.bones))[self.influences]
-        weights = self.weights / np.maximum(self.weights.sum(axis=1, keepdims=True), 1e-9)
-        moved = np.einsum("nkab,nb->nka", motion[..., :3, :3], self.vertices) + motion[..., :3, 3]
-        return np.einsum("nk,nka->na", weights, moved)
 
 
 def _header(path):
@@ -75,7 +56,7 @@ def read_character(path):
     triangles = number.ravel()[triangles]
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
     vertices, influences, weights = (found[kind][kept] for kind in (POSITION, BONES, WEIGHTS))
-    return Character(vertices.astype(float), triangles, influences.astype(int), weights.astype(float), rest)
+    return Model(vertices.astype(float), triangles, influences.astype(int), weights.astype(float), rest)
 
 
 def read_frames(path):
