@@ -18,7 +18,7 @@ from .map_hypotheses import LandmarkStart
 from .pinning import pinned
 from .progress import Progress, Steps, run, within
 from .proxy import Proxy
-from .quality import MatchQuality, assess_maps, map_confidence
+from .quality import MatchQuality, assess_maps, map_confidence, with_pieces_alone
 from .reflection import reflected_mesh, reflected_points
 from .registration import POLISH, Registration, register_steps
 from .shape import Shape
@@ -202,10 +202,11 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness)
     yield Progress(0.85, "Mapping every vertex")
     trusted = map_confidence(main_x, main_y, there, back, likeness=pair.likeness)
-    forward = yield from within(_followed_steps(x, y, there, trusted), 0.85, 0.92)
+    forward, alone = yield from within(_followed_steps(x, y, there, trusted), 0.85, 0.92)
     yield Progress(0.92, "Mapping every vertex")
     trusted = map_confidence(main_y, main_x, back, there, likeness=pair.likeness)
-    backward = yield from within(_followed_steps(y, x, back, trusted), 0.92, 1.0)
+    backward, alone_back = yield from within(_followed_steps(y, x, back, trusted), 0.92, 1.0)
+    quality = with_pieces_alone(quality, max(alone, alone_back))
     if pair.landmarks is not None:
         given, partners = pair.landmarks.source.original, pair.landmarks.target.original
         forward = _at_landmarks(forward, y.original, given, partners)
@@ -270,9 +271,10 @@ def _nearest(points: FoundPoints, mesh: TriangleMesh) -> NDArray[np.int64]:
 
 def _followed_steps(
     x: PreparedSurface, y: PreparedSurface, main_map: SurfacePoints, confidence: NDArray[np.float64]
-) -> Steps[SurfaceMap]:
-    """Extend a map of the main part to all vertices of the original mesh."""
+) -> Steps[tuple[SurfaceMap, float]]:
+    """Extend a map of the main part to all vertices of the original mesh; also the part that found no counterpart."""
     followed = yield from follow_steps(x.cleaned, y.cleaned, main_map)
     triangles = y.kept_triangles[followed.points.triangles]
     points = SurfacePoints.from_barycentric(y.original, triangles, followed.points.barycentric)
-    return SurfaceMap(points, followed.confidence * confidence[followed.surroundings], y.original.vertex_count)
+    trusted = followed.confidence * confidence[followed.surroundings]
+    return SurfaceMap(points, trusted, y.original.vertex_count), followed.alone

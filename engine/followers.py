@@ -62,12 +62,15 @@ class FollowedMap:
     partners : (p,) array of int
         For each part of X, the part of Y that it is mapped to; 0 for the main part.  A part other than the main one
         with 0 follows its surroundings onto what those are mapped to.
+    alone : float
+        Part of the surface of X that is in such parts without one of Y.
     """
 
     points: SurfacePoints
     confidence: NDArray[np.float64]
     surroundings: NDArray[np.int64]
     partners: NDArray[np.int64]
+    alone: float
 
 
 def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> Steps[FollowedMap]:
@@ -129,7 +132,9 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
             triangles[vertices], barycentric[vertices] = mapped.carried(x.original.vertices[vertices], away)
             confidence[vertices] = 1 / (1 + (away / (_TRUSTED_DISTANCE * np.sqrt(x.mesh.area))) ** 2)
     points = SurfacePoints.from_barycentric(y.original, triangles, barycentric)
-    return FollowedMap(points, confidence, surroundings, partners)
+    areas = np.array([piece.mesh.area for piece in x.pieces])
+    alone = float(areas[1:][partners[1:] == 0].sum() / areas.sum())
+    return FollowedMap(points, confidence, surroundings, partners, alone)
 
 
 @dataclass(frozen=True, eq=False)

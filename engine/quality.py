@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .surface import SurfacePoints
 
-__all__ = ["MatchQuality", "assess_maps", "map_confidence"]
+__all__ = ["MatchQuality", "assess_maps", "map_confidence", "with_pieces_alone"]
 
 _TRUSTED_ROUND_TRIP = 0.02
 """Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
@@ -34,6 +34,9 @@ less it changes, and what is left for shapes that are not alike at all.  Both ma
 _WHOLE = 0.995
 """Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths, and
 fingertips that another body has not are no more than this."""
+
+_FEW = 0.02
+"""Part of a mesh in pieces without a counterpart up to which nothing is said: eyes, teeth and buttons."""
 
 _ROUNDED = 0.98
 """Parts from which on tenths of a percent are said."""
@@ -76,6 +79,9 @@ class MatchQuality:
         Like `coverage`, the part of the source's area that has a partner on the target.
     likeness : float or None
         How credible the map was before details were fitted, see `RegisteredPair.likeness`; None if that is not known.
+    pieces_alone : float
+        Part of the surface of either mesh, of the one that has more of it, that is in separate pieces without a
+        counterpart on the other.
     """
 
     orientation: float
@@ -87,6 +93,7 @@ class MatchQuality:
     sentence: str
     source_coverage: float = 1.0
     likeness: float | None = None
+    pieces_alone: float = 0.0
 
 
 def map_confidence(
@@ -172,6 +179,12 @@ def assess_maps(
     return replace(quality, sentence=_sentence(quality))
 
 
+def with_pieces_alone(quality: MatchQuality, alone: float) -> MatchQuality:
+    """Say of a map, too, what part of the surface is in separate pieces without a counterpart."""
+    more = replace(quality, pieces_alone=alone)
+    return replace(more, sentence=_sentence(more))
+
+
 def _closeness(likeness: float | None) -> float:
     """Estimate the part of what both maps agree on that is as near to the truth as it seems, 0 to 1."""
     if likeness is None:
@@ -206,6 +219,9 @@ def _difference(quality: MatchQuality) -> str:
     distortion, disagreement = quality.distortion, quality.disagreement
     if min(quality.coverage, quality.source_coverage) < _WHOLE:
         return _without_partner(quality)
+    if quality.pieces_alone > _FEW:
+        share = _percentage(quality.pieces_alone)
+        return f"Separate pieces, {share} of a mesh, have no counterpart on the other: check where they went."
     if disagreement > 0.02 or distortion > 0.5:
         return "The shapes differ much: the map is a good guess that keeps left and right, but details may slide."
     if disagreement > 0.008 or distortion > 0.2:

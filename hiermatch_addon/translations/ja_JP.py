@@ -1167,6 +1167,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Click on the corresponding place of "{0}"': "「{0}」の対応する場所をクリック",
     "Only {0} of the target is reached: {1}": "ターゲットの{0}にしか届いていません。{1}",
     "Only {0} of the source has a partner: {1}": "ソースの{0}にしか対応する場所がありません。{1}",
+    "Separate pieces, {0} of a mesh, have no counterpart on the other: check where they went.": (
+        "メッシュの{0}を占める独立したパーツに、もう一方のメッシュで対応するパーツがありません。行き先を確認してください。"
+    ),
     "parts of one shape seem to be missing on the other.": "一方の形状の一部がもう一方にないようです。",
     "The {0} hangs together where the {1} does not: it was cut open there for matching.": (
         "{0}には{1}にないつながりがあるため、マッチングのためにそこを切り開きました。"

@@ -970,6 +970,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Click on the corresponding place of "{0}"': "点击“{0}”上的对应位置",
     "Only {0} of the target is reached: {1}": "只覆盖了目标的 {0}：{1}",
     "Only {0} of the source has a partner: {1}": "源只有 {0} 有对应位置：{1}",
+    "Separate pieces, {0} of a mesh, have no counterpart on the other: check where they went.": (
+        "占网格 {0} 的独立部件在另一个网格上没有对应部件：请检查它们的去向。"
+    ),
     "parts of one shape seem to be missing on the other.": "一个形状的某些部分似乎在另一个上不存在。",
     "The {0} hangs together where the {1} does not: it was cut open there for matching.": (
         "{0}在{1}没有相连的地方连在一起：已为匹配将其切开。"

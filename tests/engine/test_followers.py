@@ -247,6 +247,8 @@ def test_what_has_no_partner_follows_the_part_that_it_is_next_to():
     assert (y.original.triangles[result.points.triangles[others]] >= trunk + arm).all()
     assert np.linalg.norm(result.points.positions[others] - moved[others], axis=1).max() < 0.08
     assert result.partners[x.vertex_parts[others[0]]] == 0
+    areas = np.array([piece.mesh.area for piece in x.pieces])
+    assert result.alone == pytest.approx(areas[-1] / areas.sum())
 
 
 def tail(bend):

@@ -7,7 +7,7 @@ import pytest
 from engine import HierMatchError, MatchError, MatchSettings, MeshError, Shape, TriangleMesh, match
 from tests.bodies import mirrored_body
 from tests.messes import cut_along_seam, in_pieces, partly_turned, together, with_fin, without_disc, without_faces
-from tests.shapes import creature, icosphere, irregular
+from tests.shapes import creature, icosphere, irregular, posed, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
 UNKNOWN = np.full(3, np.nan)
@@ -193,6 +193,34 @@ def test_small_parts_find_each_other(bodies):
     main = result.source_to_target.corners[count:-count]
     assert main.min() >= count
     assert main.max() < target.vertex_count - count
+
+
+def arm(bend, pose):
+    """Two pieces, one on top of the other, that grow out of the back and are bent where they touch."""
+    ball, faces = icosphere(6)
+    lower, upper = ball * [0.13, 0.08, 0.3] + [0, 0, 0.28], ball * [0.1, 0.06, 0.26] + [0, 0, 0.24]
+    upper = upper @ rotation([0, 1, 0], bend).T + [0, 0, 0.55]
+    return tuple((posed(np.add(piece, [0, 0, 0.1]), pose), faces) for piece in (lower, upper))
+
+
+def test_pieces_that_hang_on_pieces_are_matched_as_well(bodies):
+    (vertices, triangles, _), (there, there_triangles, _) = bodies
+    source = together((vertices, triangles), *arm(0.2, 0.0))
+    target = together((there, there_triangles), *arm(1.1, 0.8)[::-1])
+    result = match(TriangleMesh(*source), TriangleMesh(*target), QUICK)
+    upper, lower = np.split(target[0][len(there) :], 2)
+    found = result.source_to_target.points.positions[len(vertices) :]
+    assert np.linalg.norm(found - np.concatenate([lower, upper]), axis=1).mean() < 0.03
+    assert result.quality.pieces_alone == 0
+
+
+def test_pieces_without_a_counterpart_are_told(bodies):
+    (vertices, triangles, _), (there, there_triangles, _) = bodies
+    source = TriangleMesh(*together((vertices, triangles), *arm(0.2, 0.0)))
+    for x, y in ((source, TriangleMesh(there, there_triangles)), (TriangleMesh(there, there_triangles), source)):
+        quality = match(x, y, QUICK).quality
+        assert quality.pieces_alone > 0.03
+        assert quality.sentence.startswith("Separate pieces")
 
 
 @pytest.mark.parametrize("turned", [False, True])

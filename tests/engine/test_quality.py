@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import TriangleMesh
 from engine.missing_parts import with_partner
-from engine.quality import assess_maps, map_confidence
+from engine.quality import assess_maps, map_confidence, with_pieces_alone
 from tests.bodies import mirrored_body
 from tests.engine.test_missing_parts import at, cut_square, nearest_on, without_cap
 from tests.shapes import creature, icosphere, permuted, plane, rotation
@@ -224,3 +224,13 @@ def test_so_is_a_small_part():
     assert 0.98 < quality.source_coverage < 0.995
     assert f"Only {quality.source_coverage:.1%} of the source has a partner" in quality.sentence
     assert map_confidence(ball, rest, there, back)[depth.argmax()] == 0
+
+
+def test_pieces_without_a_counterpart_are_mentioned_if_they_are_not_few(ball):
+    quality = by_index(ball, ball)
+    few, many = (with_pieces_alone(quality, share) for share in (0.01, 0.12))
+    assert few.sentence == quality.sentence
+    assert many.sentence.startswith("Separate pieces, 12% of a mesh, have no counterpart on the other")
+    assert (few.pieces_alone, many.pieces_alone) == (0.01, 0.12)
+    doubtful = with_pieces_alone(by_index(ball, ball, 0.2), 0.12)
+    assert doubtful.sentence.startswith("Another map was almost as likely")
