@@ -59,8 +59,6 @@ _POSED, _BUILT = 0.38, 0.48
 """Mean difference of wave kernel signatures up to which only poses differ, and from which on bodies are unlike."""
 
 _STAGES = AGAIN, CLOSE, LAST
-_MISFIT_WEIGHT = 20.0
-"""How much the mean squared distance that is left counts against the elastic energy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,8 +174,7 @@ class Follower:
 
     def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
         """Say how credible a hypothesis is by the soft registration that it led to."""
-        cost = registration.energy + _MISFIT_WEIGHT * registration.misfit
-        elastic = _ELASTIC_WEIGHT * float(np.log(max(cost, float(np.finfo(float).tiny))))
+        elastic = _ELASTIC_WEIGHT * float(np.log(max(registration.cost, float(np.finfo(float).tiny))))
         score, terms = self._assessed(hypothesis, registration)
         # The rough map that it began with may be no isometry though the bodies are alike.
         isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))

@@ -344,6 +344,7 @@ def _best_angles(
         total = costs[number] + whole.min(axis=1)
 
     def angles(tip: int) -> NDArray[np.float64]:
+        """Follow the best choices from an angle of the tip to the body."""
         path = [tip]
         for choice in choices[::-1]:
             path.append(int(choice[path[-1]]))

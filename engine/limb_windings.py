@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .progress import Steps, within
+from .registration import FINE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,12 +20,6 @@ if TYPE_CHECKING:
     from .registration import Registration
 
 __all__ = ["local_costs", "wound_steps"]
-
-_WEIGHT = 1280.0
-"""How much squared distances count against the elastic energy, as in the last round of the registrations."""
-
-_RADIUS = 0.03
-"""Over what distance rotations are averaged, in sqrt(area), as there."""
 
 _BETTER = 0.9
 """Cost of a limb that is wound the other way, as part of that of the first way, from which on it is taken."""
@@ -46,6 +41,11 @@ def wound_steps(
         The surfaces.
     untwisted : Untwisted
         Positions of the source, and other windings of some limbs.
+
+    Yields
+    ------
+    Progress
+        After each round of a registration.
 
     Returns
     -------
@@ -73,15 +73,16 @@ def local_costs(
     source: DeformableSurface, target: DeformableSurface, registration: Registration
 ) -> NDArray[np.float64]:
     """Costs (n_x,) of a registration around each vertex of the source: energy, and distances from and to the target."""
-    positions = registration.positions
-    costs = source.elastic.energies(positions, source.elastic.rotations(positions, _RADIUS))
+    # As the registration itself weighs them in its last round.
+    positions, weight = registration.positions, FINE.weights[-1]
+    costs = source.elastic.energies(positions, source.elastic.rotations(positions, FINE.rotation_radius))
     images, back = registration.on_target, registration.on_source
     there = np.einsum("kc,kcd->kd", images.barycentric, target.vertices[target.triangles[images.triangles]])
-    costs += _WEIGHT * source.mass * np.square(there - positions).sum(axis=1)
+    costs += weight * source.mass * np.square(there - positions).sum(axis=1)
     corners = source.triangles[back.triangles]
     here = np.einsum("kc,kcd->kd", back.barycentric, positions[corners])
     nearest = corners[np.arange(len(corners)), back.barycentric.argmax(axis=1)]
-    apart = _WEIGHT * target.mass * np.square(here - target.vertices).sum(axis=1)
+    apart = weight * target.mass * np.square(here - target.vertices).sum(axis=1)
     return costs + np.bincount(nearest, apart, len(costs))
 
 

@@ -49,9 +49,6 @@ _DEFORMED = 40, 10_000
 _BENDING = Stage((5, 10, 20, 40, 80, 160), 0.1, 0.05)
 """A tail or a sleeve may be bent otherwise as a whole."""
 
-_MISFIT_WEIGHT = 20.0
-"""How much the mean squared distance that is left counts against the elastic energy."""
-
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
@@ -145,8 +142,7 @@ def _deformed_steps(
     for number, start in enumerate(starts):
         steps = register_steps(source, target, target.in_unit_size(start), (_BENDING, FINE, LAST))
         registration = yield from within(steps, number / len(starts), (number + 1) / len(starts))
-        strayed = _strayed(pair, target.in_its_units(registration.positions))
-        costs.append((registration.energy + _MISFIT_WEIGHT * registration.misfit) * strayed)
+        costs.append(registration.cost * _strayed(pair, target.in_its_units(registration.positions)))
         found.append(registration.on_target)
     return found[int(np.argmin(costs))]
 

@@ -45,6 +45,9 @@ _ENDS = 1 - 1e-6
 _SOLVES = 2
 """How often positions and rotations are found in turn for the same matches."""
 
+_MISFIT_WEIGHT = 20.0
+"""How much the mean squared distance that is left counts against the elastic energy."""
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -142,6 +145,11 @@ class Registration:
     energy: float
     misfit: float
     gaps: tuple[float, float]
+
+    @property
+    def cost(self) -> float:
+        """What the deformation costs, and what is left to be deformed: its elastic energy and the misfit, weighted."""
+        return self.energy + _MISFIT_WEIGHT * self.misfit
 
 
 _MATCHED = ("vertices", "around", "anywhere")
