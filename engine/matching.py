@@ -3,39 +3,28 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from .dense_map import registered_pair_steps
-from .dense_match import MEASURED, DenseMatch, dense_match_steps
 from .errors import MatchError
-from .handle_cutting import evened_steps
-from .hierarchy import refine_steps
-from .landmarks import locate_landmarks, placed_at_vertices
-from .map_hypotheses import LandmarkStart
-from .pair import Pair
+from .partial_match import has_border, part_matched_steps
 from .progress import Progress, Steps, run, within
-from .result import CoarseMatch, MatchResult
 from .settings import MatchSettings
 from .shape import Shape
-from .solvers import Answer, at_samples, moved, solve_steps
-from .surface import SurfacePoints
-from .surface_distances import SurfaceDistances, to_all_vertices_steps
+from .shape_matching import MatchTask, matched_steps
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from .landmarks import Landmarks
     from .mesh import TriangleMesh
+    from .result import MatchResult
 
 __all__ = ["match", "match_steps"]
 
-_AGREEING = 0.15
-"""Mean distance, in sqrt(area), up to which a sparse answer and the dense map are taken for the same."""
+_FIRST, _FIRST_OF_CLOSED = 0.45, 0.95
+"""Part of the work after which surfaces have been matched as they are, if one of them may be a part of the other, and
+if they are closed."""
 
 
 def match(
@@ -109,59 +98,17 @@ def match_steps(
         When the generator ends.  Closing it earlier cancels the match; nothing has to be cleaned up.
     """
     settings = settings or MatchSettings()
-    clock = _Clock()
+    task = MatchTask(settings, landmarks)
     x = yield from within(_shape_steps(source, "source", excluded[0]), 0.0, 0.03)
     y = yield from within(_shape_steps(target, "target", excluded[1]), 0.03, 0.06)
-    x, y = yield from within(evened_steps(x, y), 0.06, 0.06)
-    clock.lap("preparation")
-    for shape, name in ((x, "source"), (y, "target")):
-        if shape.mesh.vertex_count < settings.points:
-            raise MatchError(
-                f"{settings.points} points cannot be matched: the {name} has only {shape.mesh.vertex_count} vertices"
-                f"{'' if shape.surface.is_whole else ' in its largest part'}. "
-                "Use fewer points or subdivide the mesh."
-            )
-    known = None if landmarks is None else locate_landmarks(x, y, landmarks, settings.points)
-    if known is not None:
-        x, y = x.starting_with(known.source.matched), y.starting_with(known.target.matched)
-    samples = max(3 * settings.samples // 4 if settings.dense else settings.samples, 2 * settings.points)
-    # A dense map is decided on by more than distances: from the points that are matched they are measured, from most
-    # other samples estimated.
-    measured = max(settings.points, MEASURED) if settings.dense else None
-    sparse_end = 0.5 if settings.dense else 1.0
-    yield from within(x.sample_steps(samples, measured), 0.06, 0.13 if settings.dense else 0.3)
-    yield from within(
-        y.sample_steps(samples, measured), 0.13 if settings.dense else 0.3, 0.2 if settings.dense else 0.6
-    )
-    clock.lap("geodesics")
-    begin = 0.2 if settings.dense else 0.6
-    if Pair.needs_spectrum(settings):
-        yield from within(x.spectrum_steps(settings.eigenpairs), begin, begin + 0.05)
-        yield from within(y.spectrum_steps(settings.eigenpairs), begin + 0.05, begin + 0.1)
-        begin += 0.1
-        clock.lap("eigenpairs")
-    sampled = x.limited(samples, measured), y.limited(samples, measured)
-    pair = Pair(*sampled, settings, 0 if known is None else len(known))
-    clock.lap("descriptors")
-    answers = yield from within(solve_steps(pair, clock.lap), begin, sparse_end)
-    notes = tuple(note for shape in (x, y) for note in shape.surface.cleaned.notes)
     if not settings.dense:
-        results = []
-        for answer in answers:
-            rows = yield from _distance_rows_steps(answer)
-            results.append(_result(answer, known, notes, clock.laps, rows))
-        yield Progress(1.0, "Done")
-        return replace(results[0], mirrored=results[1] if len(results) > 1 else None)
-    direct, mirrored, dense = yield from within(_dense_steps(answers, known, clock), sparse_end, 1.0)
-    result = _result(direct, known, notes, clock.laps)
+        result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
+    else:
+        end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
+        result = yield from within(matched_steps(x, y, task), 0.06, end)
+        result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
     yield Progress(1.0, "Done")
-    return replace(
-        result,
-        mirrored=None if mirrored is None else _result(mirrored, known, notes, clock.laps),
-        source_to_target=dense.source_to_target,
-        target_to_source=dense.target_to_source,
-        quality=dense.quality,
-    )
+    return result
 
 
 def _shape_steps(surface: TriangleMesh | Shape, name: str, excluded: ArrayLike | None) -> Steps[Shape]:
@@ -175,137 +122,3 @@ def _shape_steps(surface: TriangleMesh | Shape, name: str, excluded: ArrayLike |
             "Give the mesh itself, or leave them out when you make the shape."
         )
     return surface
-
-
-def _dense_steps(
-    answers: list[Answer], landmarks: Landmarks | None, clock: _Clock
-) -> Steps[tuple[Answer, Answer | None, DenseMatch]]:
-    """Find the dense map, and the sparse answers that agree with it: the true and the mirrored one."""
-    pair = answers[0].coarse.pair
-    x, y = pair.source, pair.target
-    starts = []
-    # Mirrored maps serve only landmarks that ask for one.
-    followed = answers if landmarks is not None else [a for a in answers if a.orientation > 0] or answers
-    for answer in followed:
-        places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
-        starts.append(LandmarkStart(x.sample_rows[: len(places)], y.sample_rows[places], "hierarchy"))
-    registered = yield from within(registered_pair_steps(x, y, starts, landmarks=landmarks), 0.0, 0.75)
-    clock.lap("registration")
-    dense = yield from within(dense_match_steps(registered), 0.75, 0.9)
-    clock.lap("lift")
-    found, vertices = dense.source_to_target, x.vertices[x.samples[: len(answers[0].points)]]
-    images = y.surface.on_mesh(
-        SurfacePoints.from_barycentric(y.original, found.triangles[vertices], found.barycentric[vertices])
-    )
-    if landmarks is not None:
-        images = placed_at_vertices(images, y.mesh, np.arange(len(landmarks)), landmarks.target.matched)
-    direct, mirrored = yield from within(_agreeing_steps(answers, images), 0.9, 1.0)
-    clock.lap("agreement")
-    return direct, mirrored, dense
-
-
-def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple[Answer, Answer | None]]:
-    """Tell by the dense map which sparse answer is the true one, and put its points where the map takes them.
-
-    The dense map is decided on by far more than distances between some points.  An answer that it contradicts is
-    refined anew, from the samples that are nearest to its images.
-    """
-    pair = answers[0].coarse.pair
-    y, count = pair.target, len(images)
-    far = [float(np.linalg.norm(a.points.positions - images.positions, axis=1).mean()) / y.scale for a in answers]
-    order = np.argsort(far)
-    # Without landmarks the map keeps the orientation: an answer that mirrors is at best near to it here and there.
-    nearest = order[0] if pair.landmarks else next((i for i in order if answers[i].orientation > 0), order[0])
-    direct = answers[nearest]
-    mirrored = next((answers[i] for i in order if i != nearest and answers[i].orientation <= 0), None)
-    if far[nearest] > _AGREEING:
-        rows = y.sample_rows[:, images.nearest_vertices]
-        start = _distinct_samples(rows, pair.landmarks)
-        levels = yield from refine_steps(pair, start, [count])
-        direct = at_samples(direct, levels)
-        mirrored = mirrored or next((a for a in answers if a.orientation <= 0), None)
-    if pair.landmarks:  # these may ask for a map that mirrors: then the other answer does not
-        mirrored = next((a for a in answers if (a.orientation > 0) != (direct.orientation > 0)), None)
-    yield from pair.target_metric.prepare_nearest_steps(images)
-    return moved(direct, images), mirrored
-
-
-def _distinct_samples(rows: NDArray[np.float32], landmarks: int) -> NDArray[np.int64]:
-    """Assign to each point (k,) a sample of its own near to it, by distances (s, k); to landmarks their own."""
-    _, samples = linear_sum_assignment(np.square(rows[landmarks:, landmarks:].T.astype(np.float64)))
-    return np.concatenate([np.arange(landmarks), landmarks + samples])
-
-
-class _Clock:
-    """Seconds between laps, by name."""
-
-    def __init__(self) -> None:
-        self.laps: dict[str, float] = {}
-        self._last = time.perf_counter()
-
-    def lap(self, name: str) -> None:
-        """Record the time since the last lap under a name."""
-        now = time.perf_counter()
-        self.laps[name] = now - self._last
-        self._last = now
-
-
-def _distance_rows_steps(answer: Answer) -> Steps[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Distances from the matched points to all vertices: geodesic ones whatever the metric."""
-    x, y = answer.coarse.pair.source, answer.coarse.pair.target
-    metric = answer.coarse.pair.target_metric
-    on_target = metric if isinstance(metric, SurfaceDistances) else SurfaceDistances(y)
-    rows = yield from within(to_all_vertices_steps(on_target, answer.points), 1.0, 1.0)
-    return _sample_distances(x, len(answer.points)), rows
-
-
-def _result(
-    answer: Answer,
-    landmarks: Landmarks | None,
-    notes: tuple[str, ...],
-    seconds: dict[str, float],
-    rows: tuple[NDArray[np.float64] | None, NDArray[np.float64] | None] = (None, None),
-) -> MatchResult:
-    pair, coarse = answer.coarse.pair, answer.coarse.matching
-    x, y, count = pair.source, pair.target, len(answer.points)
-    difference = pair.source_distances[:count, :count] - answer.distances
-    # A landmark is itself and not a vertex of a coarse proxy near to it, or one that is welded to it.
-    known = 0 if landmarks is None else len(landmarks)
-    source_vertices, target_vertices = x.vertices[x.samples], y.vertices[y.samples]
-    if landmarks is not None:
-        source_vertices[:known], target_vertices[:known] = landmarks.source.original, landmarks.target.original
-
-    def exact(points: SurfacePoints) -> SurfacePoints:
-        """Put the landmarks among points at the very vertices that were given."""
-        rows = np.arange(min(known, len(points)))
-        return placed_at_vertices(points, y.original, rows, target_vertices[rows]) if known else points
-
-    return MatchResult(
-        source_points=SurfacePoints.at_vertices(x.original, source_vertices[:count]),
-        target_points=exact(y.surface.on_original(answer.points)),
-        distortion=answer.distortion,
-        linear=answer.linear,
-        quadratic=answer.quadratic,
-        point_distortion=np.sqrt(np.square(difference).sum(axis=1) / max(count - 1, 1)),
-        orientation=answer.orientation,
-        levels=tuple(replace(level, target_points=exact(level.target_points)) for level in answer.levels),
-        coarse=CoarseMatch(
-            source_vertices[: len(coarse.assignment)],
-            target_vertices[coarse.assignment],
-            answer.candidates,
-            coarse.cost,
-            coarse.lower_bound,
-            coarse.proven,
-            coarse.nodes,
-        ),
-        mirrored=None,
-        source_distances=rows[0],
-        target_distances=rows[1],
-        notes=notes,
-        seconds=seconds,
-    )
-
-
-def _sample_distances(shape: Shape, count: int) -> NDArray[np.float64]:
-    """Distances from the first samples to all vertices of the whole surface, in its units; inf on other parts."""
-    return shape.surface.spread(shape.sample_rows[:count].astype(np.float64) * shape.scale, np.inf)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .surface import SurfacePoints
 
-__all__ = ["MatchQuality", "assess_maps", "map_confidence", "with_pieces_alone"]
+__all__ = ["MatchQuality", "assess_maps", "map_confidence", "of_covered_part", "with_pieces_alone"]
 
 _TRUSTED_ROUND_TRIP = 0.02
 """Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
@@ -182,6 +182,15 @@ def assess_maps(
 def with_pieces_alone(quality: MatchQuality, alone: float) -> MatchQuality:
     """Say of a map, too, what part of the surface is in separate pieces without a counterpart."""
     more = replace(quality, pieces_alone=alone)
+    return replace(more, sentence=_sentence(more))
+
+
+def of_covered_part(quality: MatchQuality, share: float, *, of_source: bool) -> MatchQuality:
+    """Say of a map, too, that it was made with only so large a part of the source, or of the target."""
+    if of_source:
+        more = replace(quality, source_coverage=share * quality.source_coverage)
+    else:
+        more = replace(quality, coverage=share * quality.coverage)
     return replace(more, sentence=_sentence(more))
 
 

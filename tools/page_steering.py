@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The pictures of docs/steering.md.
 
-    half-a-cat.jpg    a match with the front half of a cat, which is wrong everywhere
-    leave-out.jpg     the rear half is left out: all is right
+    half-a-cat.jpg    a match with the front half of a cat: of the rear half, nothing is found
+    leave-out.jpg     the same with the rear half left out
     pick.jpg          a landmark is picked by two clicks; the status bar and the panel after them
     pairs.jpg         the matched points with lines between partners, and their list
     refine.jpg        a paw of the source, and of the target before and after Refine with one landmark

@@ -1085,6 +1085,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Cutting islands": "アイランドを切り出しています",
     "Laying faces onto islands": "面をアイランドに配置しています",
     "Carrying weights": "ウェイトを転送しています",
+    "Looking for missing parts": "足りない部分を探しています",
     "Looking for torn vertices": "引き離された頂点を探しています",
     "Filling in weights": "ウェイトを補充しています",
     "The maps belong to other meshes than those to be wrapped. Match them again.": (

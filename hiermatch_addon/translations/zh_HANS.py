@@ -896,6 +896,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Cutting islands": "正在切分孤岛",
     "Laying faces onto islands": "正在将面放到孤岛上",
     "Carrying weights": "正在传递权重",
+    "Looking for missing parts": "正在查找缺失的部分",
     "Looking for torn vertices": "正在查找撕开的顶点",
     "Filling in weights": "正在填充权重",
     "The maps belong to other meshes than those to be wrapped. Match them again.": (

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of a surface another one shows that is only a part of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
+
+from .candidates import Follower
+from .deformable import DeformableSurface
+from .dense_map import EIGENPAIRS
+from .errors import MatchError
+from .map_domain import MapDomain
+from .map_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
+from .mesh import TriangleMesh
+from .missing_parts import with_partner
+from .part_search import part_placements
+from .progress import Steps, within
+from .shape import Shape
+from .surface import SurfacePoints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .surface_map import SurfaceMap
+
+__all__ = ["CoveredPart", "continued", "covered_parts_steps"]
+
+_VERTICES = 2000
+"""Vertices of the coarse surfaces on which parts are looked for."""
+
+_SAMPLES, _MEASURED = 256, 64
+"""Samples of either, and of how many the distances are measured, not estimated."""
+
+_PLACEMENTS, _REGISTERED = 12, 6
+"""Ways to lay the part onto the whole that are compared, and how many of them are registered."""
+
+_REFINED, _ROUNDS = 3, 2
+"""How many of these are followed up with what they cover by the registration, and how often: the nearer the piece that
+is cut out is to the true one, the better fits the size that it is compared in."""
+
+_ROUGHLY = 0.06
+"""Distance, in sqrt(area) of the whole, from samples that something goes to in which a rough placement covers it."""
+
+_SPACINGS = 1.25
+"""The same of a registration: in spacings of the vertices of the whole."""
+
+_STARTS = 64
+"""Samples of the part whose images a registration starts from."""
+
+_LEAST = 300
+"""Vertices of the coarse surface that must be covered for it to be more than a guess."""
+
+_SAME = 0.7
+"""What two pieces of the whole have in common, as a part of both together, from which on they are one."""
+
+_OVERHANGING = 20.0
+"""How much the part of the part that overhangs counts against a piece: nothing of it should."""
+
+_CONTESTED = 3.0
+"""Difference of scores up to which another piece may be the true one."""
+
+
+@dataclass(frozen=True, eq=False)
+class CoveredPart:
+    """What of one surface may correspond to all of the other.
+
+    Attributes
+    ----------
+    covered : (n,) array of bool
+        Which vertices of the whole's mesh do.
+    score : float
+        Smaller is more credible; comparable between pieces, and between the two ways round.
+    """
+
+    covered: NDArray[np.bool_]
+    score: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Proposal:
+    """A piece of the whole, and how it may lie on the part."""
+
+    piece: Shape
+    hypothesis: MapHypothesis
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """What a registration says.
+
+    Attributes
+    ----------
+    score : float
+        Smaller is more credible.
+    places : (m, 3) array of float
+        Where the vertices of the part lie on the whole.
+    overhanging : (m,) array of bool
+        Which of them have no partner on the piece of the whole, see `with_partner`.
+    unit : float
+        Length on the whole of a unit of length on the part.
+    """
+
+    score: float
+    places: NDArray[np.float64]
+    overhanging: NDArray[np.bool_]
+    unit: float
+
+
+def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, SurfaceMap]) -> Steps[list[CoveredPart]]:
+    """Find what of a surface another one shows.
+
+    Surfaces are compared in units of their area, so a part is seen too large beside the whole, and what it lacks has to
+    go somewhere: the larger the missing part, the less is right.  With the whole cut down to what the part shows, both
+    are like any two surfaces.  So some ways to lay the part onto the whole are found by distances; of each what it
+    covers is cut out, and compared with the part; the most credible are registered to it; and the best are cut out
+    again, by what the registration covers.
+
+    Parameters
+    ----------
+    whole, part : Shape
+        The surfaces.
+    first : pair of SurfaceMap
+        What came of them as they are: a map of the whole to the part, and the other way round.
+
+    Returns
+    -------
+    list of CoveredPart
+        The most credible piece, and others that are nearly as credible; empty if there is none.
+    """
+    coarse = yield from within(Shape.steps(whole.mesh, proxy_vertices=_VERTICES), 0.0, 0.05)
+    other = yield from within(Shape.steps(part.mesh, proxy_vertices=_VERTICES), 0.05, 0.1)
+    yield from within(coarse.sample_steps(_SAMPLES, _MEASURED), 0.1, 0.13)
+    yield from within(other.sample_steps(_SAMPLES, _MEASURED), 0.13, 0.16)
+    yield from within(other.spectrum_steps(EIGENPAIRS), 0.16, 0.2)
+    fitter = _Fitter(coarse.limited(_SAMPLES, _MEASURED), other.limited(_SAMPLES, _MEASURED))
+    there, back = first
+    kept = there.confidence[whole.vertices[coarse.vertices]] > 0
+    places = back.positions[part.vertices[other.vertices[other.samples]]]
+    starts = [(kept, fitter.nearest_samples(places))]
+    placements = part_placements(fitter.whole, fitter.part, _PLACEMENTS)
+    starts += [(fitter.roughly_covered(placement.images), placement.images) for placement in placements]
+    fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
+    refined = yield from within(_refined_steps(fitter, fits[:_REFINED]), 0.75, 1.0)
+    found: list[tuple[NDArray[np.bool_], float]] = []
+    for fit in sorted([*fits, *refined], key=lambda fit: fit.score):
+        covered = fitter.covered(fit) | fitter.grown(fit)
+        near = not found or fit.score < found[0][1] + _CONTESTED
+        if near and all(fitter.common_part(covered, piece) < _SAME for piece, _ in found):
+            found.append((covered, fit.score))
+    return [CoveredPart(coarse.surface.spread(c.astype(np.float64), 0.0) > 1 / 2, score) for c, score in found]
+
+
+def continued(
+    whole: Shape, part: Shape, places: NDArray[np.float64], overhanging: NDArray[np.bool_], unit: float
+) -> NDArray[np.bool_]:
+    """Tell where the whole goes on beyond a piece of it that was cut out too small, without a leg of the part.
+
+    Parameters
+    ----------
+    whole, part : Shape
+        The surfaces, n and m vertices.
+    places : (m, 3) array of float
+        Where the vertices of the part lie on the piece.
+    overhanging : (m,) array of bool
+        Which of them belong to nothing of it.
+    unit : float
+        Length on the whole of a unit of length on the part.
+
+    Returns
+    -------
+    (n,) array of bool
+        The vertices of the whole that are as near to where something hangs on what lies well as it reaches from there.
+    """
+    if not overhanging.any() or overhanging.all():
+        return np.zeros(whole.mesh.vertex_count, bool)
+    # Where the patches hang on what lies well: what belongs to nothing of the piece lies anywhere on it.
+    lying = np.flatnonzero(~overhanging)
+    lengths, _, roots = dijkstra(
+        part.solver.graph, directed=False, indices=lying, min_only=True, return_predecessors=True
+    )
+    hanging = np.flatnonzero(overhanging & (roots >= 0))
+    lengths, roots = lengths[hanging], roots[hanging]
+    ends, numbers = np.unique(cKDTree(whole.mesh.vertices).query(places[roots])[1], return_inverse=True)
+    longest = np.zeros(len(ends))
+    np.maximum.at(longest, numbers, unit * lengths)
+    distances = dijkstra(whole.solver.graph, directed=False, indices=ends, limit=float(longest.max()))
+    near: NDArray[np.bool_] = (distances <= longest[:, None]).any(axis=0)
+    return near
+
+
+def _registered_steps(fitter: _Fitter, starts: list[tuple[NDArray[np.bool_], NDArray[np.int64]]]) -> Steps[list[_Fit]]:
+    """Compare pieces with the part, and register the most credible ones; by growing score."""
+    proposals: list[_Proposal] = []
+    for number, (covered, images) in enumerate(starts):
+        begin, end = (0.6 * (number + i) / len(starts) for i in (0, 1))
+        proposal = yield from within(fitter.proposal_steps(covered, images), begin, end)
+        if proposal is not None:
+            proposals.append(proposal)
+    proposals.sort(key=lambda proposal: proposal.hypothesis.score)
+    fits: list[_Fit] = []
+    for number, proposal in enumerate(proposals[:_REGISTERED]):
+        begin, end = (0.6 + 0.4 * (number + i) / _REGISTERED for i in (0, 1))
+        fits.append((yield from within(fitter.fit_steps(proposal), begin, end)))
+    return sorted(fits, key=lambda fit: fit.score)
+
+
+def _refined_steps(fitter: _Fitter, fits: list[_Fit]) -> Steps[list[_Fit]]:
+    """Cut pieces out anew by what registrations cover, and register these."""
+    refined: list[_Fit] = []
+    for number, fit in enumerate(fits):
+        last = fit
+        for again in range(_ROUNDS):
+            begin, end = ((number + (again + i) / _ROUNDS) / len(fits) for i in (0, 1))
+            covered = fitter.covered(last) | fitter.grown(last)
+            images = fitter.nearest_samples(last.places[fitter.part.samples])
+            proposal = yield from within(fitter.proposal_steps(covered, images, known=True), begin, (begin + end) / 2)
+            if proposal is None:
+                break
+            last = yield from within(fitter.fit_steps(proposal), (begin + end) / 2, end)
+            refined.append(last)
+    return refined
+
+
+class _Fitter:
+    """Registers pieces of the whole to the part."""
+
+    def __init__(self, whole: Shape, part: Shape) -> None:
+        self.whole, self.part = whole, part
+        self._surface = DeformableSurface(part.mesh, part.laplace)
+
+    def roughly_covered(self, images: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Tell which vertices of the whole (n,) are near to samples that something goes to."""
+        near: NDArray[np.bool_] = self.whole.sample_rows[np.unique(images)].min(axis=0) < _ROUGHLY
+        return near
+
+    def covered(self, fit: _Fit) -> NDArray[np.bool_]:
+        """Tell which vertices of the whole (n,) are near to the part's vertices or the middles of its triangles."""
+        mesh = self.whole.mesh
+        places = np.concatenate([fit.places, fit.places[self.part.mesh.triangles].mean(axis=1)])
+        spacing = np.sqrt(mesh.area / mesh.vertex_count)
+        near: NDArray[np.bool_] = cKDTree(places).query(mesh.vertices)[0] < _SPACINGS * spacing
+        return near
+
+    def grown(self, fit: _Fit) -> NDArray[np.bool_]:
+        """Tell where the whole (n,) goes on beyond a piece, see `continued`."""
+        return continued(self.whole, self.part, fit.places, fit.overhanging, fit.unit)
+
+    def nearest_samples(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Find the samples of the whole that are nearest to places (k, 3)."""
+        found: NDArray[np.int64] = cKDTree(self.whole.mesh.vertices[self.whole.samples]).query(places)[1]
+        return found
+
+    def common_part(self, first: NDArray[np.bool_], second: NDArray[np.bool_]) -> float:
+        """Area that two pieces of the whole, (n,) each, have in common, as a part of that of both together."""
+        areas = self.whole.mesh.vertex_areas
+        return float(areas @ (first & second)) / max(float(areas @ (first | second)), float(np.finfo(float).tiny))
+
+    def proposal_steps(
+        self, covered: NDArray[np.bool_], images: NDArray[np.int64], *, known: bool = False
+    ) -> Steps[_Proposal | None]:
+        """Cut a piece out of the whole and compare it with the part; None if it is too small for that.
+
+        If the images of the part's samples are known well, functional maps would only make them worse.
+        """
+        whole = self.whole.mesh
+        kept = whole.triangles[covered[whole.triangles].all(axis=1)]
+        vertices, triangles = np.unique(kept, return_inverse=True)
+        if len(vertices) < _LEAST:
+            return None
+        piece = Shape(TriangleMesh(whole.vertices[vertices], triangles.reshape(-1, 3)))
+        vertices = vertices[piece.vertices]
+        yield from within(piece.sample_steps(_SAMPLES, _MEASURED), 0.0, 0.2)
+        yield from within(piece.spectrum_steps(EIGENPAIRS), 0.2, 0.5)
+        piece = piece.limited(_SAMPLES, _MEASURED)
+        rows = self.whole.sample_rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
+        start = LandmarkStart(rows, self.part.sample_rows[:_STARTS], "placement")
+        if known:
+            domains = MapDomain(piece, EIGENPAIRS), MapDomain(self.part, EIGENPAIRS)
+            return _Proposal(piece, unrefined_hypothesis(domains, start))
+        try:
+            hypotheses = yield from within(map_hypotheses_steps(piece, self.part, [start], search=False), 0.5, 1.0)
+        except MatchError:  # the largest of several pieces may be too small
+            return None
+        return _Proposal(piece, hypotheses[0])
+
+    def fit_steps(self, proposal: _Proposal) -> Steps[_Fit]:
+        """Register a piece of the whole to the part."""
+        piece = proposal.piece
+        source = DeformableSurface(piece.mesh, piece.laplace)
+        candidate = yield from Follower(piece, self.part, source, self._surface).steps(proposal.hypothesis)
+        lying = candidate.registration.on_source
+        corners = piece.mesh.vertices[piece.mesh.triangles[lying.triangles]]
+        places = np.einsum("kc,kcd->kd", lying.barycentric, corners)
+        there, back = (
+            SurfacePoints.from_barycentric(surface.mesh, found.triangles, found.barycentric)
+            for surface, found in ((source, lying), (self._surface, candidate.registration.on_target))
+        )
+        overhanging = ~with_partner(self.part.mesh, piece.mesh, there, back)
+        score = candidate.score + _OVERHANGING * float(self._surface.mass @ overhanging)
+        return _Fit(score, places, overhanging, piece.scale / self.part.scale)

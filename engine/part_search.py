@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where on a surface another one may belong that is only a part of it, such as the bust of a body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .extremity_search import beam_matchings
+from .orientation import signed_areas
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .shape import Shape
+
+__all__ = ["PartPlacement", "part_placements"]
+
+_MATCHED, _OFFERED = 6, 80
+"""Samples of the part that are matched, and of the whole that they are matched to: the first, which are spread the
+best.  Where the part was cut off, nothing says which places of the whole are extremities of it; so many are offered."""
+
+_SHARES = (1.0, 0.85, 0.7, 0.58, 0.48, 0.4, 0.33)
+"""What part of the whole it may be, by area: so distances on one are known in units of the other."""
+
+_WIDTH = 1500
+"""Partial matchings that are kept in the search at each size."""
+
+_CARRIED = 80
+"""Matchings of each size that are carried over to the whole surface."""
+
+_SCOUTS = 64
+"""Samples of the part that say how well a matching carries over."""
+
+_SIGNED_WEIGHT = 0.5
+"""Of signed areas beside distances in units of the part."""
+
+_ALIKE, _APART = 0.1, 0.08
+"""Mean distance between the images of what is matched, in units of the part, and between those of the scouts, in units
+of the whole, up to which two matchings say the same."""
+
+
+@dataclass(frozen=True, eq=False)
+class PartPlacement:
+    """A way to lay a part onto the whole.
+
+    Attributes
+    ----------
+    misfit : float
+        Mean squared difference of the descriptions of some of the part's samples and of what they go to.
+    images : (s,) array of int
+        For each sample of the part, the number of a sample of the whole.
+    """
+
+    misfit: float
+    images: NDArray[np.int64]
+
+
+class _Matching(NamedTuple):
+    """Numbers of the whole's samples that the first of the part go to, (m,), and those that its scouts do, (k,)."""
+
+    images: NDArray[np.int64]
+    unit: float
+    misfit: float
+    landings: NDArray[np.int64]
+
+
+def part_placements(whole: Shape, part: Shape, most: int) -> list[PartPlacement]:
+    r"""Find ways to lay a surface onto another that has more, from distances on both.
+
+    A few samples of the part are matched to samples of the whole in many ways, at several sizes: in units of its own
+    area, the part is larger than on the whole.  Each matching describes the points of both surfaces, by distances to
+    what is matched and the signed areas of the directions from there; it is as good as the samples of the part find
+    their like on the whole.  Nothing is asked of the samples of the whole, most of which may have no partner [1]_.
+
+    Parameters
+    ----------
+    whole, part : Shape
+        The surfaces, with samples.
+    most : int
+        How many ways are wanted at most.
+
+    Returns
+    -------
+    list of PartPlacement
+        Those that keep the orientation, the best first, and no two nearly the same.
+
+    References
+    ----------
+    .. [1] A. M. Bronstein, M. M. Bronstein, A. M. Bruckstein, R. Kimmel, "Partial similarity of objects, or how to
+       compare a centaur to a horse", International Journal of Computer Vision 84, 2009.
+    """
+    distances = whole.sample_distances
+    carrier = _Carrier(whole, part)
+    found: list[_Matching] = []
+    for unit in np.sqrt(_SHARES):
+        different = _different(carrier.matchings(unit), distances, _ALIKE * unit)
+        found += [carrier.carried(images, unit) for images in different]
+    found.sort(key=lambda matching: matching.misfit)
+    chosen: list[_Matching] = []
+    for matching in found:
+        if len(chosen) == most:
+            break
+        if all(distances[matching.landings, other.landings].mean() > _APART for other in chosen):
+            chosen.append(matching)
+    return [PartPlacement(matching.misfit, carrier.everywhere(matching)) for matching in chosen]
+
+
+def _different(matchings: NDArray[np.int64], distances: NDArray[np.float64], apart: float) -> list[NDArray[np.int64]]:
+    """Leave out matchings (r, m) that are nearly the same as an earlier one, and all beyond `_CARRIED`."""
+    kept: list[NDArray[np.int64]] = []
+    for images in matchings:
+        if len(kept) == _CARRIED:
+            break
+        if all(distances[images, other].mean() > apart for other in kept):
+            kept.append(images)
+    return kept
+
+
+class _Carrier:
+    """Matches the first samples of the part, and carries matchings over to the others."""
+
+    def __init__(self, whole: Shape, part: Shape) -> None:
+        offered = np.arange(min(_OFFERED, whole.sample_count))
+        matched = np.arange(min(_MATCHED, part.sample_count, len(offered)))
+        self._first, self._second = np.triu_indices(len(matched), 1)
+        self._whole, self._part = whole.sample_distances, part.sample_distances[:, : len(matched)]
+        self._part_sides = signed_areas(part.directions[:, matched])
+        self._sides = np.zeros((len(self._whole), len(offered), len(offered)))
+        first, second = np.triu_indices(len(offered), 1)
+        self._sides[:, first, second] = signed_areas(whole.directions[:, offered])
+        self._sides[:, second, first] = -self._sides[:, first, second]
+
+    def matchings(self, unit: float) -> NDArray[np.int64]:
+        """Match samples of the part, whose distances are in `unit` of those of the whole: images (r, m)."""
+        m, n = self._part.shape[1], self._sides.shape[1]
+        own = unit * self._part[:m]
+        return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), kept=_WIDTH, width=_WIDTH).images
+
+    def carried(self, images: NDArray[np.int64], unit: float) -> _Matching:
+        """Carry a matching over to the scouts."""
+        rows = self._part_rows()[:_SCOUTS].astype(np.float32)
+        there = self._whole_rows(images, unit).astype(np.float32)
+        squares = np.square(there).sum(axis=1) - 2 * rows @ there.T + np.square(rows).sum(axis=1)[:, None]
+        return _Matching(images, unit, float(squares.min(axis=1).mean()), squares.argmin(axis=1))
+
+    def everywhere(self, matching: _Matching) -> NDArray[np.int64]:
+        """Carry a matching over to all samples of the part: numbers of samples of the whole."""
+        tree = cKDTree(self._whole_rows(matching.images, matching.unit))
+        found: NDArray[np.int64] = tree.query(self._part_rows())[1]
+        return found
+
+    def _part_rows(self) -> NDArray[np.float64]:
+        return self._rows(self._part, self._part_sides)
+
+    def _whole_rows(self, images: NDArray[np.int64], unit: float) -> NDArray[np.float64]:
+        sides = self._sides[:, images[self._first], images[self._second]]
+        return self._rows(self._whole[:, images] / unit, sides)
+
+    def _rows(self, distances: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Describe points by their distances (k, m) to what is matched, and by the signed areas (k, m (m - 1) / 2)."""
+        columns = distances / np.sqrt(distances.shape[1]), _SIGNED_WEIGHT * sides / np.sqrt(max(sides.shape[1], 1))
+        return np.concatenate(columns, axis=1)

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Match surfaces one of which shows only a part of what the other does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .covered_parts import continued, covered_parts_steps
+from .errors import MatchError
+from .progress import within
+from .quality import of_covered_part
+from .shape import Shape
+from .shape_matching import matched_steps
+from .surface_map import SurfaceMap
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from .progress import Steps
+    from .result import MatchResult
+    from .shape_matching import MatchTask
+
+__all__ = ["has_border", "part_matched_steps"]
+
+_LEAST_BORDER = 0.1
+"""Length of its border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
+
+_COVERED = 0.98
+"""Part of either surface with a partner from which on nothing is missing that matters."""
+
+_LIKE = 20.0
+"""Likeness from which on two surfaces that cover each other are compared in the right size."""
+
+_PLAUSIBLE = 15.5
+"""Likeness from which on a match with a piece may be right, so that it can be better than that of all."""
+
+_CLEAR = 25.0
+"""The same from which on no other piece is tried."""
+
+_FAILED, _SAVED = 12.5, 20.0
+"""Likeness below which closed surfaces are not matched rightly as they are, and from which on a piece of one is the
+reason why: of a body, some piece is always more like a ball than all of it."""
+
+_WHOLE = 0.985
+"""Part of a surface from which on what is covered of it is all."""
+
+_MISSED = 15.0
+"""How much likeness all of a part without a partner would outweigh."""
+
+_MOST = 2
+"""Pieces of the surfaces that the match is done with at most, to choose between them."""
+
+_ROUNDS = 2
+"""How often: a piece that turns out too small grows."""
+
+_FOUND = 0.45
+"""Part of the work after which these pieces are known."""
+
+
+def has_border(shape: Shape) -> bool:
+    """Say whether something may have been cut off a surface, which is open there."""
+    mesh = shape.mesh
+    ends = mesh.vertices[mesh.boundary_edges]
+    return float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()) > _LEAST_BORDER * shape.scale
+
+
+def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
+    """Match anew with only that of one surface which the other shows, if something seems to be missing.
+
+    Parameters
+    ----------
+    result : MatchResult
+        What comes of the surfaces as they are.
+    x, y : Shape
+        The source and the target.
+    task : MatchTask
+        What is wanted.
+
+    Returns
+    -------
+    MatchResult
+        The more credible one.  If that is the new one, what was left out follows what is around it, without any
+        confidence, and counts as not covered in `quality`.
+    """
+    quality, there, back = result.quality, result.source_to_target, result.target_to_source
+    if quality is None or there is None or back is None:
+        return result
+    parts = has_border(x), has_border(y)
+    if not any(parts) and not _is_below(quality.likeness, _FAILED):
+        return result
+    if not _is_below(quality.likeness, _LIKE) and min(quality.coverage, quality.source_coverage) >= _COVERED:
+        return result
+    # What was cut off may have been closed; then nothing says which of them is the part.
+    ways = [(x, y, (there, back))] if parts[1] or not any(parts) else []
+    ways += [(y, x, (back, there))] if parts[0] or not any(parts) else []
+    least = _PLAUSIBLE if any(parts) else _SAVED
+    found = []
+    for number, (whole, part, maps) in enumerate(ways):
+        begin, end = (_FOUND * (number + i) / len(ways) for i in (0, 1))
+        steps = covered_parts_steps(whole, part, maps)
+        pieces = yield from within(steps, begin, end, "Looking for missing parts")
+        found += [(piece, whole is x) for piece in pieces]
+    found.sort(key=lambda pair: pair[0].score)
+    task.clock.lap("missing parts")
+    rounds = _MOST * _ROUNDS
+    for number, (piece, of_source) in enumerate(found[:_MOST]):
+        way = _Way(x, y, of_source, task)
+        covered = piece.covered
+        for again in range(_ROUNDS):
+            begin, end = (_FOUND + (1 - _FOUND) * (number * _ROUNDS + again + i) / rounds for i in (0, 1))
+            other = yield from within(way.matched_steps(covered), begin, end)
+            if other is None or not _is_better(other, result, least, of_source=of_source):
+                break
+            # Its notes would speak of openings where a piece was cut out.
+            result = replace(other, notes=result.notes)
+            more = way.continued(other, covered)
+            if more is None:
+                break
+            covered = covered | more
+        if result.quality is not None and not _is_below(result.quality.likeness, _CLEAR):
+            break
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """Matches only a piece of the source with the target, or the source with only a piece of the target."""
+
+    x: Shape
+    y: Shape
+    of_source: bool
+    task: MatchTask
+
+    def matched_steps(self, piece: NDArray[np.bool_]) -> Steps[MatchResult | None]:
+        """Match with some vertices (n,) of a surface only; None if these are all of it, or cannot be matched."""
+        whole = self.x if self.of_source else self.y
+        covered = whole.surface.spread(piece.astype(np.float64), 1.0) > 1 / 2
+        areas = whole.original.vertex_areas
+        share = float(areas @ covered / areas.sum())
+        if share > _WHOLE or _misses(covered, self.task.landmarks, 0 if self.of_source else 1):
+            return None
+        try:
+            cut = yield from within(_cut_steps(whole, covered, "source" if self.of_source else "target"), 0.0, 0.1)
+            shapes = (cut, self.y) if self.of_source else (self.x, cut)
+            result = yield from within(matched_steps(*shapes, self.task), 0.1, 1.0)
+        except MatchError:  # what is left is too small for so many points
+            return None
+        return _of_part(result, covered, share, of_source=self.of_source)
+
+    def continued(self, result: MatchResult, piece: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
+        """Tell where a surface goes on beyond a piece (n,), by what lacks a partner there; None if nothing does."""
+        whole, part = (self.x, self.y) if self.of_source else (self.y, self.x)
+        back = result.target_to_source if self.of_source else result.source_to_target
+        if back is None or result.quality is None:
+            return None
+        coverage = result.quality.coverage if self.of_source else result.quality.source_coverage
+        if coverage >= _COVERED:
+            return None
+        alone = back.confidence[part.vertices] == 0
+        unit = np.sqrt(float(whole.mesh.vertex_areas @ piece) / part.mesh.area)
+        return continued(whole, part, back.positions[part.vertices], alone, unit)
+
+
+def _misses(covered: NDArray[np.bool_], landmarks: ArrayLike | None, column: int) -> bool:
+    """Say whether a landmark lies outside of what is covered, (n,)."""
+    return landmarks is not None and not covered[np.reshape(landmarks, (-1, 2))[:, column]].all()
+
+
+def _cut_steps(shape: Shape, covered: NDArray[np.bool_], name: str) -> Steps[Shape]:
+    """Make the shape of what is covered of a mesh, (n,), without what was left out before."""
+    mesh, kept = shape.original, shape.surface.kept_triangles
+    excluded = ~covered
+    if len(kept) < mesh.triangle_count:
+        used = np.zeros(mesh.vertex_count, bool)
+        used[mesh.triangles[kept]] = True
+        excluded |= ~used
+    return (yield from Shape.steps(mesh, name, excluded=excluded))
+
+
+def _is_below(likeness: float | None, least: float) -> bool:
+    """Say whether surfaces are less alike than that; with landmarks, that is not known."""
+    return likeness is not None and likeness < least
+
+
+def _is_better(other: MatchResult, result: MatchResult, least: float, *, of_source: bool) -> bool:
+    """Say whether a match with less of a surface is more credible than that with more of it, and credible enough."""
+    if other.quality is not None and _is_below(other.quality.likeness, least):
+        return False
+    return _credibility(other, of_source=of_source) > _credibility(result, of_source=of_source)
+
+
+def _credibility(result: MatchResult, *, of_source: bool) -> float:
+    """Compare matches: larger is more credible; all of what may be a part should have a partner."""
+    quality = result.quality
+    if quality is None:
+        return -np.inf
+    missed = 1 - (quality.coverage if of_source else quality.source_coverage)
+    if quality.likeness is None:  # landmarks say which map it is
+        return quality.confidence - missed
+    return quality.likeness - _MISSED * missed
+
+
+def _of_part(result: MatchResult, covered: NDArray[np.bool_], share: float, *, of_source: bool) -> MatchResult:
+    """Say of a match with less of a surface what it does not cover."""
+    there, back, quality = result.source_to_target, result.target_to_source, result.quality
+    if there is None or back is None or quality is None:
+        return result
+    quality = of_covered_part(quality, share, of_source=of_source)
+    if of_source:
+        there = SurfaceMap(there.points, there.confidence * covered, there.image_vertex_count)
+    else:
+        back = SurfaceMap(back.points, back.confidence * covered, back.image_vertex_count)
+    return replace(result, source_to_target=there, target_to_source=back, quality=quality)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of a body another one shows, and how a piece of it grows to that."""
+
+import numpy as np
+import pytest
+
+from engine import Shape, SurfaceMap, SurfacePoints, TriangleMesh
+from engine.covered_parts import continued, covered_parts_steps
+from engine.progress import run
+from tests.shapes import compacted, creature, cylinder
+
+FRONT = 0.0
+
+
+def part_of(vertices, triangles, rest, kept):
+    """Shape of the triangles all of whose places at rest (m, 3, 3) are kept, and its places at rest."""
+    both, faces = compacted(np.hstack([vertices, rest]), triangles[kept(rest[triangles])])
+    return Shape(TriangleMesh(both[:, :3], faces)), both[:, 3:]
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    """The creature at rest, and its front half in another pose and meshing."""
+    vertices, triangles, rest = creature(0.0, 9)
+    part = part_of(*creature(0.8, 9, turn=0.7), lambda corners: corners[:, :, 0].min(axis=1) > FRONT)
+    return (Shape(TriangleMesh(vertices, triangles)), rest), part
+
+
+def to_anywhere(shape, image):
+    """Map everything to one place, as if nothing were known."""
+    points = SurfacePoints.at_vertices(image.mesh, np.zeros(shape.mesh.vertex_count, np.int64))
+    return SurfaceMap(points, np.ones(len(points)), image.mesh.vertex_count)
+
+
+def test_what_the_part_shows_is_found_without_a_hint(bodies):
+    (whole, rest), (part, _) = bodies
+    found = run(covered_parts_steps(whole, part, (to_anywhere(whole, part), to_anywhere(part, whole))))
+    assert [piece.score for piece in found] == sorted(piece.score for piece in found)
+    areas, true = whole.mesh.vertex_areas, rest[:, 0] > FRONT
+    covered = found[0].covered
+    assert areas @ (covered & true) > 0.85 * (areas @ (covered | true))
+
+
+def test_a_part_too_small_to_tell_is_not_looked_for():
+    body = Shape(TriangleMesh(*creature(0.0, 9)[:2]))
+    scrap = Shape(TriangleMesh(*cylinder(8, 6, 0.1, 0.2)))
+    maps = to_anywhere(body, scrap), to_anywhere(scrap, body)
+    assert isinstance(run(covered_parts_steps(body, scrap, maps)), list)
+
+
+def test_a_piece_grows_along_the_surface_by_what_overhangs():
+    """Of a tube, the lower half lies; the upper one hangs on it, and lies anywhere."""
+    tube = Shape(TriangleMesh(*cylinder(24, 40, 0.2, 2.0)))
+    heights = tube.mesh.vertices[:, 2] - tube.mesh.vertices[:, 2].min()
+    overhanging = heights > 1.0
+    places = tube.mesh.vertices.copy()
+    places[overhanging] = tube.mesh.vertices[heights.argmin()]
+    grown = continued(tube, tube, places, overhanging, 1.0)
+    assert grown[overhanging & (heights < 1.9)].all()
+    half = continued(tube, tube, places, overhanging, 0.5)
+    assert not half[heights > 1.7].any()
+    assert half[overhanging & (heights < 1.4)].all()
+
+
+@pytest.mark.parametrize("all_of_it", [False, True])
+def test_what_does_not_overhang_or_is_nowhere_grows_nothing(all_of_it):
+    tube = Shape(TriangleMesh(*cylinder(12, 10)))
+    overhanging = np.full(tube.mesh.vertex_count, all_of_it)
+    assert not continued(tube, tube, tube.mesh.vertices, overhanging, 1.0).any()

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where on a body its part may belong."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from engine import Shape, TriangleMesh
+from engine.part_search import part_placements
+from engine.progress import run
+from tests.shapes import compacted, creature
+
+
+def sampled(vertices, triangles):
+    shape = Shape(TriangleMesh(vertices, triangles))
+    run(shape.sample_steps(200, 64))
+    return shape.limited(200, 64)
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    """The creature at rest, and its front half in another pose and meshing, each with its places at rest."""
+    vertices, triangles, rest = creature(0.0, 9)
+    whole = sampled(vertices, triangles), rest
+    vertices, triangles, rest = creature(0.8, 9, turn=0.7)
+    vertices, triangles = compacted(np.hstack([vertices, rest]), triangles[rest[triangles, 0].min(axis=1) > 0])
+    return whole, (sampled(vertices[:, :3], triangles), vertices[:, 3:])
+
+
+def errors(whole, part, images):
+    """How far each sample of the part is, at rest, from the sample of the whole that it goes to."""
+    (shape, rest), (other, other_rest) = whole, part
+    return np.linalg.norm(rest[shape.samples[images]] - other_rest[other.samples], axis=1)
+
+
+def test_the_best_way_is_where_the_part_belongs(bodies):
+    whole, part = bodies
+    best = part_placements(whole[0], part[0], 4)[0]
+    spacing = cKDTree(whole[1][whole[0].samples]).query(part[1])[0].mean()
+    assert np.median(errors(whole, part, best.images)) < 3 * spacing
+
+
+def test_ways_differ_and_come_by_growing_misfit(bodies):
+    whole, part = bodies
+    found = part_placements(whole[0], part[0], 6)
+    assert len(found) == 6
+    misfits = [placement.misfit for placement in found]
+    assert misfits == sorted(misfits)
+    distances = whole[0].sample_distances
+    for number, placement in enumerate(found):
+        for other in found[:number]:
+            assert distances[placement.images, other.images].mean() > 0.05
+
+
+def test_size_and_place_of_either_do_not_matter(bodies):
+    whole, part = bodies
+    expected = part_placements(whole[0], part[0], 1)[0]
+    mesh = part[0].mesh
+    moved = sampled(1000 * mesh.vertices + [5.0, -3.0, 100.0], mesh.triangles)
+    found = part_placements(whole[0], moved, 1)[0]
+    np.testing.assert_array_equal(found.images, expected.images)
+    assert found.misfit == pytest.approx(expected.misfit, rel=1e-4)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Matches of bodies with parts of others: busts, halves, and what a scanner did not see."""
+
+import numpy as np
+import pytest
+
+from engine import MatchSettings, Shape, TriangleMesh, match, match_steps
+from engine.partial_match import has_border
+from tests.shapes import compacted, creature, icosphere, permuted, rotation
+
+QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
+
+
+def cut(vertices, triangles, rest, kept):
+    """What is left of a mesh of which only triangles with all of their places at rest kept are there."""
+    both, faces = compacted(np.hstack([vertices, rest]), triangles[kept(rest[triangles])])
+    return TriangleMesh(both[:, :3], faces), both[:, 3:]
+
+
+def front(corners):
+    """Head, neck, forelegs, and less than half of the trunk."""
+    return corners[:, :, 0].min(axis=1) > 0.05
+
+
+@pytest.fixture(scope="module")
+def whole():
+    vertices, triangles, rest = creature(0.0, 10)
+    return TriangleMesh(vertices, triangles), rest
+
+
+@pytest.fixture(scope="module")
+def half():
+    return cut(*creature(0.8, 10, turn=0.7), front)
+
+
+@pytest.fixture(scope="module")
+def result(whole, half):
+    return match(whole[0], half[0], QUICK)
+
+
+def errors(found, rest, image_rest):
+    """Distance at rest of each vertex from its image, over the length of the body."""
+    images = np.einsum("kc,kcd->kd", found.barycentric, image_rest[found.corners])
+    return np.linalg.norm(images - rest, axis=1) / 2.4
+
+
+def test_a_whole_body_is_matched_with_the_front_half_of_one(result, whole, half):
+    assert np.mean(errors(result.target_to_source, half[1], whole[1])) < 0.02
+    shown = whole[1][:, 0] > 0.15
+    assert np.mean(errors(result.source_to_target, whole[1], half[1])[shown]) < 0.02
+
+
+def test_what_the_half_lacks_is_said_to_have_no_partner(result, whole):
+    lacking = whole[1][:, 0] < -0.15
+    assert (result.source_to_target.confidence[lacking] == 0).mean() > 0.95
+    assert np.mean(result.source_to_target.confidence[whole[1][:, 0] > 0.15]) > 0.5
+    areas = whole[0].vertex_areas
+    share = areas @ (whole[1][:, 0] > 0.05) / areas.sum()
+    assert result.quality.source_coverage == pytest.approx(share, abs=0.1)
+    assert result.quality.coverage > 0.9
+    assert "of the source has a partner" in result.quality.sentence
+
+
+def test_every_vertex_has_an_image_and_matched_points_lie_on_what_both_show(result, whole, half):
+    assert len(result.source_to_target) == whole[0].vertex_count
+    assert len(result.target_to_source) == half[0].vertex_count
+    assert np.isfinite(result.source_to_target.positions).all()
+    assert (result.source_points.positions[:, 0] > -0.2).all()
+
+
+def test_the_other_way_round_the_target_is_cut_down(whole, half):
+    result = match(half[0], whole[0], QUICK)
+    assert np.mean(errors(result.source_to_target, half[1], whole[1])) < 0.02
+    assert result.quality.coverage < 0.7
+    assert "of the target is reached" in result.quality.sentence
+    assert (result.target_to_source.confidence[whole[1][:, 0] < -0.15] == 0).mean() > 0.95
+
+
+def test_size_rotation_and_vertex_order_of_the_part_do_not_matter(result, whole, half):
+    vertices, triangles, new = permuted(half[0].vertices, half[0].triangles, seed=4)
+    moved = 30 * vertices @ rotation([1.0, 2.0, 0.5], 2.0).T + [3.0, 2.0, -1.0]
+    other = match(whole[0], TriangleMesh(moved, triangles), QUICK)
+    rest = np.empty_like(half[1])
+    rest[new] = half[1]
+    expected = np.mean(errors(result.target_to_source, half[1], whole[1]))
+    assert np.mean(errors(other.target_to_source, rest, whole[1])) == pytest.approx(expected, abs=0.003)
+
+
+def test_a_landmark_holds_and_what_was_left_out_stays_so(whole, half):
+    """The tail is left out by the user, the rear half by the match."""
+    nose, nose_of_half = (int(rest[:, 0].argmax()) for rest in (whole[1], half[1]))
+    tail = whole[1][:, 0] < -1.0
+    result = match(whole[0], half[0], QUICK, landmarks=[[nose, nose_of_half]], excluded=(tail, None))
+    assert result.source_to_target.nearest_vertices[nose] == nose_of_half
+    assert np.mean(errors(result.target_to_source, half[1], whole[1])) < 0.02
+
+
+def test_a_shape_that_was_prepared_before_can_be_cut_down(result, whole, half):
+    again = match(Shape(whole[0]), Shape(half[0]), QUICK)
+    np.testing.assert_array_equal(again.source_to_target.triangles, result.source_to_target.triangles)
+    np.testing.assert_array_equal(again.target_to_source.barycentric, result.target_to_source.barycentric)
+
+
+def test_progress_rises_also_while_parts_are_looked_for(whole, half):
+    reports = list(match_steps(whole[0], half[0], QUICK))
+    fractions = [report.fraction for report in reports]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1
+    assert "Looking for missing parts" in {report.label for report in reports}
+
+
+def test_only_open_surfaces_have_a_border(whole, half):
+    assert not has_border(Shape(whole[0]))
+    assert has_border(Shape(half[0]))
+    vertices, triangles = icosphere(8)
+    assert not has_border(Shape(TriangleMesh(vertices, triangles[1:])))
