@@ -15,6 +15,7 @@ from .landmarks import placed_at_vertices
 from .laplacian import laplace_beltrami
 from .lifting import lift_steps
 from .map_hypotheses import LandmarkStart
+from .pieces_only import piece_of, with_pieces_only
 from .pinning import pinned
 from .progress import Progress, Steps, run, within
 from .proxy import Proxy
@@ -76,9 +77,11 @@ def densify(
     target: TriangleMesh | Shape,
     source_points: SurfacePoints,
     target_points: SurfacePoints,
+    *,
+    maps: tuple[SurfaceMap, SurfaceMap] | None = None,
 ) -> DenseMatch:
     """Extend a sparse correspondence to all vertices; see `densify_steps`."""
-    return run(densify_steps(source, target, source_points, target_points))
+    return run(densify_steps(source, target, source_points, target_points, maps=maps))
 
 
 def densify_steps(
@@ -86,6 +89,8 @@ def densify_steps(
     target: TriangleMesh | Shape,
     source_points: SurfacePoints,
     target_points: SurfacePoints,
+    *,
+    maps: tuple[SurfaceMap, SurfaceMap] | None = None,
 ) -> Steps[DenseMatch]:
     """Extend a sparse correspondence to all vertices, in steps.
 
@@ -99,6 +104,9 @@ def densify_steps(
         found in one direction, which is the other one as well.
     source_points, target_points : SurfacePoints
         Corresponding points (k,) on them: some twenty, spread over the surface, are needed at least.
+    maps : pair of SurfaceMap, optional
+        Of two meshes, maps there and back by another correspondence: what has no partner by these has none by this
+        one, if that is much.
 
     Returns
     -------
@@ -110,8 +118,10 @@ def densify_steps(
     MatchError
         If a point does not lie on the largest part of its mesh.
     """
-    x = yield from within(_shape_steps(source, "source"), 0.0, 0.1)
-    y = yield from within(_shape_steps(target, "target"), 0.1, 0.2)
+    there, back = maps or (None, None)
+    covered = _piece_of(source, there, source_points), _piece_of(target, back, target_points)
+    x = yield from within(_shape_steps(source, "source", covered[0]), 0.0, 0.1)
+    y = yield from within(_shape_steps(target, "target", covered[1]), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
     yield from within(x.sample_steps(_SAMPLES, MEASURED), 0.2, 0.28)
@@ -127,14 +137,21 @@ def densify_steps(
     dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
     if mirrored:
         dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))
-    return dense
+    return with_pieces_only(dense, (x.original, y.original), covered)
 
 
-def _shape_steps(surface: TriangleMesh | Shape, name: str) -> Steps[Shape]:
-    """Prepare a mesh, or return a shape as it is."""
+def _piece_of(
+    surface: TriangleMesh | Shape, found: SurfaceMap | None, points: SurfacePoints
+) -> NDArray[np.bool_] | None:
+    """Tell which vertices of a mesh have a partner by an earlier map; a shape is taken as it is."""
+    return None if isinstance(surface, Shape) else piece_of(surface, found, points.nearest_vertices)
+
+
+def _shape_steps(surface: TriangleMesh | Shape, name: str, covered: NDArray[np.bool_] | None) -> Steps[Shape]:
+    """Prepare what is covered of a mesh, or return a shape as it is."""
     if isinstance(surface, Shape):
         return surface
-    return (yield from Shape.steps(surface, name))
+    return (yield from Shape.steps(surface, name, excluded=None if covered is None else ~covered))
 
 
 def _rows(shape: Shape, points: SurfacePoints) -> NDArray[np.float64]:

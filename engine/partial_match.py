@@ -10,11 +10,10 @@ import numpy as np
 
 from .covered_parts import continued, covered_parts_steps
 from .errors import MatchError
+from .pieces_only import with_piece_only
 from .progress import within
-from .quality import of_covered_part
 from .shape import Shape
 from .shape_matching import matched_steps
-from .surface_map import SurfaceMap
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -148,7 +147,7 @@ class _Way:
             result = yield from within(matched_steps(*shapes, self.task), 0.1, 1.0)
         except MatchError:  # what is left is too small for so many points
             return None
-        return _of_part(result, covered, share, of_source=self.of_source)
+        return with_piece_only(result, covered, share, of_source=self.of_source)
 
     def continued(self, result: MatchResult, piece: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
         """Tell where a surface goes on beyond a piece (n,), by what lacks a partner there; None if nothing does."""
@@ -201,16 +200,3 @@ def _credibility(result: MatchResult, *, of_source: bool) -> float:
     if quality.likeness is None:  # landmarks say which map it is
         return quality.confidence - missed
     return quality.likeness - _MISSED * missed
-
-
-def _of_part(result: MatchResult, covered: NDArray[np.bool_], share: float, *, of_source: bool) -> MatchResult:
-    """Say of a match with less of a surface what it does not cover."""
-    there, back, quality = result.source_to_target, result.target_to_source, result.quality
-    if there is None or back is None or quality is None:
-        return result
-    quality = of_covered_part(quality, share, of_source=of_source)
-    if of_source:
-        there = SurfaceMap(there.points, there.confidence * covered, there.image_vertex_count)
-    else:
-        back = SurfaceMap(back.points, back.confidence * covered, back.image_vertex_count)
-    return replace(result, source_to_target=there, target_to_source=back, quality=quality)

@@ -12,6 +12,7 @@ from .dense_map import EIGENPAIRS, RegisteredPair
 from .dense_match import dense_match_steps
 from .errors import MatchError
 from .landmarks import locate_landmarks
+from .pieces_only import piece_of, with_pieces_only
 from .progress import run, within
 from .reflection import reflected_mesh
 from .registration import FINE, Stage, register_steps, restarted_steps
@@ -49,9 +50,12 @@ def refine_map(
     source_to_target: SurfaceMap,
     landmarks: ArrayLike,
     excluded: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None] = (None, None),
+    *,
+    target_to_source: SurfaceMap | None = None,
 ) -> DenseMatch:
     """Make a dense map better around landmarks; see `refine_map_steps`."""
-    return run(refine_map_steps(source, target, source_to_target, landmarks, excluded))
+    steps = refine_map_steps(source, target, source_to_target, landmarks, excluded, target_to_source=target_to_source)
+    return run(steps)
 
 
 def refine_map_steps(
@@ -60,6 +64,8 @@ def refine_map_steps(
     source_to_target: SurfaceMap,
     landmarks: ArrayLike,
     excluded: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None] = (None, None),
+    *,
+    target_to_source: SurfaceMap | None = None,
 ) -> Steps[DenseMatch]:
     """Make a dense map better around landmarks, in steps.
 
@@ -78,6 +84,8 @@ def refine_map_steps(
         Pairs of a vertex of the source and one of the target, one at least.
     excluded : pair of (n,) array of bool, optional
         Vertices of the source and of the target to leave out.
+    target_to_source : SurfaceMap, optional
+        The map back.  What has no partner by either map, if that is much and has no landmark, is left out as well.
 
     Returns
     -------
@@ -90,10 +98,12 @@ def refine_map_steps(
         If there are no landmarks, or they cannot be used.
     """
     mirrored = source_to_target.orientation(source, target) < 0
-    x = yield from within(
-        Shape.steps(reflected_mesh(source) if mirrored else source, "source", excluded=excluded[0]), 0.0, 0.05
-    )
-    y = yield from within(Shape.steps(target, "target", excluded=excluded[1]), 0.05, 0.1)
+    ends = _ends(landmarks)
+    pieces = piece_of(source, source_to_target, ends[0]), piece_of(target, target_to_source, ends[1])
+    first, second = (_left_out(mask, piece) for mask, piece in zip(excluded, pieces, strict=True))
+    seen = reflected_mesh(source) if mirrored else source
+    x = yield from within(Shape.steps(seen, "source", excluded=first), 0.0, 0.05)
+    y = yield from within(Shape.steps(target, "target", excluded=second), 0.05, 0.1)
     known = locate_landmarks(x, y, landmarks, np.size(landmarks))
     if known is None:
         raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
@@ -111,7 +121,24 @@ def refine_map_steps(
     steps = restarted_steps(fixed, moving, _functions(y), matches, stages=(FINE, _CLOSE), ties=ties)
     back = yield from within(steps, 0.5, 0.75)
     pair = RegisteredPair(x, y, moving, fixed, there, back, (), None, known, mirrored)
-    return (yield from within(dense_match_steps(pair, _BRIEF), 0.75, 1.0))
+    dense = yield from within(dense_match_steps(pair, _BRIEF), 0.75, 1.0)
+    return with_pieces_only(dense, (source, target), pieces)
+
+
+def _ends(landmarks: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Take pairs of vertices apart; what is no such array has none, and is refused later."""
+    pairs = np.asarray(landmarks)
+    if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.issubdtype(pairs.dtype, np.integer):
+        pairs = np.empty((0, 2), np.int64)
+    first, second = pairs.astype(np.int64).T
+    return first, second
+
+
+def _left_out(excluded: NDArray[np.bool_] | None, piece: NDArray[np.bool_] | None) -> NDArray[np.bool_] | None:
+    """Leave out what is excluded, and what is beyond a piece, (n,) each."""
+    if piece is None:
+        return excluded
+    return ~piece if excluded is None else excluded | ~piece
 
 
 def placed_by_map(

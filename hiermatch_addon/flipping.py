@@ -94,11 +94,14 @@ class FlipJob(RewritingJob):
         stored, meshes, maps, start = self._stored, self._meshes, self._other_maps, 0.0
         if maps is None:
             points = restored(stored, meshes)
-            dense = yield from within(densify_steps(*meshes, points.source_points, points.target_points), 0.0, _MAPPED)
+            shown = None if self._maps is None else self._maps.between(*meshes)
+            known = None if shown is None else (shown.source_to_target, shown.target_to_source)
+            steps = densify_steps(*meshes, points.source_points, points.target_points, maps=known)
+            dense = yield from within(steps, 0.0, _MAPPED)
             maps, start = StoredMaps.of(dense.source_to_target, dense.target_to_source), _MAPPED
             self._stored = following(stored, meshes, dense, proven=stored.answer.proven)
-        steps = mapped_contents_steps(self._stored, meshes, self.prefix, maps, self._maps)
-        return (yield from within(steps, start, 1.0))
+        writing = mapped_contents_steps(self._stored, meshes, self.prefix, maps, self._maps)
+        return (yield from within(writing, start, 1.0))
 
     def _measured_steps(self) -> Steps[tuple[Content, Content]]:
         """Prepare the answer from the distances between its points and the vertices."""

@@ -83,7 +83,8 @@ class RefineJob(RewritingJob):
             read_mesh(first.obj, depsgraph, use_modifiers=use_modifiers),
             read_mesh(second.obj, depsgraph, use_modifiers=use_modifiers),
         )
-        self._map = maps.between(*self._meshes).source_to_target
+        between = maps.between(*self._meshes)
+        self._map, self._map_back = between.source_to_target, between.target_to_source
         self._excluded = (excluded_vertices(first.obj, exclude[0]), excluded_vertices(second.obj, exclude[1]))
         at, to = self._landmarks.T
         apart = np.linalg.norm(self._meshes[1].vertices[to] - self._map.positions[at], axis=1)
@@ -98,7 +99,9 @@ class RefineJob(RewritingJob):
     def _all_steps(self) -> Steps[None]:
         """Refine the map, and let the matched points follow it."""
         source, target = self._meshes
-        steps = refine_map_steps(source, target, self._map, self._landmarks, self._excluded)
+        steps = refine_map_steps(
+            source, target, self._map, self._landmarks, self._excluded, target_to_source=self._map_back
+        )
         dense = yield from within(steps, 0.0, 0.9)
         yield Progress(0.9, "Measuring the matched points")
         self._stored = following(self._stored, self._meshes, dense, proven=False)

@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
-from engine import MatchSettings, Shape, TriangleMesh, match, match_steps
+from engine import MatchSettings, Shape, TriangleMesh, densify, match, match_steps
 from engine.partial_match import has_border
+from engine.refinement import refine_map
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -114,3 +115,20 @@ def test_only_open_surfaces_have_a_border(whole, half):
     assert has_border(Shape(half[0]))
     vertices, triangles = icosphere(8)
     assert not has_border(Shape(TriangleMesh(vertices, triangles[1:])))
+
+
+def test_refining_keeps_to_what_the_half_shows(result, whole, half):
+    nose, nose_of_half = (int(rest[:, 0].argmax()) for rest in (whole[1], half[1]))
+    maps = result.source_to_target, result.target_to_source
+    refined = refine_map(whole[0], half[0], maps[0], [[nose, nose_of_half]], target_to_source=maps[1])
+    assert refined.source_to_target.nearest_vertices[nose] == nose_of_half
+    assert np.mean(errors(refined.target_to_source, half[1], whole[1])) < 0.02
+    assert refined.quality.source_coverage == pytest.approx(result.quality.source_coverage, abs=0.05)
+    assert (refined.source_to_target.confidence[whole[1][:, 0] < -0.15] == 0).mean() > 0.95
+
+
+def test_another_correspondence_is_extended_over_what_the_half_shows(result, whole, half):
+    maps = result.source_to_target, result.target_to_source
+    dense = densify(whole[0], half[0], result.source_points, result.target_points, maps=maps)
+    assert np.mean(errors(dense.target_to_source, half[1], whole[1])) < 0.02
+    assert (dense.source_to_target.confidence[whole[1][:, 0] < -0.15] == 0).mean() > 0.95
