@@ -18,7 +18,7 @@ from .map_domain import MapDomain
 from .map_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
 from .mesh import TriangleMesh
 from .missing_parts import with_partner
-from .part_search import part_placements
+from .part_search import part_placements_steps
 from .progress import Steps, within
 from .shape import Shape
 from .surface import SurfacePoints
@@ -142,7 +142,8 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     kept = there.confidence[whole.vertices[coarse.vertices]] > 0
     places = back.positions[part.vertices[other.vertices[other.samples]]]
     starts = [(kept, fitter.nearest_samples(places))]
-    placements = part_placements(fitter.whole, fitter.part, _PLACEMENTS)
+    searching = part_placements_steps(fitter.whole, fitter.part, _PLACEMENTS)
+    placements = yield from within(searching, 0.2, 0.25)
     starts += [(fitter.roughly_covered(placement.images), placement.images) for placement in placements]
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
     refined = yield from within(_refined_steps(fitter, fits[:_REFINED]), 0.75, 1.0)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from .map_domain import MapDomain
 
-__all__ = ["LiftedMatchings"]
+__all__ = ["LiftedMatchings", "squared_differences"]
 
 _SIGNED_WEIGHT, _RELATIVE_SIGNED_WEIGHT = 1.0, 2.0
 """Of signed areas beside distances, and beside relative distances."""
@@ -149,8 +149,8 @@ class LiftedMatchings:
         landings = np.empty((len(matchings), len(rows_x[:_SCOUTS])), np.int64)
         for number, images in enumerate(matchings):
             rows_y = self._rows_y(images, sign).astype(np.float32)
-            there = _squared_differences(rows_x[:_SCOUTS], rows_y)
-            back = _squared_differences(rows_y[:_SCOUTS], rows_x)
+            there = squared_differences(rows_x[:_SCOUTS], rows_y)
+            back = squared_differences(rows_y[:_SCOUTS], rows_x)
             landings[number] = there.argmin(axis=1)
             misfits[number] = there.min(axis=1).mean() + back.min(axis=1).mean()
         return misfits, landings
@@ -173,7 +173,20 @@ def _in_means(distances: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.divide(distances, means, out=np.zeros_like(distances, np.float64), where=means > 0)
 
 
-def _squared_differences(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Squared lengths of the differences of rows (k, d) and (n, d), (k, n)."""
+def squared_differences(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Compare all rows of two arrays.
+
+    Parameters
+    ----------
+    first : (k, d) array of float
+        Descriptions of points.
+    second : (n, d) array of float
+        Descriptions of others.
+
+    Returns
+    -------
+    (k, n) array of float
+        Squared lengths of the differences of their rows.
+    """
     squares = np.einsum("nd,nd->n", second, second)
     return squares - 2 * first @ second.T + np.einsum("kd,kd->k", first, first)[:, None]

@@ -10,14 +10,17 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .extremity_search import beam_matchings
+from .lifted_matchings import squared_differences
 from .orientation import signed_areas
+from .progress import Progress
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from .progress import Steps
     from .shape import Shape
 
-__all__ = ["PartPlacement", "part_placements"]
+__all__ = ["PartPlacement", "part_placements_steps"]
 
 _MATCHED, _OFFERED = 6, 80
 """Samples of the part that are matched, and of the whole that they are matched to: the first, which are spread the
@@ -68,7 +71,7 @@ class _Matching(NamedTuple):
     landings: NDArray[np.int64]
 
 
-def part_placements(whole: Shape, part: Shape, most: int) -> list[PartPlacement]:
+def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[PartPlacement]]:
     r"""Find ways to lay a surface onto another that has more, from distances on both.
 
     A few samples of the part are matched to samples of the whole in many ways, at several sizes: in units of its own
@@ -83,6 +86,11 @@ def part_placements(whole: Shape, part: Shape, most: int) -> list[PartPlacement]
     most : int
         How many ways are wanted at most.
 
+    Yields
+    ------
+    Progress
+        After each size.
+
     Returns
     -------
     list of PartPlacement
@@ -96,9 +104,10 @@ def part_placements(whole: Shape, part: Shape, most: int) -> list[PartPlacement]
     distances = whole.sample_distances
     carrier = _Carrier(whole, part)
     found: list[_Matching] = []
-    for unit in np.sqrt(_SHARES):
+    for number, unit in enumerate(np.sqrt(_SHARES)):
         different = _different(carrier.matchings(unit), distances, _ALIKE * unit)
         found += [carrier.carried(images, unit) for images in different]
+        yield Progress((number + 1) / len(_SHARES), "Comparing maps")
     found.sort(key=lambda matching: matching.misfit)
     chosen: list[_Matching] = []
     for matching in found:
@@ -144,7 +153,7 @@ class _Carrier:
         """Carry a matching over to the scouts."""
         rows = self._part_rows()[:_SCOUTS].astype(np.float32)
         there = self._whole_rows(images, unit).astype(np.float32)
-        squares = np.square(there).sum(axis=1) - 2 * rows @ there.T + np.square(rows).sum(axis=1)[:, None]
+        squares = squared_differences(rows, there)
         return _Matching(images, unit, float(squares.min(axis=1).mean()), squares.argmin(axis=1))
 
     def everywhere(self, matching: _Matching) -> NDArray[np.int64]:

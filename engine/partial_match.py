@@ -27,14 +27,15 @@ __all__ = ["has_border", "part_matched_steps"]
 _LEAST_BORDER = 0.1
 """Length of its border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
 
-_COVERED = 0.98
-"""Part of either surface with a partner from which on nothing is missing that matters."""
+_MISSING = 0.95
+"""Part of either surface with a partner from which on what is missing does not matter: the size hardly differs."""
 
-_LIKE = 20.0
-"""Likeness from which on two surfaces that cover each other are compared in the right size."""
+_COVERED = 0.98
+"""Part of the part with a partner from which on a piece is large enough."""
 
 _PLAUSIBLE = 15.5
-"""Likeness from which on a match with a piece may be right, so that it can be better than that of all."""
+"""Likeness below which a match is doubtful: with all of two surfaces, something may be missing; with a piece, it is not
+better than that."""
 
 _CLEAR = 25.0
 """The same from which on no other piece is tried."""
@@ -90,7 +91,7 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
     parts = has_border(x), has_border(y)
     if not any(parts) and not _is_below(quality.likeness, _FAILED):
         return result
-    if not _is_below(quality.likeness, _LIKE) and min(quality.coverage, quality.source_coverage) >= _COVERED:
+    if not _is_below(quality.likeness, _PLAUSIBLE) and min(quality.coverage, quality.source_coverage) >= _MISSING:
         return result
     # What was cut off may have been closed; then nothing says which of them is the part.
     ways = [(x, y, (there, back))] if parts[1] or not any(parts) else []

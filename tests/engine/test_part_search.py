@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
-from engine.part_search import part_placements
+from engine.part_search import part_placements_steps
 from engine.progress import run
 from tests.shapes import compacted, creature
 
@@ -35,14 +35,14 @@ def errors(whole, part, images):
 
 def test_the_best_way_is_where_the_part_belongs(bodies):
     whole, part = bodies
-    best = part_placements(whole[0], part[0], 4)[0]
+    best = run(part_placements_steps(whole[0], part[0], 4))[0]
     spacing = cKDTree(whole[1][whole[0].samples]).query(part[1])[0].mean()
     assert np.median(errors(whole, part, best.images)) < 3 * spacing
 
 
 def test_ways_differ_and_come_by_growing_misfit(bodies):
     whole, part = bodies
-    found = part_placements(whole[0], part[0], 6)
+    found = run(part_placements_steps(whole[0], part[0], 6))
     assert len(found) == 6
     misfits = [placement.misfit for placement in found]
     assert misfits == sorted(misfits)
@@ -54,9 +54,9 @@ def test_ways_differ_and_come_by_growing_misfit(bodies):
 
 def test_size_and_place_of_either_do_not_matter(bodies):
     whole, part = bodies
-    expected = part_placements(whole[0], part[0], 1)[0]
+    expected = run(part_placements_steps(whole[0], part[0], 1))[0]
     mesh = part[0].mesh
     moved = sampled(1000 * mesh.vertices + [5.0, -3.0, 100.0], mesh.triangles)
-    found = part_placements(whole[0], moved, 1)[0]
+    found = run(part_placements_steps(whole[0], moved, 1))[0]
     np.testing.assert_array_equal(found.images, expected.images)
     assert found.misfit == pytest.approx(expected.misfit, rel=1e-4)
