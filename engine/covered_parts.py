@@ -149,9 +149,10 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     refined = yield from within(_refined_steps(fitter, fits[:_REFINED]), 0.75, 1.0)
     found: list[tuple[NDArray[np.bool_], float]] = []
     for fit in sorted([*fits, *refined], key=lambda fit: fit.score):
+        if found and fit.score >= found[0][1] + _CONTESTED:
+            break
         covered = fitter.covered(fit) | fitter.grown(fit)
-        near = not found or fit.score < found[0][1] + _CONTESTED
-        if near and all(fitter.common_part(covered, piece) < _SAME for piece, _ in found):
+        if all(fitter.common_part(covered, piece) < _SAME for piece, _ in found):
             found.append((covered, fit.score))
     return [CoveredPart(coarse.surface.spread(c.astype(np.float64), 0.0) > 1 / 2, score) for c, score in found]
 

@@ -78,7 +78,7 @@ def densify(
     source_points: SurfacePoints,
     target_points: SurfacePoints,
     *,
-    maps: tuple[SurfaceMap, SurfaceMap] | None = None,
+    maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
 ) -> DenseMatch:
     """Extend a sparse correspondence to all vertices; see `densify_steps`."""
     return run(densify_steps(source, target, source_points, target_points, maps=maps))
@@ -90,7 +90,7 @@ def densify_steps(
     source_points: SurfacePoints,
     target_points: SurfacePoints,
     *,
-    maps: tuple[SurfaceMap, SurfaceMap] | None = None,
+    maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
 ) -> Steps[DenseMatch]:
     """Extend a sparse correspondence to all vertices, in steps.
 
@@ -118,8 +118,7 @@ def densify_steps(
     MatchError
         If a point does not lie on the largest part of its mesh.
     """
-    there, back = maps or (None, None)
-    covered = _piece_of(source, there, source_points), _piece_of(target, back, target_points)
+    covered = _piece_of(source, maps[0], source_points), _piece_of(target, maps[1], target_points)
     x = yield from within(_shape_steps(source, "source", covered[0]), 0.0, 0.1)
     y = yield from within(_shape_steps(target, "target", covered[1]), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)

@@ -10,7 +10,7 @@ import numpy as np
 
 from .covered_parts import continued, covered_parts_steps
 from .errors import MatchError
-from .pieces_only import with_piece_only
+from .pieces_only import share_of, with_piece_only
 from .progress import within
 from .shape import Shape
 from .shape_matching import matched_steps
@@ -138,8 +138,7 @@ class _Way:
         """Match with some vertices (n,) of a surface only; None if these are all of it, or cannot be matched."""
         whole = self.x if self.of_source else self.y
         covered = whole.surface.spread(piece.astype(np.float64), 1.0) > 1 / 2
-        areas = whole.original.vertex_areas
-        share = float(areas @ covered / areas.sum())
+        share = share_of(whole.original, covered)
         if share > _WHOLE or _misses(covered, self.task.landmarks, 0 if self.of_source else 1):
             return None
         try:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .result import MatchResult
 
-__all__ = ["piece_of", "with_piece_only", "with_pieces_only"]
+__all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]
 
 Maps = TypeVar("Maps", "DenseMatch", "MatchResult")
 
@@ -76,7 +76,7 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: NDArray[np.in
         return None
     covered = found.confidence > 0
     existing = needed[(needed >= 0) & (needed < len(covered))]
-    if not covered[existing].all() or _share(mesh, covered) > 1 - _LEAST_LEFT:
+    if not covered[existing].all() or share_of(mesh, covered) > 1 - _LEAST_LEFT:
         return None
     return covered
 
@@ -89,9 +89,10 @@ def with_pieces_only(
     """Say of maps what was left out of either mesh, see `with_piece_only`; of None nothing was."""
     for mesh, covered, of_source in zip(meshes, pieces, (True, False), strict=True):
         if covered is not None:
-            maps = with_piece_only(maps, covered, _share(mesh, covered), of_source=of_source)
+            maps = with_piece_only(maps, covered, share_of(mesh, covered), of_source=of_source)
     return maps
 
 
-def _share(mesh: TriangleMesh, covered: NDArray[np.bool_]) -> float:
+def share_of(mesh: TriangleMesh, covered: NDArray[np.bool_]) -> float:
+    """Say what part of the area of a mesh some of its vertices, (n,), have."""
     return float(mesh.vertex_areas @ covered / mesh.vertex_areas.sum())

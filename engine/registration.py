@@ -31,7 +31,6 @@ __all__ = [
     "SOFT",
     "Registration",
     "Stage",
-    "beyond_border",
     "register_steps",
     "restarted_steps",
     "smooth_start",
@@ -397,10 +396,10 @@ def _solved(
     wanted = _at(on_target, target.triangles, target.vertices)
     seen = _at(on_target, target.triangles, target.normals)
     own = weight * source.mass * _agreement(normals, seen)
-    beyond = np.flatnonzero(beyond_border(source, on_target, target))
+    beyond = np.flatnonzero(_beyond(source, on_target, target))
     own[beyond] = 0
     theirs = weight * target.mass * _agreement(_at(on_source, source.triangles, normals), target.normals)
-    theirs[beyond_border(target, on_source, source)] = 0
+    theirs[_beyond(target, on_source, source)] = 0
     equations = source.equations
     solve = equations.solver(own, on_source, theirs, stiffness=elastic.stiffness)
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
@@ -417,17 +416,10 @@ def _solved(
     return posed
 
 
-def beyond_border(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> NDArray[np.bool_]:
+def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> NDArray[np.bool_]:
     """Tell which vertices (n,) of a surface are matched to where the other ends, but not because they end themselves.
 
     What they would be matched to is missing: they are not to be drawn to what is left.
-
-    Parameters
-    ----------
-    surface, other : DeformableSurface
-        The surfaces.
-    matches : FoundPoints
-        For each vertex of the surface, a point of the other.
     """
     if not other.border.any():
         return np.zeros(len(surface.vertices), bool)

@@ -95,7 +95,7 @@ class FlipJob(RewritingJob):
         if maps is None:
             points = restored(stored, meshes)
             shown = None if self._maps is None else self._maps.between(*meshes)
-            known = None if shown is None else (shown.source_to_target, shown.target_to_source)
+            known = (None, None) if shown is None else (shown.source_to_target, shown.target_to_source)
             steps = densify_steps(*meshes, points.source_points, points.target_points, maps=known)
             dense = yield from within(steps, 0.0, _MAPPED)
             maps, start = StoredMaps.of(dense.source_to_target, dense.target_to_source), _MAPPED

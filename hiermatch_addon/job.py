@@ -228,8 +228,7 @@ class MatchJob(SteppedJob):
         if not both or mirrored is None:
             return _Found(result, None)
         points = mirrored.source_points
-        there, back = result.source_to_target, result.target_to_source
-        maps = None if there is None or back is None else (there, back)
+        maps = result.source_to_target, result.target_to_source
         mapping = densify_steps(source, target, points, mirrored.target_points, maps=maps)
         dense = yield from within(mapping, 0.7, 1.0)
         images, distortion = placed_by_map(source, target, points, dense.source_to_target)

@@ -41,11 +41,9 @@ def test_what_the_part_shows_is_found_without_a_hint(bodies):
     assert areas @ (covered & true) > 0.85 * (areas @ (covered | true))
 
 
-def test_a_part_too_small_to_tell_is_not_looked_for():
-    body = Shape(TriangleMesh(*creature(0.0, 9)[:2]))
-    scrap = Shape(TriangleMesh(*cylinder(8, 6, 0.1, 0.2)))
-    maps = to_anywhere(body, scrap), to_anywhere(scrap, body)
-    assert isinstance(run(covered_parts_steps(body, scrap, maps)), list)
+def test_on_a_surface_too_small_to_tell_nothing_is_found():
+    whole, part = (Shape(TriangleMesh(*cylinder(12, along, 0.2, 1.0))) for along in (12, 6))
+    assert run(covered_parts_steps(whole, part, (to_anywhere(whole, part), to_anywhere(part, whole)))) == []
 
 
 def test_a_piece_grows_along_the_surface_by_what_overhangs():

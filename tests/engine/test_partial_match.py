@@ -5,8 +5,11 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, densify, match, match_steps
-from engine.partial_match import has_border
+from engine.covered_parts import CoveredPart
+from engine.partial_match import has_border, part_matched_steps
+from engine.progress import run
 from engine.refinement import refine_map
+from engine.shape_matching import MatchTask, matched_steps
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -108,6 +111,26 @@ def test_progress_rises_also_while_parts_are_looked_for(whole, half):
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1
     assert "Looking for missing parts" in {report.label for report in reports}
+
+
+@pytest.mark.parametrize("useless", ["too small", "without the landmark", "all of it"])
+def test_with_a_piece_that_is_of_no_use_the_first_match_stays(useless, whole, half, monkeypatch):
+    nose, nose_of_half = (int(rest[:, 0].argmax()) for rest in (whole[1], half[1]))
+    task = MatchTask(QUICK, [[nose, nose_of_half]] if useless == "without the landmark" else None)
+    x, y = Shape(whole[0]), Shape(half[0])
+    first = run(matched_steps(x, y, task))
+    height = {"too small": 0.98 * whole[1][:, 0].max(), "all of it": -np.inf}.get(useless, 0.0)
+    covered = whole[1][:, 0] < 0 if useless == "without the landmark" else whole[1][:, 0] >= height
+    asked = []
+
+    def found_steps(*_):
+        asked.append(covered)
+        return [CoveredPart(covered, -100.0)]
+        yield
+
+    monkeypatch.setattr("engine.partial_match.covered_parts_steps", found_steps)
+    assert run(part_matched_steps(first, x, y, task)) is first
+    assert asked
 
 
 def test_only_open_surfaces_have_a_border(whole, half):
