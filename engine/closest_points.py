@@ -64,6 +64,11 @@ class FoundPoints:
     def __len__(self) -> int:
         return len(self.triangles)
 
+    def nearest_vertices(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Tell which corner of its triangle each is nearest to, of the surface's (m, 3): vertices (k,)."""
+        corners: NDArray[np.int64] = triangles[self.triangles, self.barycentric.argmax(axis=1)]
+        return corners
+
 
 def closest_in_triangles(
     points: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]

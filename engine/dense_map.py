@@ -14,7 +14,6 @@ from .limb_sides import exchanged_limbs, repaired_start
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps, unrefined_hypotheses_steps, unrefined_hypothesis
 from .progress import Steps, within
 from .steering import agrees, steered_hypotheses_steps
-from .surface import SurfacePoints
 from .ties import Ties
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .landmarks import LandmarkPlaces, Landmarks
+    from .landmarks import Landmarks
     from .map_hypotheses import LandmarkStart
     from .registration import Registration
     from .shape import Shape
@@ -136,8 +135,11 @@ def registered_pair_steps(
     source, target = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
     yield from within(source.prepare_steps(), 0.4, 0.41)
     yield from within(target.prepare_steps(), 0.41, 0.42)
-    ties = None if landmarks is None else _ties(x, y, target, landmarks.source, landmarks.target)
-    ties_back = None if landmarks is None else _ties(y, x, source, landmarks.target, landmarks.source)
+    ties = ties_back = None
+    if landmarks is not None:
+        here, there, proxies = landmarks.source, landmarks.target, (x.surface.proxy, y.surface.proxy)
+        ties = Ties.of_landmarks(*proxies, target, here, there)
+        ties_back = Ties.of_landmarks(*proxies[::-1], source, there, here)
     # Both surfaces are seen from outside, so the true map keeps the orientation.
     keeping = [h for h in hypotheses if h.orientation > 0] or hypotheses
     plausible = [h for h in keeping if h.score < keeping[0].score + _AMBIGUOUS][:_MOST_CANDIDATES]
@@ -171,14 +173,6 @@ def registered_pair_steps(
     margin = _margin(best, others, fits, () if as_they_are else hypotheses, source.mass)
     registered = closest.registration, closest.reverse, (best, *others)
     return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored)
-
-
-def _ties(x: Shape, y: Shape, target: DeformableSurface, here: LandmarkPlaces, there: LandmarkPlaces) -> Ties:
-    """Tie the landmarks of the source, wherever they are on its surface, to those of the target."""
-    points, vertices = x.surface.proxy.points, here.main
-    at = SurfacePoints.from_barycentric(x.mesh, points.triangles[vertices], points.barycentric[vertices])
-    places = y.surface.proxy.points.positions[there.main]
-    return Ties.at(x.mesh, at, target.in_unit_size(places))
 
 
 def _unrefined_steps(

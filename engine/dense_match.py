@@ -6,34 +6,29 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .followers import follow_steps
 from .functional_maps import nearest_both_ways
 from .handle_cutting import evened_steps
 from .landmarks import placed_at_vertices
-from .laplacian import laplace_beltrami
 from .lifting import lift_steps
 from .map_hypotheses import LandmarkStart
 from .pieces_only import piece_of, with_pieces_only
 from .pinning import pinned
+from .polishing import Polish, finer_surface_steps
 from .progress import Progress, Steps, run, within
-from .proxy import Proxy
 from .quality import MatchQuality, assess_maps, map_confidence, with_pieces_alone
 from .reflection import reflected_mesh, reflected_points
-from .registration import POLISH, Registration, register_steps
+from .registration import POLISH
 from .shape import Shape
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
-from .ties import Ties
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from .closest_points import FoundPoints
     from .dense_map import RegisteredPair
-    from .landmarks import Landmarks
     from .mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
     from .registration import Stage
@@ -46,11 +41,9 @@ _SAMPLES = 512
 MEASURED = 64
 """Of how many of them, at least, the distances are measured, and not estimated."""
 
-_POLISHED = 40_000
-"""Vertices up to which meshes that have a proxy are registered once more in full resolution."""
-
-_STRAINED = 0.05
-"""Over what distance, in sqrt(area), the strain is averaged that is accepted then as how the bodies differ."""
+_POLISHED = 60_000
+"""Vertices up to which meshes that have a proxy are registered once more, with more details.  Beyond, it would take
+half as long again as all the rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +180,7 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     pair : RegisteredPair
         The surfaces, one laid onto the other.
     polish : Stage
-        How meshes that have a proxy are registered once more in full resolution.
+        How meshes that have a proxy are registered once more, with more details.
     involution : bool
         Whether `x` is the reflection of `y` and the map its own inverse: then it is carried one way only.
 
@@ -199,17 +192,16 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     x, y = pair.x.surface, pair.y.surface
     main_x, main_y = x.cleaned.mesh, y.cleaned.mesh
     polished = None
-    if max(main_x.vertex_count, main_y.vertex_count) <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
-        polished = _Polish(main_x, main_y, pair.landmarks, polish)
-    there = yield from within(_lifted_steps(x, y, pair.target, pair.registration, untangled=polished is None), 0.0, 0.2)
-    if polished is not None:
-        there = yield from within(polished.steps(there, 0), 0.2, 0.4)
+    largest = max(main_x.vertex_count, main_y.vertex_count)
+    if largest <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
+        finer_x = yield from within(finer_surface_steps(x), 0.0, 0.1)
+        finer_y = yield from within(finer_surface_steps(y), 0.1, 0.2)
+        polished = Polish(finer_x, finer_y, polish, pair.landmarks)
+    there = yield from within(_main_map_steps(pair, polished, 0), 0.2, 0.5)
     if involution:
         back = reflected_points(main_x, there)
     else:
-        back = yield from within(_lifted_steps(y, x, pair.source, pair.reverse, untangled=polished is None), 0.4, 0.6)
-        if polished is not None:
-            back = yield from within(polished.steps(back, 1), 0.6, 0.8)
+        back = yield from within(_main_map_steps(pair, polished, 1), 0.5, 0.8)
     if pair.landmarks is not None:
         here, partners = pair.landmarks.source.main, pair.landmarks.target.main
         there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
@@ -232,57 +224,18 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     return DenseMatch(forward, backward, quality)
 
 
-class _Polish:
-    """Registers once more in full resolution, where what is between the vertices of the proxies counts."""
-
-    def __init__(self, main_x: TriangleMesh, main_y: TriangleMesh, landmarks: Landmarks | None, stage: Stage) -> None:
-        self._surfaces = [DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (main_x, main_y)]
-        self._places = None if landmarks is None else (landmarks.source.main, landmarks.target.main)
-        self._stage = stage
-
-    def steps(self, points: SurfacePoints, here: int) -> Steps[SurfacePoints]:
-        """Register X onto Y (`here` is 0) or Y onto X (1), from where a map takes its vertices."""
-        source, target = self._surfaces[here], self._surfaces[1 - here]
-        ties = None
-        if self._places is not None:
-            at = SurfacePoints.at_vertices(source.mesh, self._places[here])
-            ties = Ties.at(source.mesh, at, target.vertices[self._places[1 - here]])
-        start = target.in_unit_size(points.positions)
-        elastic = source.elastic.strained(start, _STRAINED)
-        steps = register_steps(source, target, start, (self._stage,), elastic=elastic, ties=ties)
-        fine = yield from within(steps, 0.0, 0.8)
-        lift = lift_steps(
-            source.mesh,
-            Proxy.identity(source.mesh),
-            target.in_its_units(fine.positions),
-            target.mesh,
-            target_proxy=Proxy.identity(target.mesh),
-            proxy_map=_nearest(fine.on_target, target.mesh),
-            search=target.search,
-        )
-        return (yield from within(lift, 0.8, 1.0))
-
-
-def _lifted_steps(
-    x: PreparedSurface, y: PreparedSurface, target: DeformableSurface, registration: Registration, *, untangled: bool
-) -> Steps[SurfacePoints]:
-    """Map every vertex of the main part of one mesh to that of the other."""
-    return lift_steps(
-        x.cleaned.mesh,
-        x.proxy,
-        target.in_its_units(registration.positions),
-        y.cleaned.mesh,
-        target_proxy=y.proxy,
-        proxy_map=_nearest(registration.on_target, y.mesh),
-        search=y.dense_search,
-        untangled=untangled,
-    )
-
-
-def _nearest(points: FoundPoints, mesh: TriangleMesh) -> NDArray[np.int64]:
-    """Vertices nearest to points (k,) of a mesh, (k,)."""
-    vertices: NDArray[np.int64] = mesh.triangles[points.triangles, points.barycentric.argmax(axis=1)]
-    return vertices
+def _main_map_steps(pair: RegisteredPair, polish: Polish | None, here: int) -> Steps[SurfacePoints]:
+    """Map every vertex of the main part of X to that of Y (`here` is 0), or of Y to that of X (1)."""
+    x, y = pair.x.surface, pair.y.surface
+    target, registration = pair.target, pair.registration
+    if here:
+        x, y, target, registration = y, x, pair.source, pair.reverse
+    positions = target.in_its_units(registration.positions)
+    proxy_map = registration.on_target.nearest_vertices(y.mesh.triangles)
+    if polish is not None:
+        return (yield from polish.steps(positions, proxy_map, here))
+    ends = x.cleaned.mesh, x.proxy, positions, y.cleaned.mesh
+    return (yield from lift_steps(*ends, target_proxy=y.proxy, proxy_map=proxy_map, search=y.dense_search))
 
 
 def _followed_steps(

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .dense_match import DenseMatch
-    from .landmarks import LandmarkPlaces
     from .mesh import TriangleMesh
     from .progress import Steps
     from .surface_map import SurfaceMap
@@ -114,9 +113,10 @@ def refine_map_steps(
     functions = _functions(x)
     # Without the noise of the map, which the surface would keep as folds.
     start = functions @ (functions.T @ (moving.mass[:, None] * places))
-    ties = _ties(x, y, fixed, known.source, known.target)
+    proxies = x.surface.proxy, y.surface.proxy
+    ties = Ties.of_landmarks(*proxies, fixed, known.source, known.target)
     there = yield from within(register_steps(moving, fixed, start, (FINE, _CLOSE), ties=ties), 0.2, 0.5)
-    ties = _ties(y, x, moving, known.target, known.source)
+    ties = Ties.of_landmarks(*proxies[::-1], moving, known.target, known.source)
     matches = there.on_source, there.on_target
     steps = restarted_steps(fixed, moving, _functions(y), matches, stages=(FINE, _CLOSE), ties=ties)
     back = yield from within(steps, 0.5, 0.75)
@@ -217,10 +217,3 @@ def _functions(shape: Shape) -> NDArray[np.float64]:
     """First eigenfunctions of a shape of unit area, (n, k)."""
     functions: NDArray[np.float64] = shape.spectrum.functions[:, :_DETAILED] * np.sqrt(shape.laplace.area)
     return functions
-
-
-def _ties(x: Shape, y: Shape, target: DeformableSurface, here: LandmarkPlaces, there: LandmarkPlaces) -> Ties:
-    """Tie the landmarks of one surface, wherever they are on it, to those of the other."""
-    points, vertices = x.surface.proxy.points, here.main
-    at = SurfacePoints.from_barycentric(x.mesh, points.triangles[vertices], points.barycentric[vertices])
-    return Ties.at(x.mesh, at, target.in_unit_size(y.surface.proxy.points.positions[there.main]))

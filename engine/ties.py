@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
+from .surface import SurfacePoints
 from .vicinity import distances_to_others, vicinity
 
 if TYPE_CHECKING:
@@ -16,8 +17,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from .deformable import DeformableSurface
+    from .landmarks import LandmarkPlaces
     from .mesh import TriangleMesh
-    from .surface import SurfacePoints
+    from .proxy import Proxy
 
 __all__ = ["Ties"]
 
@@ -67,6 +70,15 @@ class Ties:
             near, distances = vicinity(mesh, int(vertex), radii[i])
             forces[near, i] = mesh.vertex_areas[near] * np.square(1 - np.square(distances / radii[i]))
         return cls(evaluate, places, forces / forces.sum(axis=0))
+
+    @classmethod
+    def of_landmarks(
+        cls, source: Proxy, target: Proxy, there: DeformableSurface, here: LandmarkPlaces, partners: LandmarkPlaces
+    ) -> Ties:
+        """Tie landmarks of a mesh, wherever on its proxy they are, to those of another, in the space of `there`."""
+        vertices, points = here.main, source.points
+        at = SurfacePoints.from_barycentric(source.mesh, points.triangles[vertices], points.barycentric[vertices])
+        return cls.at(source.mesh, at, there.in_unit_size(target.points.positions[partners.main]))
 
     def response(self, solve: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> NDArray[np.float64]:
         """How the surface moves when each tied point is pulled by one unit of force, (n, k)."""

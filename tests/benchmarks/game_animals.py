@@ -27,12 +27,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
 from engine.geodesics import GeodesicSolver
-from engine.shape import Shape
 from tests.benchmarks.game_models import Archive
+from tests.benchmarks.remeshed import Remeshed, errors, remeshed
 from tests.shapes import rotation, subdivided
 
 # Model: how the names of its animations start, and its kind.  All look along -z at rest, but the sheep.
@@ -69,18 +68,15 @@ ANIMALS = {
 LOOKS_BACK = {"sheep"}
 POSES, FRAMES = 5, 6
 DENSE, COARSE = 26_000, 5_000
-PLACES, FAR, WRONG = 300, 15.0, 0.03
+FAR, WRONG = 15.0, 0.03
 ENDS = 5
 CONFIDENT = 0.5
 
 
 @dataclass(frozen=True)
-class Animal:
-    """A pose: its mesh; for each vertex one of the split model, and the split model's places on it; its ends."""
+class Animal(Remeshed):
+    """A pose, and the number of the end that each vertex belongs to, or -1, (n,)."""
 
-    mesh: TriangleMesh
-    split: np.ndarray
-    places: np.ndarray
     ends: np.ndarray
 
 
@@ -125,25 +121,11 @@ def animal(archive, name, pose):
     parts = max(3, int(np.ceil(np.sqrt(DENSE / len(model.vertices)))))
     random = np.random.default_rng(pose)
     turn = rotation(random.standard_normal(3), random.uniform(0, 2 * np.pi))
-    split = TriangleMesh(*subdivided(poses(archive, name)[pose] @ turn.T, model.triangles, parts))
-    shape = Shape(split, name, COARSE)
+    vertices, triangles = subdivided(poses(archive, name)[pose] @ turn.T, model.triangles, parts)
+    found = remeshed(vertices, triangles, name, COARSE)
     rest, _ = subdivided(model.vertices, model.triangles, parts)
-    tree = cKDTree(shape.mesh.vertices)
-    numbers = cKDTree(split.vertices).query(shape.mesh.vertices)[1]
-    return Animal(
-        shape.mesh,
-        numbers,
-        tree.query(split.vertices)[1],
-        ends(rest, backwards=name in LOOKS_BACK)[numbers],
-    )
-
-
-def errors(source, target, found):
-    """Distances x 100 of images from where they belong, over the square root of the area, (k,)."""
-    chosen = np.random.default_rng(0).permutation(source.mesh.vertex_count)[:PLACES]
-    rows = GeodesicSolver(target.mesh).distances(target.places[source.split[chosen]])
-    away = rows[np.arange(len(chosen)), found.nearest_vertices[chosen]]
-    return 100 * away / np.sqrt(target.mesh.area)
+    all_ends = ends(rest, backwards=name in LOOKS_BACK)
+    return Animal(found.mesh, found.model, found.places, all_ends[found.model])
 
 
 def reached(source, target, found):

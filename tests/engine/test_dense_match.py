@@ -12,11 +12,11 @@ from engine import (
     SurfaceMap,
     SurfacePoints,
     TriangleMesh,
-    dense_match,
     densify,
     densify_steps,
     match,
     match_steps,
+    polishing,
 )
 from engine.elastic import ElasticSurface
 from engine.missing_parts import round_trips
@@ -207,14 +207,14 @@ def test_a_coarse_stand_in_gives_nearly_the_same_map(result, bodies):
 
 def test_full_resolution_starts_from_the_strain_that_the_stand_ins_led_to(bodies, monkeypatch):
     strained, registered = [], []
-    own, steps = ElasticSurface.strained, dense_match.register_steps
+    own, steps = ElasticSurface.strained, polishing.register_steps
 
     def recorded(*given, elastic, **others):
         registered.append(elastic)
         return steps(*given, elastic=elastic, **others)
 
     monkeypatch.setattr(ElasticSurface, "strained", lambda *given: strained.append(own(*given)) or strained[-1])
-    monkeypatch.setattr(dense_match, "register_steps", recorded)
+    monkeypatch.setattr(polishing, "register_steps", recorded)
     fine = TriangleMesh(*subdivided(bodies[1].vertices, bodies[1].triangles, 2))
     match(bodies[0], Shape(fine, "target", proxy_vertices=700), QUICK)
     assert len(registered) == 2  # there and back

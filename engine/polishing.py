@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Registers dense meshes once more, with details that the coarse surfaces that were matched do not have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from .closest_points import ClosestPoints
+from .deformable import DeformableSurface
+from .laplacian import laplace_beltrami
+from .lifting import lift_steps
+from .progress import within
+from .proxy import Proxy, proxy_steps
+from .registration import register_steps
+from .surface import SurfacePoints
+from .ties import Ties
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from .landmarks import Landmarks
+    from .prepared_surface import PreparedSurface
+    from .progress import Steps
+    from .registration import Stage
+
+__all__ = ["FinerSurface", "Polish", "finer_surface_steps"]
+
+_VERTICES = 12_000
+"""About how many vertices are registered of a dense mesh: enough for each finger to have its own.  With all of 80,000
+vertices the map is hardly better."""
+
+_STRAINED = 0.05
+"""Over what distance, in sqrt(area), the strain is averaged that is accepted then as how the bodies differ."""
+
+
+@dataclass(frozen=True, eq=False)
+class FinerSurface:
+    """What is registered once more of a mesh.
+
+    Attributes
+    ----------
+    prepared : PreparedSurface
+        The mesh, and the coarse surface that was matched in its place.
+    proxy : Proxy
+        What stands for its main part here: itself, if that is not dense.
+    coarse : Proxy
+        What was matched, as what stands for that.
+    """
+
+    prepared: PreparedSurface
+    proxy: Proxy
+    coarse: Proxy
+
+    @cached_property
+    def deformable(self) -> DeformableSurface:
+        """The surface to register."""
+        return DeformableSurface(self.proxy.mesh, laplace_beltrami(self.proxy.mesh))
+
+
+def finer_surface_steps(prepared: PreparedSurface) -> Steps[FinerSurface]:
+    """Make the surface that is registered once more: at most some 19,000 vertices, see `proxy_steps`."""
+    main, coarse = prepared.cleaned.mesh, prepared.proxy
+    proxy = yield from proxy_steps(main, _VERTICES)
+    if proxy.is_identity:
+        return FinerSurface(prepared, proxy, coarse)
+    starts = coarse.points.nearest_vertices[proxy.vertices]
+    found = ClosestPoints(coarse.mesh).walk(proxy.mesh.vertices, starts)
+    points = SurfacePoints.from_barycentric(coarse.mesh, found.triangles, found.barycentric)
+    return FinerSurface(prepared, proxy, Proxy(coarse.mesh, points, proxy.points.nearest_vertices[coarse.vertices]))
+
+
+class Polish:
+    """Registers two meshes once more, from where coarser surfaces lie on one another.
+
+    Parameters
+    ----------
+    x, y : FinerSurface
+        The surfaces.
+    stage : Stage
+        How they are registered.
+    landmarks : Landmarks, optional
+        What is held together.
+    """
+
+    def __init__(self, x: FinerSurface, y: FinerSurface, stage: Stage, landmarks: Landmarks | None = None) -> None:
+        self._surfaces = x, y
+        self._stage = stage
+        self._landmarks = None if landmarks is None else (landmarks.source, landmarks.target)
+
+    def steps(self, registered: NDArray[np.float64], proxy_map: NDArray[np.int64], here: int) -> Steps[SurfacePoints]:
+        """Map every vertex of the main part of X to that of Y (`here` is 0), or of Y to that of X (1).
+
+        Parameters
+        ----------
+        registered : (k, 3) array of float
+            Where the vertices of the coarse surface lie, in the coordinates of the other mesh.
+        proxy_map : (k,) array of int
+            The matching vertices of the other coarse surface.
+        here : int
+            From which surface.
+        """
+        x, y = self._surfaces[here], self._surfaces[1 - here]
+        source, target = x.deformable, y.deformable
+        lift = lift_steps(
+            source.mesh,
+            x.coarse,
+            registered,
+            target.mesh,
+            target_proxy=y.coarse,
+            proxy_map=proxy_map,
+            search=target.search,
+            untangled=False,
+        )
+        points = yield from within(lift, 0.0, 0.2)
+        start = target.in_unit_size(points.positions)
+        # The bodies stay as unlike as the coarse surfaces found them.
+        elastic = source.elastic.strained(start, _STRAINED)
+        steps = register_steps(source, target, start, (self._stage,), elastic=elastic, ties=self._ties(here))
+        fine = yield from within(steps, 0.2, 0.7)
+        lift = lift_steps(
+            x.prepared.cleaned.mesh,
+            x.proxy,
+            target.in_its_units(fine.positions),
+            y.prepared.cleaned.mesh,
+            target_proxy=y.proxy,
+            proxy_map=fine.on_target.nearest_vertices(target.triangles),
+            search=y.prepared.dense_search,
+        )
+        return (yield from within(lift, 0.7, 1.0))
+
+    def _ties(self, here: int) -> Ties | None:
+        """Tie the landmarks of the source, wherever they are on its surface, to those of the target."""
+        if self._landmarks is None:
+            return None
+        x, y = self._surfaces[here], self._surfaces[1 - here]
+        places = self._landmarks[here], self._landmarks[1 - here]
+        return Ties.of_landmarks(x.proxy, y.proxy, y.deformable, *places)
