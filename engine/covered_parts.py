@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from .surface_map import SurfaceMap
 
-__all__ = ["CoveredPart", "continued", "covered_parts_steps"]
+__all__ = ["CoveredPart", "best_and_rivals", "continued", "covered_parts_steps"]
 
 _VERTICES = 2000
 """Vertices of the coarse surfaces on which parts are looked for."""
@@ -37,11 +37,21 @@ _SAMPLES, _MEASURED = 256, 64
 """Samples of either, and of how many the distances are measured, not estimated."""
 
 _PLACEMENTS, _REGISTERED = 12, 6
-"""Ways to lay the part onto the whole that are compared, and how many of them are registered."""
+"""Ways to lay the part onto the whole that are compared, and how many of them are registered, without rivals."""
 
 _REFINED, _ROUNDS = 3, 2
-"""How many of these are followed up with what they cover by the registration, and how often: the nearer the piece that
-is cut out is to the true one, the better fits the size that it is compared in."""
+"""How many of these are followed up with what they cover by the registration, without rivals, and how often: the nearer
+the piece that is cut out is to the true one, the better fits the size that it is compared in."""
+
+_RIVALS = 2
+"""Other ways than these that are registered, or followed up, as well, if their scores are not much worse than the best:
+turned by a half, a body is nearly the same, and may take all places before the true one."""
+
+_OTHER = 0.12
+"""Mean distance, in sqrt(area) of the whole, between where two ways take the part, from which on they are different."""
+
+_HOPEFUL = 2.5, 5.0
+"""Difference of scores to the best way up to which another one is a rival: before they are registered, and after."""
 
 _ROUGHLY = 0.06
 """Distance, in sqrt(area) of the whole, from samples that something goes to in which a rough placement covers it."""
@@ -83,10 +93,11 @@ class CoveredPart:
 
 @dataclass(frozen=True, eq=False)
 class _Proposal:
-    """A piece of the whole, and how it may lie on the part."""
+    """A piece of the whole, how it may lie on the part, and where some samples of the part would be on it, (s, 3)."""
 
     piece: Shape
     hypothesis: MapHypothesis
+    places: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +157,9 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     placements = yield from within(searching, 0.2, 0.25)
     starts += [(fitter.roughly_covered(placement.images), placement.images) for placement in placements]
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
-    refined = yield from within(_refined_steps(fitter, fits[:_REFINED]), 0.75, 1.0)
+    scores, taken = np.array([fit.score for fit in fits]), np.array([fit.places for fit in fits]) / whole.scale
+    best = best_and_rivals(scores, taken, _REFINED, _HOPEFUL[1])
+    refined = yield from within(_refined_steps(fitter, [fits[way] for way in best]), 0.75, 1.0)
     found: list[tuple[NDArray[np.bool_], float]] = []
     for fit in sorted([*fits, *refined], key=lambda fit: fit.score):
         if found and fit.score >= found[0][1] + _CONTESTED:
@@ -155,6 +168,36 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
         if all(fitter.common_part(covered, piece) < _SAME for piece, _ in found):
             found.append((covered, fit.score))
     return [CoveredPart(coarse.surface.spread(c.astype(np.float64), 0.0) > 1 / 2, score) for c, score in found]
+
+
+def best_and_rivals(scores: NDArray[np.float64], places: NDArray[np.float64], count: int, worse: float) -> list[int]:
+    """Choose the best ways to lay a part onto a whole, and some more that differ from all of these.
+
+    Parameters
+    ----------
+    scores : (n,) array of float
+        Of the ways; smaller is better.
+    places : (n, s, 3) array of float
+        Where they take s places of the part, in sqrt(area) of the whole.
+    count : int
+        How many are chosen by score alone.
+    worse : float
+        Difference of scores to the best up to which a way that differs from all chosen ones is chosen, too.
+
+    Returns
+    -------
+    list of int
+        Indices into the ways, first the best, by growing score, then up to `_RIVALS` others.
+    """
+    order = np.argsort(scores, kind="stable").tolist()
+    chosen: list[int] = order[:count]
+    for way in order[count:]:
+        hopeful = scores[way] < scores[order[0]] + worse
+        if not hopeful or len(chosen) == count + _RIVALS:
+            break
+        if np.linalg.norm(places[chosen] - places[way], axis=2).mean(axis=1).min() > _OTHER:
+            chosen.append(way)
+    return chosen
 
 
 def continued(
@@ -196,19 +239,21 @@ def continued(
 
 
 def _registered_steps(fitter: _Fitter, starts: list[tuple[NDArray[np.bool_], NDArray[np.int64]]]) -> Steps[list[_Fit]]:
-    """Compare pieces with the part, and register the most credible ones; by growing score."""
+    """Compare pieces with the part, and register the most credible ones and their rivals."""
     proposals: list[_Proposal] = []
     for number, (covered, images) in enumerate(starts):
         begin, end = (0.6 * (number + i) / len(starts) for i in (0, 1))
         proposal = yield from within(fitter.proposal_steps(covered, images), begin, end)
         if proposal is not None:
             proposals.append(proposal)
-    proposals.sort(key=lambda proposal: proposal.hypothesis.score)
     fits: list[_Fit] = []
-    for number, proposal in enumerate(proposals[:_REGISTERED]):
-        begin, end = (0.6 + 0.4 * (number + i) / _REGISTERED for i in (0, 1))
-        fits.append((yield from within(fitter.fit_steps(proposal), begin, end)))
-    return sorted(fits, key=lambda fit: fit.score)
+    scores = np.array([proposal.hypothesis.score for proposal in proposals])
+    places = np.array([proposal.places for proposal in proposals]) / fitter.whole.scale
+    best = best_and_rivals(scores, places, _REGISTERED, _HOPEFUL[0])
+    for number, way in enumerate(best):
+        begin, end = (0.6 + 0.4 * (number + i) / len(best) for i in (0, 1))
+        fits.append((yield from within(fitter.fit_steps(proposals[way]), begin, end)))
+    return fits
 
 
 def _refined_steps(fitter: _Fitter, fits: list[_Fit]) -> Steps[list[_Fit]]:
@@ -279,16 +324,17 @@ class _Fitter:
         yield from within(piece.sample_steps(_SAMPLES, _MEASURED), 0.0, 0.2)
         yield from within(piece.spectrum_steps(EIGENPAIRS), 0.2, 0.5)
         piece = piece.limited(_SAMPLES, _MEASURED)
+        places = whole.vertices[self.whole.samples[images[:_STARTS]]]
         rows = self.whole.sample_rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
         start = LandmarkStart(rows, self.part.sample_rows[:_STARTS], "placement")
         if known:
             domains = MapDomain(piece, EIGENPAIRS), MapDomain(self.part, EIGENPAIRS)
-            return _Proposal(piece, unrefined_hypothesis(domains, start))
+            return _Proposal(piece, unrefined_hypothesis(domains, start), places)
         try:
             hypotheses = yield from within(map_hypotheses_steps(piece, self.part, [start], search=False), 0.5, 1.0)
         except MatchError:  # the largest of several pieces may be too small
             return None
-        return _Proposal(piece, hypotheses[0])
+        return _Proposal(piece, hypotheses[0], places)
 
     def fit_steps(self, proposal: _Proposal) -> Steps[_Fit]:
         """Register a piece of the whole to the part."""

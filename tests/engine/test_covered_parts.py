@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import Shape, SurfaceMap, SurfacePoints, TriangleMesh
-from engine.covered_parts import continued, covered_parts_steps
+from engine.covered_parts import best_and_rivals, continued, covered_parts_steps
 from engine.progress import run
 from tests.shapes import compacted, creature, cylinder
 
@@ -65,3 +65,28 @@ def test_what_does_not_overhang_or_is_nowhere_grows_nothing(all_of_it):
     tube = Shape(TriangleMesh(*cylinder(12, 10)))
     overhanging = np.full(tube.mesh.vertex_count, all_of_it)
     assert not continued(tube, tube, tube.mesh.vertices, overhanging, 1.0).any()
+
+
+def ways(*spots):
+    """Ways to take three places to spots on a line."""
+    return np.array([[[spot, 0.0, 0.0]] * 3 for spot in spots])
+
+
+def test_the_best_ways_are_chosen_and_a_different_one_though_others_like_the_best_are_better():
+    scores = np.array([-4.0, -3.0, -2.0, -5.0, 9.0])
+    assert best_and_rivals(scores, ways(0.01, 0.02, 1.0, 0.0, 2.0), 2, 4.0) == [3, 0, 2]
+
+
+def test_a_way_that_is_much_worse_than_the_best_is_no_rival():
+    scores = np.array([-5.0, -4.0, 1.0])
+    assert best_and_rivals(scores, ways(0.0, 0.01, 1.0), 2, 5.0) == [0, 1]
+
+
+def test_rivals_differ_from_one_another_and_are_few():
+    scores = np.arange(6.0)
+    assert best_and_rivals(scores, ways(0.0, 1.0, 1.01, 2.0, 3.0, 4.0), 1, 100.0) == [0, 1, 3]
+
+
+def test_fewer_ways_than_are_looked_for_are_all_chosen():
+    assert best_and_rivals(np.array([2.0, 1.0]), ways(0.0, 0.0), 6, 1.0) == [1, 0]
+    assert best_and_rivals(np.zeros(0), np.zeros((0, 3, 3)), 6, 1.0) == []
