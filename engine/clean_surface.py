@@ -96,7 +96,7 @@ class CleanSurface:
     original : TriangleMesh
         The mesh as it was.
     pieces : tuple of SurfacePart
-        The parts, the largest by area first: that is the main part, the one to match.
+        The parts: first the main one, which is matched, and then the others, the largest by area first.
     vertex_parts : (n,) array of int
         For each vertex of the original mesh, its part; -1 if it is in none: a loose vertex, or one of parts that are
         too many and too small to be listed.

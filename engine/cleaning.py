@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 __all__ = ["clean"]
 
+_MOST_OPEN = 1.0
+"""Length of its open borders, in the root of its area, from which on a part counts as if it were half as large."""
+
 _MOST_PARTS = 256
 """Parts that are kept beside the main one, the largest; there may be thousands of hairs or crumbs."""
 
@@ -241,9 +244,8 @@ def _in_parts(
 ) -> CleanSurface:
     """Take the mesh apart, and fill the holes of the main part."""
     components, counts = work.components, work.counts
-    areas = np.bincount(components, work.areas)
-    order = np.argsort(-areas, kind="stable")
-    order = order[areas[order] > 0]
+    areas: NDArray[np.float64] = np.bincount(components, work.areas).astype(np.float64)
+    order = _main_first(work, areas)
     if not len(order):
         raise MeshError("Nothing of the mesh has an area once repeated and degenerate faces are left out.")
     order = order[: _MOST_PARTS + 1]
@@ -286,6 +288,22 @@ def _in_parts(
     counts.inverted = pieces[0].inverted
     counts.parts = len(areas) - 1
     return CleanSurface(mesh, tuple(pieces), parts_of_vertices, local[images], cleaning_notes(name, counts))
+
+
+def _main_first(work: _Work, areas: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Order the components by area, but put the main one first: a body may be smaller than its clothes, but is closed.
+
+    Those without an area (c,) are left out.
+    """
+    order = np.argsort(-areas, kind="stable")
+    order = order[areas[order] > 0]
+    borders = np.flatnonzero(work.twins < 0)
+    ends = work.triangles[borders // 3, borders % 3], work.triangles[borders // 3, (borders + 1) % 3]
+    lengths = np.linalg.norm(work.vertices[ends[0]] - work.vertices[ends[1]], axis=1)
+    openness = np.bincount(work.components[borders // 3], lengths, len(areas))[order] / np.sqrt(areas[order])
+    weights = areas[order] / (1 + np.minimum(openness / _MOST_OPEN, 1))
+    main = order[weights.argmax()] if len(order) else -1
+    return np.concatenate([order[order == main], order[order != main]])
 
 
 _Piece = tuple["NDArray[np.float64]", "NDArray[np.int64]", "NDArray[np.int64]", "NDArray[np.int64]"]

@@ -109,7 +109,7 @@ def densify_steps(
     Raises
     ------
     MatchError
-        If a point does not lie on the largest part of its mesh.
+        If a point does not lie on the main part of its mesh.
     """
     covered = _piece_of(source, maps[0], source_points), _piece_of(target, maps[1], target_points)
     x = yield from within(_shape_steps(source, "source", covered[0]), 0.0, 0.1)

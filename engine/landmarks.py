@@ -127,8 +127,8 @@ def _places(surface: PreparedSurface, vertices: NDArray[np.int64], name: str) ->
         )
     for bad in np.flatnonzero(surface.cleaned.vertex_parts[vertices] != 0)[:1]:
         raise MatchError(
-            f"Landmark {bad + 1} is at vertex {vertices[bad]} of the {name}, which is not on its largest part that is "
-            "not left out. Choose a vertex on that part, which is the one that is matched."
+            f"Landmark {bad + 1} is at vertex {vertices[bad]} of the {name}, which is not on its main part, "
+            "the one that is matched. Choose a vertex on that part that is not left out."
         )
     main = surface.cleaned.vertex_images[vertices]
     for first, second in _repeated(main):

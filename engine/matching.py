@@ -49,7 +49,7 @@ def match(
         How many points, and how hard to search.
     landmarks : (k, 2) array_like of int, optional
         Pairs of a vertex of the source and one of the target that are known to correspond: at most as many as there are
-        points, all different, on the largest parts of the meshes.  They are the first points of the result, and exact
+        points, all different, on the main parts of the meshes.  They are the first points of the result, and exact
         in all of it.  One may be enough to choose between left and right; where the landmarks call for a map that
         mirrors the surface, the orientation in the result's `quality` is that of the mirrored source.
     excluded : pair of (n,) array_like of bool, optional

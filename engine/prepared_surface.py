@@ -106,7 +106,7 @@ class PreparedSurface:
         """
         if (self.cleaned.vertex_parts[vertices] != 0).any():
             raise MatchError(
-                "Some points do not lie on the largest part of the mesh, which is the one that is matched. "
+                "Some points do not lie on the main part of the mesh, which is the one that is matched. "
                 "Choose points on that part."
             )
         dense = self.cleaned.vertex_images[vertices]

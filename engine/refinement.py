@@ -165,7 +165,7 @@ def placed_by_map(
     Raises
     ------
     MatchError
-        If a point is not on the largest part of its mesh.
+        If a point is not on the main part of its mesh.
     """
     vertices = source_points.nearest_vertices
     images = SurfacePoints.from_barycentric(target, found.triangles[vertices], found.barycentric[vertices])
@@ -199,7 +199,7 @@ def point_distortions(
     Raises
     ------
     MatchError
-        If a vertex is not on the largest part of its mesh.
+        If a vertex is not on the main part of its mesh.
     """
     count = np.size(source_vertices)
     anchors = np.unique(np.linspace(0, count - 1, min(count, _ANCHORS)).round().astype(np.int64))

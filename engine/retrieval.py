@@ -227,7 +227,7 @@ def _check(shape: Shape, name: str, settings: RetrievalSettings) -> None:
     if shape.mesh.vertex_count < settings.points:
         raise MatchError(
             f"{name} has only {shape.mesh.vertex_count} vertices"
-            f"{' in its largest part' if not shape.surface.is_whole else ''}, too few to match "
+            f"{' in its main part' if not shape.surface.is_whole else ''}, too few to match "
             f"{settings.points} points. Use fewer points, subdivide the mesh or leave it out."
         )
 

@@ -118,7 +118,7 @@ def fit_rig_steps(
     back = _on_main(x, target_to_source, y)
     moving = _of_main(x, weights)
     if not moving.nnz:
-        raise RigError("No bone moves the largest part of the source. Give it weights, or choose another source.")
+        raise RigError("No bone moves the main part of the source. Give it weights, or choose another source.")
     yield Progress(0.05, "Fitting the bones")
     forward = _FORWARD * body.vertex_areas / body.area * (x.main.original_vertices >= 0)
     backward = y.mesh.vertex_areas / y.mesh.area * (y.main.original_vertices >= 0)

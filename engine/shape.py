@@ -44,8 +44,8 @@ class Shape:
     Parameters
     ----------
     mesh : TriangleMesh
-        The surface.  It is cleaned, and its largest part (by area) is used, through a coarse mesh that stands for it
-        where it is dense.
+        The surface.  It is cleaned, and its main part is used, the largest or one of half its size that is closed,
+        through a coarse mesh that stands for it where it is dense.
     name : str
         What notes call it.
     proxy_vertices : int

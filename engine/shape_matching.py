@@ -88,7 +88,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
         if shape.mesh.vertex_count < settings.points:
             raise MatchError(
                 f"{settings.points} points cannot be matched: the {name} has only {shape.mesh.vertex_count} vertices"
-                f"{'' if shape.surface.is_whole else ' in its largest part'}. "
+                f"{'' if shape.surface.is_whole else ' in its main part'}. "
                 "Use fewer points or subdivide the mesh."
             )
     known = None if landmarks is None else locate_landmarks(x, y, landmarks, settings.points)

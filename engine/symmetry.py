@@ -115,7 +115,7 @@ def find_symmetry(surface: TriangleMesh | Shape, settings: MatchSettings | None 
     Parameters
     ----------
     surface : TriangleMesh or Shape
-        The surface; the largest part is used.
+        The surface; the main part is used.
     settings : MatchSettings, optional
         How many points, and how hard to search.
 
@@ -165,7 +165,7 @@ def find_symmetry_steps(
     if shape.mesh.vertex_count < settings.points:
         raise MatchError(
             f"No symmetry can be found with {settings.points} points: the mesh has only {shape.mesh.vertex_count} "
-            f"vertices{' in its largest part' if not shape.surface.is_whole else ''}. "
+            f"vertices{' in its main part' if not shape.surface.is_whole else ''}. "
             "Use fewer points or subdivide the mesh."
         )
     yield from within(shape.sample_steps(max(settings.samples, 2 * settings.points)), 0.0, 0.5)

@@ -1040,10 +1040,10 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Cleaning": "クリーンアップしています",
     (
-        "Some points do not lie on the largest part of the mesh, which is the one that is matched. Choose points "
+        "Some points do not lie on the main part of the mesh, which is the one that is matched. Choose points "
         "on that part."
     ): (
-        "一部のポイントが、マッチングの対象であるメッシュの最大の部分にありません。その部分のポイントを選んでください。"
+        "一部のポイントが、マッチングの対象であるメッシュの主要な部分にありません。その部分のポイントを選んでください。"
     ),
     "Landmark {number}": "ランドマーク {number}",
     "Point {number}, distortion {distortion}": "ポイント {number}、歪み {distortion}",
@@ -1054,8 +1054,8 @@ MESSAGES: Final[dict[str, str]] = {
         "マップを改良するためのランドマークがありません。少なくとも一組の頂点を指定してください。"
     ),
     "Fitting the surfaces": "表面を合わせています",
-    "No bone moves the largest part of the source. Give it weights, or choose another source.": (
-        "ソースの最大の部分を動かすボーンがありません。ウェイトを与えるか、別のソースを選んでください。"
+    "No bone moves the main part of the source. Give it weights, or choose another source.": (
+        "ソースの主要な部分を動かすボーンがありません。ウェイトを与えるか、別のソースを選んでください。"
     ),
     "Fitting the bones": "ボーンを合わせています",
     "The weights of the bones should be finite numbers that are not negative.": (
@@ -1437,11 +1437,11 @@ MESSAGES: Final[dict[str, str]] = {
         "ランドマーク{0}と{1}が{3}の同じ頂点{2}にあります。一つの頂点にはランドマークを一つだけ置いてください。"
     ),
     (
-        "Landmark {0} is at vertex {1} of the {2}, which is not on its largest part that is not left out. Choose "
-        "a vertex on that part, which is the one that is matched."
+        "Landmark {0} is at vertex {1} of the {2}, which is not on its main part, the one that is matched. Choose "
+        "a vertex on that part that is not left out."
     ): (
-        "ランドマーク{0}は{2}の頂点{1}にあり、マッチングされる最大の部分の上にありません。その部分の頂点を選"
-        "んでください。"
+        "ランドマーク{0}は{2}の頂点{1}にあり、マッチングされる主要な部分の上にありません。その部分で除外されて"
+        "いない頂点を選んでください。"
     ),
     "Landmarks {0} and {1} are at the same place of the {2}, at its vertices {3} and {4}. Remove one of them.": (
         "ランドマーク{0}と{1}は{2}の同じ場所（頂点{3}と{4}）にあります。一方を削除してください。"

@@ -858,9 +858,9 @@ MESSAGES: Final[dict[str, str]] = {
     "A face has fewer than three corners. Repair the mesh.": "有一个面少于三个角。请修复网格。",
     "Cleaning": "正在清理",
     (
-        "Some points do not lie on the largest part of the mesh, which is the one that is matched. Choose points "
+        "Some points do not lie on the main part of the mesh, which is the one that is matched. Choose points "
         "on that part."
-    ): "某些点不在网格的最大部分上，而匹配的正是该部分。请在该部分上选择点。",
+    ): "某些点不在网格的主要部分上，而匹配的正是该部分。请在该部分上选择点。",
     "Landmark {number}": "地标 {number}",
     "Point {number}, distortion {distortion}": "点 {number}，畸变 {distortion}",
     "Preparing what is written": "正在准备要写入的内容",
@@ -870,8 +870,8 @@ MESSAGES: Final[dict[str, str]] = {
         "没有可用来改善映射的地标。请至少指定一对顶点。"
     ),
     "Fitting the surfaces": "正在拟合表面",
-    "No bone moves the largest part of the source. Give it weights, or choose another source.": (
-        "没有骨骼带动源的最大部分。请为其添加权重，或选择其他源。"
+    "No bone moves the main part of the source. Give it weights, or choose another source.": (
+        "没有骨骼带动源的主要部分。请为其添加权重，或选择其他源。"
     ),
     "Fitting the bones": "正在适配骨骼",
     "The weights of the bones should be finite numbers that are not negative.": "骨骼的权重应为非负的有限数。",
@@ -1166,9 +1166,9 @@ MESSAGES: Final[dict[str, str]] = {
         "地标 {0} 和 {1} 都在{3}的顶点 {2} 上。一个顶点只能用于一个地标。"
     ),
     (
-        "Landmark {0} is at vertex {1} of the {2}, which is not on its largest part that is not left out. Choose "
-        "a vertex on that part, which is the one that is matched."
-    ): "地标 {0} 在{2}的顶点 {1} 上，不在要匹配的最大部分上。请选择该部分上的顶点。",
+        "Landmark {0} is at vertex {1} of the {2}, which is not on its main part, the one that is matched. Choose "
+        "a vertex on that part that is not left out."
+    ): "地标 {0} 在{2}的顶点 {1} 上，不在要匹配的主要部分上。请选择该部分上未被排除的顶点。",
     "Landmarks {0} and {1} are at the same place of the {2}, at its vertices {3} and {4}. Remove one of them.": (
         "地标 {0} 和 {1} 在{2}的同一位置（顶点 {3} 和 {4}）。请移除其中一个。"
     ),

@@ -412,6 +412,16 @@ def test_parts_are_sorted_by_area(body):
     assert all(volume(part) > 0 for part in surface.parts)
 
 
+@pytest.mark.parametrize(("size", "main"), [(0.8, "body"), (1.5, "body"), (3.0, "sheet")])
+def test_a_closed_body_is_the_main_part_unless_what_is_open_is_twice_as_large(size, main):
+    ball = icosphere(6)
+    side = np.sqrt(size * TriangleMesh(*ball).area)
+    sheet = plane(12, side)
+    surface = cleaned(together((sheet[0] + [0, 0, 1.5], sheet[1]), ball))
+    assert len(surface.mesh.vertices) == len((ball if main == "body" else sheet)[0])
+    assert_leads_back(surface)
+
+
 def test_thousands_of_crumbs_are_in_no_part():
     random = np.random.default_rng(0)
     crumbs = random.normal(size=(300, 1, 3)) * 3 + random.normal(size=(300, 3, 3)) * 0.01

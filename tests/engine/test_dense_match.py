@@ -321,7 +321,7 @@ def test_points_beside_the_main_part_are_refused_in_words(symmetric, symmetric_r
     ball = icosphere(2, 0.05)
     mesh = TriangleMesh(*together((source.vertices, source.triangles), (ball[0] + 3, ball[1])))
     beside = SurfacePoints.at_vertices(mesh, source.vertex_count + np.arange(12))
-    with pytest.raises(MatchError, match="largest part of the mesh"):
+    with pytest.raises(MatchError, match="main part of the mesh"):
         densify(mesh, target, beside, symmetric_result.target_points)
 
 

@@ -149,7 +149,7 @@ def test_only_the_largest_part_is_used_and_results_lie_on_the_whole():
     np.testing.assert_array_equal(both.triangles[found.target_points.triangles], found.target_points.corners)
     start = SurfacePoints.at_vertices(target.mesh, target.samples[:8])
     assert target.surface.on_original(start).positions == pytest.approx(start.positions)
-    with pytest.raises(MatchError, match="largest part"):
+    with pytest.raises(MatchError, match="main part"):
         run(gmds_steps(target, target, 16, start=SurfacePoints.at_vertices(both, np.arange(8))))
 
 

@@ -226,11 +226,11 @@ def test_landmarks_have_to_be_on_the_main_part_and_apart(bodies):
     body = bodies[0]
     ball, faces = icosphere(2, radius=0.05)
     apart = TriangleMesh(np.concatenate([ball + 5, body.vertices]), np.concatenate([faces, body.triangles + len(ball)]))
-    with pytest.raises(MatchError, match="Landmark 1 is at vertex 0 of the target, which is not on its largest part"):
+    with pytest.raises(MatchError, match="Landmark 1 is at vertex 0 of the target, which is not on its main part"):
         match(body, apart, SPARSE, landmarks=[[0, 0]])
     left_out = np.zeros(body.vertex_count, bool)
     left_out[7] = True
-    with pytest.raises(MatchError, match="vertex 7 of the source, which is not on its largest part"):
+    with pytest.raises(MatchError, match="vertex 7 of the source, which is not on its main part"):
         match(body, apart, SPARSE, landmarks=[[7, 60]], excluded=(left_out, None))
     # A seam: each triangle around a vertex of its own.
     torn = TriangleMesh(body.vertices[body.triangles.ravel()], np.arange(body.triangles.size).reshape(-1, 3))

@@ -291,7 +291,7 @@ def soup(count=300):
 @pytest.mark.parametrize(
     ("broken", "error", "words"),
     [
-        (soup, MatchError, "12 points cannot be matched: the source has only 3 vertices in its largest part"),
+        (soup, MatchError, "12 points cannot be matched: the source has only 3 vertices in its main part"),
         (lambda: (icosphere(1)[0], icosphere(1)[1][:3]), MatchError, "Use fewer points or subdivide"),
         (lambda: (icosphere(2)[0] * 0, icosphere(2)[1]), MeshError, "zero area"),
         (lambda: (icosphere(2)[0] * [1, 0, 0], icosphere(2)[1]), MeshError, "zero area"),

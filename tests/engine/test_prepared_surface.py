@@ -101,7 +101,7 @@ def test_excluded_vertices_take_no_part(body):
     assert_valid(there, body)
     assert set(there.triangles) <= set(surface.kept_triangles)
     assert np.isinf(surface.spread(np.zeros(surface.mesh.vertex_count), np.inf)[excluded]).all()
-    with pytest.raises(MatchError, match="do not lie on the largest part"):
+    with pytest.raises(MatchError, match="do not lie on the main part"):
         surface.mesh_vertices(np.flatnonzero(excluded)[:1])
 
 
