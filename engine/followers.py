@@ -249,7 +249,7 @@ class _PartMaps:
         for pair in paired_parts((here, touching[0]), (there, touching[1]), followed.around, unit, large):
             part, partner, number = here[pair.part], there[pair.partner], numbers[pair.part]
             done = len(self.mapped) / len(self._x.pieces), (len(self.mapped) + 1) / len(self._x.pieces)
-            steps = laid_onto_steps(part, partner, pair, thoroughly=number in self._large)
+            steps = laid_onto_steps(part, partner, pair, followed.around, thoroughly=number in self._large)
             found = yield from within(steps, *done)
             points = SurfacePoints.from_barycentric(partner, found.triangles, found.barycentric)
             self.mapped[number] = _Image(candidates[pair.partner], points, pair.difference)

@@ -13,12 +13,13 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from .mesh import TriangleMesh
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
     from .surroundings import Surroundings
 
 __all__ = ["Contact", "PartPair", "contact_with", "paired_parts"]
@@ -48,6 +49,10 @@ knee."""
 _JOINT, _LARGEST_ELSEWHERE = 0.3, 3.0
 """Part of the sum of the radii by which a large part may touch its surroundings elsewhere to count as much as the
 largest offset, and what that counts at most."""
+
+_WORN, _WORN_POINTS = 0.3, 300
+"""Root mean square distance, in radii, up to which a large part may lie on another one when every point of it goes with
+what is nearest, as clothes do; and at how many points that is measured."""
 
 _TINY = np.finfo(float).tiny
 
@@ -141,9 +146,7 @@ def _length(part: TriangleMesh) -> float:
 
 def contact_with(distances: NDArray[np.float64], part: TriangleMesh) -> Contact:
     """Find where a part is next to its surroundings by the distances (n,) of its vertices from there."""
-    centre = part.vertices.mean(axis=0)
-    radius = float(np.sqrt(np.square(part.vertices - centre).sum(axis=1).mean()))
-    touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * radius)
+    touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * _radius(part))
     return Contact(touching, part.vertices[touching].mean(axis=0), float(distances.min()))
 
 
@@ -157,7 +160,7 @@ def paired_parts(
     """Find which parts of X and Y belong together.
 
     A part is expected where its surroundings have moved it, or somewhere around where it touches them: a forearm that
-    is a part of its own swings about the elbow.
+    is a part of its own swings about the elbow.  Or every point of it goes with what it lies on, as trousers do.
 
     Parameters
     ----------
@@ -202,6 +205,8 @@ def paired_parts(
     for i, j in np.argwhere(possible & (shape > 1)):
         longer = np.log(_length(x_parts[i]) / _length(y_parts[j]))
         possible[i, j] = np.abs(longer) < np.log(_LARGEST_LENGTHENING)
+    worn = _worn(x_parts, y_parts, around, large)
+    difference, possible = np.minimum(difference, worn), possible | np.isfinite(worn)
     apart = np.linalg.norm(joints[:, None] - [contact.place for contact in its_contacts], axis=2)
     elsewhere = apart / (_JOINT * (radii[:, None] + y.radii) + _BLUR * unit)
     costs = difference + np.where(large[:, None], np.minimum(elsewhere, _LARGEST_ELSEWHERE), 0)
@@ -224,6 +229,36 @@ def paired_parts(
         for i, j in zip(rows, columns, strict=True)
         if possible[i, j]
     ]
+
+
+def _worn(
+    parts: Sequence[TriangleMesh], partners: Sequence[TriangleMesh], around: Surroundings, large: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Compare parts with partners as every point goes with what is nearest: the difference, (p, q), or infinity."""
+    difference = np.full((len(parts), len(partners)), np.inf)
+    trees = [cKDTree(partner.vertices) for partner in partners]
+    for i in np.flatnonzero(large):
+        part = parts[i]
+        places = around.similarities(part.vertices, around.nearest(part.vertices)[0])(part.vertices)
+        carried = TriangleMesh(places, part.triangles)
+        tree = cKDTree(places)
+        size = np.array([np.abs(np.log(carried.area / partner.area)) for partner in partners]) / np.log(_LARGEST_RATIO)
+        for j in np.flatnonzero(size <= 1):
+            ahead = trees[j].query(places[_some(carried)])[0]
+            back, radius = tree.query(partners[j].vertices[_some(partners[j])])[0], _radius(partners[j])
+            away = np.sqrt((np.square(ahead).mean() + np.square(back).mean()) / 2) / radius
+            difference[i, j] = size[j] + away / _WORN if away < _WORN else np.inf
+    return difference
+
+
+def _some(part: TriangleMesh) -> NDArray[np.int64]:
+    """Choose some vertices, evenly numbered."""
+    return np.linspace(0, part.vertex_count - 1, min(part.vertex_count, _WORN_POINTS)).astype(np.int64)
+
+
+def _radius(part: TriangleMesh) -> float:
+    """Root mean square distance of the vertices from their centre."""
+    return float(np.sqrt(np.square(part.vertices - part.vertices.mean(axis=0)).sum(axis=1).mean()))
 
 
 def _swung(rotation: NDArray[np.float64], arm: NDArray[np.float64], there: NDArray[np.float64]) -> NDArray[np.float64]:

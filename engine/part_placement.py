@@ -13,15 +13,16 @@ from scipy.spatial.transform import Rotation
 from .closest_points import ClosestPoints, FoundPoints
 from .deformable import DeformableSurface
 from .laplacian import laplace_beltrami
+from .mesh import TriangleMesh
 from .procrustes import nearest_rotations
 from .progress import Steps, within
-from .registration import FINE, LAST, Stage, register_steps
+from .registration import FINE, LAST, POLISH, Stage, register_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
     from .part_pairs import PartPair
+    from .surroundings import Surroundings
 
 __all__ = ["laid_onto_steps"]
 
@@ -35,7 +36,7 @@ _CONVERGED = 0.99
 """Mean squared distance, as part of that of the round before, from which on no further round is made."""
 
 _CLEARLY = 0.5
-"""Cost after another turn, as part of that after the usual one, from which on it is believed."""
+"""Cost of another placement, as part of that of the usual one, from which on it is believed."""
 
 _TURNS = 8
 """Angles about its direction that are tried where a part does not fit as it is expected."""
@@ -64,13 +65,14 @@ class _Motion:
 
 
 def laid_onto_steps(
-    part: TriangleMesh, partner: TriangleMesh, pair: PartPair, *, thoroughly: bool
+    part: TriangleMesh, partner: TriangleMesh, pair: PartPair, around: Surroundings, *, thoroughly: bool
 ) -> Steps[FoundPoints]:
     """Map the vertices of a part to points of its partner.
 
     It is moved as a rigid body, of the partner's size, to where the two are closest [1]_.  If it does not fit then, it
     is turned to other sides, and deformed, from there and as it may have swung about where it touches its surroundings;
-    what costs less is taken, and what touches there.
+    what costs less is taken, and what touches there.  If it fits much better as its surroundings take it along, like
+    clothes on a body, it is deformed from that alone, which knows what lies where.
 
     Parameters
     ----------
@@ -80,8 +82,10 @@ def laid_onto_steps(
         Its partner.
     pair : PartPair
         How it may be turned.
+    around : Surroundings
+        How space moves around it.
     thoroughly : bool
-        Whether more than the closest rigid motion is tried.
+        Whether it is turned to other sides, and deformed.
 
     Yields
     ------
@@ -97,19 +101,30 @@ def laid_onto_steps(
     ----------
     .. [1] P. J. Besl, N. D. McKay, "A method for registration of 3-D shapes", IEEE PAMI 14(2), 1992.
     """
-    best = _rigidly(part, partner, pair, pair.rotations[0])
+    aim = _Aim(partner, pair)
+    best = _rigidly(part, aim, pair, pair.rotations[0])
     if thoroughly and best.distance > _RIGID**2:
-        others = [_rigidly(part, partner, pair, rotation) for rotation in _turned(pair)]
+        others = [_rigidly(part, aim, pair, rotation) for rotation in _turned(pair)]
         for other in (others[0], min(others[1:], key=lambda motion: motion.cost)):
             best = other if other.cost < _CLEARLY * best.cost else best
-    placed = _placed(part, pair, best.rotation, best.centre)
+    placed, normals = _placed(part, pair, best.rotation, best.centre), part.vertex_normals @ best.rotation.T
+    if best.distance < _RIGID**2:
+        return _closest(partner, placed, normals, pair.radius)
+    handed = np.sign(np.linalg.det(best.rotation))
+    carried = around.similarities(part.vertices, around.nearest(part.vertices)[0])(part.vertices)
+    worn = handed * TriangleMesh(carried, part.triangles).vertex_normals
+    cost = _cost(aim.found(_points(part, carried, worn))[0], pair, carried)
     fewest, most = _DEFORMED
     sizes = part.vertex_count, partner.vertex_count
-    deformable = fewest <= min(sizes) and max(sizes) <= most and np.linalg.det(best.rotation) > 0
-    if best.distance < _RIGID**2 or not deformable or not thoroughly:
-        return _closest(partner, placed, part.vertex_normals @ best.rotation.T, pair.radius)
-    swung = _placed(part, pair, pair.rotations[-1], pair.centres[1])
-    return (yield from _deformed_steps(part, partner, pair, [placed, swung]))
+    if thoroughly and fewest <= min(sizes) and max(sizes) <= most and handed > 0:
+        if cost < _CLEARLY * best.cost:
+            return (yield from _deformed_steps(part, partner, pair, [carried], (POLISH, LAST)))
+        starts = [placed, _placed(part, pair, pair.rotations[-1], pair.centres[1])]
+        starts += [carried] if cost < best.cost else []
+        return (yield from _deformed_steps(part, partner, pair, starts, (_BENDING, FINE, LAST)))
+    if cost < best.cost:
+        placed, normals = carried, worn
+    return _closest(partner, placed, normals, pair.radius)
 
 
 def _turned(pair: PartPair) -> list[NDArray[np.float64]]:
@@ -133,48 +148,50 @@ def _strayed(pair: PartPair, placed: NDArray[np.float64]) -> float:
     return float(1 + (away @ away) / pair.radius**2)
 
 
+def _cost(distance: float, pair: PartPair, placed: NDArray[np.float64]) -> float:
+    """Tell what a placement (n, 3) at this mean squared distance costs, in square radii."""
+    return (distance + _RIGID**2) * _strayed(pair, placed)
+
+
 def _deformed_steps(
-    part: TriangleMesh, partner: TriangleMesh, pair: PartPair, starts: list[NDArray[np.float64]]
+    part: TriangleMesh,
+    partner: TriangleMesh,
+    pair: PartPair,
+    starts: list[NDArray[np.float64]],
+    stages: tuple[Stage, ...],
 ) -> Steps[FoundPoints]:
     """Deform a part onto its partner from each of some positions (n, 3), and take the most credible result."""
     source, target = (DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (part, partner))
     costs, found = [], []
     for number, start in enumerate(starts):
-        steps = register_steps(source, target, target.in_unit_size(start), (_BENDING, FINE, LAST))
+        steps = register_steps(source, target, target.in_unit_size(start), stages)
         registration = yield from within(steps, number / len(starts), (number + 1) / len(starts))
         costs.append(registration.cost * _strayed(pair, target.in_its_units(registration.positions)))
         found.append(registration.on_target)
     return found[int(np.argmin(costs))]
 
 
-def _rigidly(part: TriangleMesh, partner: TriangleMesh, pair: PartPair, rotation: NDArray[np.float64]) -> _Motion:
+def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: NDArray[np.float64]) -> _Motion:
     """Move a part to where it is closest to its partner, beginning with a rotation, centre on centre."""
     handed = float(np.sign(np.linalg.det(rotation)))
-    here, there = (_points(mesh) for mesh in (part, partner))
-    old, centre = pair.centres
-    arms = pair.ratio * (here.places - old) / pair.radius
-    wanted = (there.places - centre) / pair.radius
-    features = np.concatenate([wanted, _NORMAL_LENGTH * there.normals], axis=1)
-    tree = cKDTree(features)
+    here, centre = _points(part, part.vertices, part.vertex_normals), pair.centres[1]
+    arms = pair.ratio * (here.places - pair.centres[0])
     shift, before = np.zeros(3), np.inf
     for number in range(_ROUNDS + 1):
-        moved = arms @ rotation.T + shift
-        own = np.concatenate([moved, _NORMAL_LENGTH * here.normals @ rotation.T], axis=1)
-        images, origins = tree.query(own)[1], cKDTree(own).query(features)[1]
-        ahead, back = np.square(moved - wanted[images]).sum(axis=1), np.square(moved[origins] - wanted).sum(axis=1)
-        distance = float(here.shares @ ahead + there.shares @ back) / 2
+        moved = _Points(centre + arms @ rotation.T + shift, here.normals @ rotation.T, here.shares)
+        distance, images, origins = aim.found(moved)
         if number == _ROUNDS or distance > _CONVERGED * before or not distance > 0:
             break
         before = distance
+        wanted = aim.points.places - centre
         sources, targets = np.concatenate([arms, arms[origins]]), np.concatenate([wanted[images], wanted])
-        shares = np.concatenate([here.shares, there.shares]) / 2
-        middle, aim = shares @ sources, shares @ targets
-        product = np.einsum("k,ki,kj->ij", shares, targets - aim, sources - middle)
+        shares = np.concatenate([here.shares, aim.points.shares]) / 2
+        middle, goal = shares @ sources, shares @ targets
+        product = np.einsum("k,ki,kj->ij", shares, targets - goal, sources - middle)
         rotation = handed * nearest_rotations(handed * product[None])[0]
-        shift = aim - rotation @ middle
-    centre = centre + pair.radius * shift
-    cost = (distance + _RIGID**2) * _strayed(pair, _placed(part, pair, rotation, centre))
-    return _Motion(rotation, centre, distance, cost)
+        shift = goal - rotation @ middle
+    centre = centre + shift
+    return _Motion(rotation, centre, distance, _cost(distance, pair, _placed(part, pair, rotation, centre)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,11 +203,38 @@ class _Points:
     shares: NDArray[np.float64]
 
 
-def _points(mesh: TriangleMesh) -> _Points:
-    """Take evenly numbered vertices of a mesh."""
+def _points(mesh: TriangleMesh, places: NDArray[np.float64], normals: NDArray[np.float64]) -> _Points:
+    """Take evenly numbered vertices of a mesh that has been moved to places (n, 3) with normals (n, 3)."""
     chosen = np.linspace(0, mesh.vertex_count - 1, min(mesh.vertex_count, _MOST_POINTS)).astype(int)
     areas = mesh.vertex_areas[chosen] + 1e-9 * mesh.area
-    return _Points(mesh.vertices[chosen], mesh.vertex_normals[chosen], areas / areas.sum())
+    return _Points(places[chosen], normals[chosen], areas / areas.sum())
+
+
+class _Aim:
+    """The partner that parts are laid onto: finds what is closest to points and looks to the same side."""
+
+    def __init__(self, partner: TriangleMesh, pair: PartPair) -> None:
+        self.points = _points(partner, partner.vertices, partner.vertex_normals)
+        self._pair = pair
+        self._features = self._located(self.points)
+        self._tree = cKDTree(self._features)
+
+    def found(self, points: _Points) -> tuple[float, NDArray[np.int64], NDArray[np.int64]]:
+        """Return the mean squared distance in radii, both ways, of points from here, and which ones are the closest.
+
+        These are indices into `points` of the partner for each of the given ones, and the other way round.
+        """
+        own = self._located(points)
+        images, origins = self._tree.query(own)[1], cKDTree(own).query(self._features)[1]
+        ahead, back = own - self._features[images], own[origins] - self._features
+        squares = points.shares @ np.square(ahead[:, :3]).sum(axis=1)
+        squares += self.points.shares @ np.square(back[:, :3]).sum(axis=1)
+        return float(squares) / 2, images, origins
+
+    def _located(self, points: _Points) -> NDArray[np.float64]:
+        """Places in radii, and normals, (k, 6)."""
+        places = (points.places - self._pair.centres[1]) / self._pair.radius
+        return np.concatenate([places, _NORMAL_LENGTH * points.normals], axis=1)
 
 
 def _closest(

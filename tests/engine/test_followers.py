@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 
-from engine import SurfacePoints, TriangleMesh, run
+from engine import SurfacePoints, TriangleMesh, part_placement, run
 from engine.cleaning import clean
 from engine.followers import follow_steps
 from tests.messes import cut_along_seam, partly_turned, together
-from tests.shapes import creature, icosphere, permuted, posed, rotation
+from tests.shapes import bent, compacted, creature, icosphere, permuted, posed, rotation
 
 LEFT_EYE, RIGHT_EYE = np.array([1.12, 0.12, 0.55]), np.array([1.12, -0.12, 0.55])
 
@@ -320,3 +320,37 @@ def test_an_arm_may_be_turned_about_itself(turn):
     _, y, result = followed((vertices, triangles), (moved, triangles), trunk)
     assert_valid(result, y)
     assert np.linalg.norm(result.points.positions - moved, axis=1)[trunk:].max() < 0.02
+
+
+def clothes(vertices, triangles, worn):
+    """What lies just above some triangles of a body, where its vertices are now."""
+    lifted = vertices + 0.03 * TriangleMesh(vertices, triangles).vertex_normals
+    return compacted(lifted, triangles[worn])
+
+
+@pytest.mark.parametrize("most", [10_000, 100])  # deformed, or too large for that
+def test_clothes_follow_the_body_that_wears_them(rest, most, monkeypatch):
+    monkeypatch.setattr(part_placement, "_DEFORMED", (40, most))
+    vertices, triangles = rest
+    worn = (vertices[triangles][:, :, 0].min(axis=1) > -0.2) & (vertices[triangles][:, :, 2].max(axis=1) < 0.25)
+    poses = [posed(vertices, pose) for pose in (-0.8, 1.2)]
+    x_mesh, y_mesh = (together((pose, triangles), clothes(pose, triangles, worn)) for pose in poses)
+    _, y, result = followed(x_mesh, y_mesh, len(vertices))
+    assert_valid(result, y)
+    assert np.array_equal(result.partners, [0, 1])
+    errors = np.linalg.norm(result.points.positions - y_mesh[0], axis=1)[len(vertices) :]
+    assert errors.mean() < 0.025  # the legs are 0.7 long
+    assert errors.max() < 0.2
+
+
+def test_a_sleeve_on_an_arm_that_is_folded_finds_the_one_on_the_straight_arm():
+    """Its extent is less than half of what it was; the surface is as large as before."""
+    vertices, triangles = icosphere(16)
+    vertices = vertices * [3.0, 0.2, 0.2]
+    folded = bent(vertices - [-0.5, 0, 0], np.array([1.0, 0, 0]), np.array([0, 0, 1.0]), 1.0, 3.0)
+    worn = np.abs(vertices[triangles][:, :, 0]).max(axis=1) < 2.5
+    x_mesh, y_mesh = (together((now, triangles), clothes(now, triangles, worn)) for now in (vertices, folded))
+    _, y, result = followed(x_mesh, y_mesh, len(vertices))
+    assert_valid(result, y)
+    assert np.array_equal(result.partners, [0, 1])
+    assert np.linalg.norm(result.points.positions - y_mesh[0], axis=1)[len(vertices) :].mean() < 0.05
