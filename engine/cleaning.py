@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .border_seams import seam_partners
 from .boundary_loops import boundary_loops
 from .clean_surface import CleanSurface, SurfacePart
 from .cleaning_notes import CleaningCounts, cleaning_notes
@@ -29,6 +30,9 @@ __all__ = ["clean"]
 _MOST_OPEN = 1.0
 """Length of its open borders, in the root of its area, from which on a part counts as if it were half as large."""
 
+_FEW = 50
+"""Vertices of a part that counts as if it were half as large: a floor under a body may have four corners."""
+
 _MOST_PARTS = 256
 """Parts that are kept beside the main one, the largest; there may be thousands of hairs or crumbs."""
 
@@ -36,10 +40,10 @@ _MOST_PARTS = 256
 def clean(mesh: TriangleMesh, name: str = "mesh", left_out: NDArray[np.bool_] | None = None) -> CleanSurface:
     """Make a mesh into oriented manifolds.
 
-    In this order: vertices along open seams are welded; triangles without three different vertices, and repeated ones,
-    left out; edges of more than two triangles opened; triangles turned to agree with their neighbours; single missing
-    faces put back where gaps meet; vertices split at which sheets only touch; single vertices that stick out pulled in;
-    parts turned that look inward; small holes of the main part filled.
+    In this order: vertices along open seams, and across narrow gaps between pieces, are welded; triangles without three
+    different vertices, and repeated ones, left out; edges of more than two triangles opened; triangles turned to agree
+    with their neighbours; single missing faces put back where gaps meet; vertices split at which sheets only touch;
+    single vertices that stick out pulled in; parts turned that look inward; small holes of the main part filled.
 
     Parameters
     ----------
@@ -129,14 +133,25 @@ class _Work:
 
 
 def _weld(work: _Work) -> tuple[EdgeGroups, NDArray[np.int64]]:
-    """Weld vertices along seams: the edges then, and the vertex that stands for each (n,)."""
+    """Weld vertices along seams and gaps: the edges then, and the vertex that stands for each (n,)."""
     n = len(work.vertices)
     groups = group_half_edges(work.triangles, n)
     representatives = weld_boundaries(work.vertices, work.triangles, groups)
     moved = np.flatnonzero(representatives != np.arange(n))
-    if not len(moved):
-        return groups, representatives
-    work.counts.welded = len(moved)
+    if len(moved):
+        work.counts.welded = len(moved)
+        groups = _merged(work, representatives, moved)
+    partners = seam_partners(work.vertices, work.triangles, groups)
+    moved = np.flatnonzero(partners != np.arange(n))
+    if len(moved):
+        work.counts.joined = len(moved)
+        groups = _merged(work, partners, moved)
+    return groups, partners[representatives]
+
+
+def _merged(work: _Work, representatives: NDArray[np.int64], moved: NDArray[np.int64]) -> EdgeGroups:
+    """Let some vertices be `moved` to those that stand for them: the edges then."""
+    n = len(work.vertices)
     # A welded vertex lies in the middle of its copies, so that their order does not matter.
     involved = np.unique(np.concatenate([moved, representatives[moved]]))
     homes, number = np.unique(representatives[involved], return_inverse=True)
@@ -154,12 +169,12 @@ def _weld(work: _Work) -> tuple[EdgeGroups, NDArray[np.int64]]:
     affected = np.flatnonzero(changed[triangles].any(axis=1))
     work.areas = work.areas.copy()
     work.areas[affected] = _areas(vertices, triangles[affected])
-    work.counts.degenerate = int((~proper).sum())
+    work.counts.degenerate += int((~proper).sum())
     if not proper.all():
         work.keep(proper)
     if not len(work.triangles):
         raise MeshError("No triangle of the mesh has three different corners. Check its scale and its vertices.")
-    return group_half_edges(work.triangles, n), representatives
+    return group_half_edges(work.triangles, n)
 
 
 def _make_manifold(work: _Work, groups: EdgeGroups) -> None:
@@ -301,7 +316,8 @@ def _main_first(work: _Work, areas: NDArray[np.float64]) -> NDArray[np.int64]:
     ends = work.triangles[borders // 3, borders % 3], work.triangles[borders // 3, (borders + 1) % 3]
     lengths = np.linalg.norm(work.vertices[ends[0]] - work.vertices[ends[1]], axis=1)
     openness = np.bincount(work.components[borders // 3], lengths, len(areas))[order] / np.sqrt(areas[order])
-    weights = areas[order] / (1 + np.minimum(openness / _MOST_OPEN, 1))
+    counts = np.bincount(work.components, minlength=len(areas))[order] / 2  # a surface has half as many vertices
+    weights = areas[order] / (1 + np.minimum(openness / _MOST_OPEN, 1)) / (1 + _FEW / counts)
     main = order[weights.argmax()] if len(order) else -1
     return np.concatenate([order[order == main], order[order != main]])
 

@@ -13,6 +13,10 @@ _SENTENCES: Final = {
         "The {0} had {1} duplicate vertex along open seams: it was welded for matching.",
         "The {0} had {1} duplicate vertices along open seams: they were welded for matching.",
     ),
+    "joined": (
+        "The {0} had {1} vertex at a gap between pieces: it was joined with the other border for matching.",
+        "The {0} had {1} vertices at gaps between pieces: they were joined with the other border for matching.",
+    ),
     "degenerate": (
         "The {0} had {1} degenerate face: it was left out.",
         "The {0} had {1} degenerate faces: they were left out.",
@@ -71,6 +75,8 @@ class CleaningCounts:
     ----------
     welded : int
         Vertices that others stand for, along open seams.
+    joined : int
+        Vertices that others stand for, across a gap between pieces.
     degenerate, repeated : int
         Triangles without three different corners; triangles that are there more than once.
     crowded : int
@@ -96,6 +102,7 @@ class CleaningCounts:
     """
 
     welded: int = 0
+    joined: int = 0
     degenerate: int = 0
     repeated: int = 0
     crowded: int = 0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ways to make a mess of a clean mesh, for the tests of its cleaning.
 
-Each takes and returns vertices (n, 3) and triangles (m, 3); the first vertices stay where they are.
+Each takes and returns vertices (n, 3) and triangles (m, 3); the first vertices stay what they are.
 """
 
 from __future__ import annotations
@@ -18,6 +18,14 @@ def cut_along_seam(vertices, triangles, axis=0, noise=0.0, seed=0):
     triangles = np.where(beyond[:, None], copies[triangles], triangles)
     shift = noise * np.random.default_rng(seed).uniform(-1, 1, (len(shared), 3))
     return np.concatenate([vertices, vertices[shared] + shift]), triangles
+
+
+def halves_apart(vertices, triangles, gap, axis=0):
+    """Cut along the plane through the middle, and move what is beyond it on: mirrored, but never merged."""
+    beyond = vertices[triangles].mean(axis=1)[:, axis] > vertices[:, axis].mean()
+    vertices, triangles = cut_along_seam(vertices, triangles, axis)
+    vertices[np.unique(triangles[beyond]), axis] += gap
+    return vertices, triangles
 
 
 def in_pieces(vertices, triangles):

@@ -1652,6 +1652,12 @@ MESSAGES: Final[dict[str, str]] = {
     "The {0} had {1} duplicate vertices along open seams: they were welded for matching.": (
         "{0}には開いた継ぎ目に沿って重複頂点が{1}個ありました。マッチングのために結合しました。"
     ),
+    "The {0} had {1} vertex at a gap between pieces: it was joined with the other border for matching.": (
+        "{0}には部品の間の隙間に面した頂点が{1}個ありました。マッチングのために向かいの境界とつなぎました。"
+    ),
+    "The {0} had {1} vertices at gaps between pieces: they were joined with the other border for matching.": (
+        "{0}には部品の間の隙間に面した頂点が{1}個ありました。マッチングのために向かいの境界とつなぎました。"
+    ),
     "The {0} had {1} degenerate face: it was left out.": "{0}には縮退した面が{1}個ありました。除外しました。",
     "The {0} had {1} degenerate faces: they were left out.": "{0}には縮退した面が{1}個ありました。除外しました。",
     "The {0} had {1} repeated face: it was left out.": "{0}には重複した面が{1}個ありました。除外しました。",

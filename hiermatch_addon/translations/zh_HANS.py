@@ -1324,6 +1324,12 @@ MESSAGES: Final[dict[str, str]] = {
     "The {0} had {1} duplicate vertices along open seams: they were welded for matching.": (
         "{0}在开放的接缝处有 {1} 个重复顶点：已为匹配将其焊接。"
     ),
+    "The {0} had {1} vertex at a gap between pieces: it was joined with the other border for matching.": (
+        "{0}在各部分之间的缝隙处有 {1} 个顶点：已为匹配将其与对侧边界连接。"
+    ),
+    "The {0} had {1} vertices at gaps between pieces: they were joined with the other border for matching.": (
+        "{0}在各部分之间的缝隙处有 {1} 个顶点：已为匹配将其与对侧边界连接。"
+    ),
     "The {0} had {1} degenerate face: it was left out.": "{0}有 {1} 个退化面：已将其排除。",
     "The {0} had {1} degenerate faces: they were left out.": "{0}有 {1} 个退化面：已将其排除。",
     "The {0} had {1} repeated face: it was left out.": "{0}有 {1} 个重复面：已将其排除。",

@@ -12,6 +12,7 @@ import numpy as np
 
 from engine import SurfacePoints, TriangleMesh
 from engine.closest_points import ClosestPoints
+from tests.messes import halves_apart
 from tests.shapes import permuted, rotation, subdivided
 
 
@@ -109,6 +110,16 @@ def decimate(mesh, seed=0, share=0.5):  # noqa: ARG001  (variants are all called
     return Variant(coarse, _closest(coarse, mesh.vertices, mesh.vertex_normals), back)
 
 
+def split(mesh, seed=0, gap=0.01):  # noqa: ARG001  (variants are all called alike)
+    """Two halves, one on either side of the middle, moved apart: as if mirrored, but never merged."""
+    halves = TriangleMesh(*halves_apart(mesh.vertices, mesh.triangles, gap * np.sqrt(mesh.area)))
+
+    def back(points):
+        return SurfacePoints.from_barycentric(mesh, points.triangles, points.barycentric)
+
+    return Variant(halves, SurfacePoints.at_vertices(halves, np.arange(mesh.vertex_count)), back)
+
+
 def _closest(mesh, positions, normals):
     """Closest points on a mesh that look to the same side, so that parts that touch are not confused."""
     length = np.sqrt(mesh.area / mesh.vertex_count)
@@ -129,5 +140,7 @@ VARIANTS = {
     "subdivide-source": lambda source, target: (subdivide(source), as_is(target)),
     "decimate-target": lambda source, target: (as_is(source), decimate(target)),
     "decimate-source": lambda source, target: (decimate(source), as_is(target)),
+    "split-target": lambda source, target: (as_is(source), split(target)),
+    "split-source": lambda source, target: (split(source), as_is(target)),
 }
 """Variants of a pair: both surfaces changed where that does not change the triangles, else one of them."""

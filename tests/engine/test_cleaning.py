@@ -422,6 +422,13 @@ def test_a_closed_body_is_the_main_part_unless_what_is_open_is_twice_as_large(si
     assert_leads_back(surface)
 
 
+def test_a_floor_is_not_the_main_part(body):
+    floor = np.array([[-9.0, -9, -1.5], [9, -9, -1.5], [9, 9, -1.5], [-9, 9, -1.5]]), np.array([[0, 1, 2], [0, 2, 3]])
+    surface = cleaned(together(body, floor))
+    assert_like(surface, body)
+    assert_leads_back(surface)
+
+
 def test_thousands_of_crumbs_are_in_no_part():
     random = np.random.default_rng(0)
     crumbs = random.normal(size=(300, 1, 3)) * 3 + random.normal(size=(300, 3, 3)) * 0.01

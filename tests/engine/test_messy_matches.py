@@ -6,7 +6,16 @@ import pytest
 
 from engine import HierMatchError, MatchError, MatchSettings, MeshError, Shape, TriangleMesh, match
 from tests.bodies import mirrored_body
-from tests.messes import cut_along_seam, in_pieces, partly_turned, together, with_fin, without_disc, without_faces
+from tests.messes import (
+    cut_along_seam,
+    halves_apart,
+    in_pieces,
+    partly_turned,
+    together,
+    with_fin,
+    without_disc,
+    without_faces,
+)
 from tests.shapes import creature, icosphere, irregular, posed, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -28,10 +37,20 @@ def clean(vertices, triangles, rest):
 
 def seam(vertices, triangles, rest):
     cut, faces = cut_along_seam(vertices, triangles)
-    beyond = faces >= len(vertices)  # the corners that got a copy
-    copies = np.empty((len(cut) - len(vertices), 3))
-    copies[faces[beyond] - len(vertices)] = rest[triangles[beyond]]
-    return cut, faces, np.concatenate([rest, copies])
+    return cut, faces, with_copies(rest, triangles, faces)
+
+
+def halves(vertices, triangles, rest):
+    cut, faces = halves_apart(vertices, triangles, 0.02)
+    return cut, faces, with_copies(rest, triangles, faces)
+
+
+def with_copies(rest, triangles, faces):
+    """Rest positions of the corners that got a copy as well."""
+    beyond = faces >= len(rest)
+    copies = np.empty((faces.max() + 1 - len(rest), 3))
+    copies[faces[beyond] - len(rest)] = rest[triangles[beyond]]
+    return np.concatenate([rest, copies])
 
 
 def pieces(vertices, triangles, rest):
@@ -140,6 +159,8 @@ def errors(found, own, other, mesh):
     ("first", "second", "bounds", "noted"),
     [
         (loose_vertices, seam, (0.013, 0.1), "duplicate vertices along open seams"),
+        (halves, clean, (0.014, 0.1), "at gaps between pieces"),
+        (clean, halves, (0.014, 0.1), "at gaps between pieces"),
         (pieces, collapsed_faces, (0.014, 0.1), "duplicate vertices"),
         (repeated_faces, fin, (0.013, 0.1), "non-manifold edge"),
         (needles, inward, (0.013, 0.1), "normals of the target point inwards"),

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pieces of a surface whose borders run side by side: it was cut there, or never closed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from .edge_pairs import triangle_slots
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .edge_pairs import EdgeGroups
+
+__all__ = ["seam_partners"]
+
+_SMALLEST = 0.01
+"""Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""
+
+_GAP, _SPACINGS = 0.015, 0.5
+"""How wide a gap may be, in the root of the area of the whole, and how much more in spacings of the border's vertices,
+as those of the other border lie between them."""
+
+_OVERLAP = 0.5
+"""How far a border may lie behind the other one, in spacings and as a part of the widest gap: a shirt hangs over what
+is under it."""
+
+_TURNED = 0.5
+"""Cosine between the directions in which both surfaces would go on, up to which they may be one; that of two layers
+which end at the same place is one."""
+
+_ALONGSIDE = 0.7
+"""Length of a border that runs along others, as a part of all of it, from which on it was one with them."""
+
+_SMOOTHED = 3
+"""How often the directions in which a surface ends are averaged along its border, which may be ragged."""
+
+_ROUNDS, _AVERAGED = 2, 8
+"""How often vertices are paired again with the gap closed, and over how many neighbours it is averaged."""
+
+_FEWEST = 6
+"""Vertices of a border that can tell."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Borders:
+    """Where pieces end.
+
+    Attributes
+    ----------
+    vertices : (k,) array of int
+        Vertices at borders.
+    pieces, loops : (k,) array of int
+        The piece, and the closed curve, that each belongs to.
+    lengths : (k,) array of float
+        Length of the border around each.
+    outward : (k, 3) array of float
+        Direction in which the surface would go on, a unit vector.
+    neighbours : (k, k) sparse array
+        1 for the next vertices along the border.
+    """
+
+    vertices: NDArray[np.int64]
+    pieces: NDArray[np.int64]
+    loops: NDArray[np.int64]
+    lengths: NDArray[np.float64]
+    outward: NDArray[np.float64]
+    neighbours: coo_array
+
+
+def seam_partners(vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups) -> NDArray[np.int64]:
+    """Find vertices of different pieces that face each other across a narrow gap.
+
+    A body whose halves were mirrored but not merged, or a head beside the neck that it belongs to, are one surface.
+    What is next to another piece anywhere but at its border is not: clothes stay apart from the body.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float
+        Positions.
+    triangles : (m, 3) array of int
+        Corners of each triangle.
+    groups : EdgeGroups
+        The half-edges of each edge.
+
+    Returns
+    -------
+    (n,) array of int
+        For each vertex, the vertex that stands for it: itself, or of two that face each other the first one.
+    """
+    representatives = np.arange(len(vertices))
+    borders, area = _borders(vertices, triangles, groups)
+    if borders is None:
+        return representatives
+    places, count = vertices[borders.vertices], len(borders.vertices)
+    widest = _GAP * np.sqrt(area) + _SPACINGS * borders.lengths
+    shifts = np.zeros((count, 3))
+    # What is nearest across a gap, of ragged borders, may be any tooth: with the gap closed on average, it is the like.
+    for _ in range(_ROUNDS + 1):
+        nearest = _nearest(borders, places, shifts, 2 * widest)
+        facing = _facing(borders, places, nearest, widest)
+        gaps = np.zeros((count, 4))
+        gaps[facing, :3], gaps[facing, 3] = places[nearest[facing]] - places[facing], 1
+        for _ in range(_AVERAGED):
+            gaps = (gaps + borders.neighbours @ gaps) / 3
+        shifts = gaps[:, :3] / np.where(gaps[:, 3:] > 0, gaps[:, 3:], np.inf)
+    covered = np.zeros(count)
+    covered[facing] = borders.lengths[facing]
+    alongside = np.bincount(borders.loops, covered) / np.bincount(borders.loops, borders.lengths)
+    one = np.zeros(count, bool)
+    one[facing] = True
+    # The other border may go on elsewhere, as that of a scan does beyond a patch.
+    joined = alongside[borders.loops] >= _ALONGSIDE
+    mutual = one & (nearest[nearest] == np.arange(count)) & one[nearest]
+    chosen = np.flatnonzero(mutual & (joined | joined[nearest]))
+    first, second = borders.vertices[chosen], borders.vertices[nearest[chosen]]
+    representatives[np.maximum(first, second)] = np.minimum(first, second)
+    return representatives
+
+
+def _nearest(
+    borders: _Borders, places: NDArray[np.float64], shifts: NDArray[np.float64], reach: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Find the nearest vertex at the border of another piece to places (k, 3) that were shifted, (k,); -1 for none."""
+    nearest = np.full(len(places), -1)
+    for piece in np.unique(borders.pieces):
+        own, other = np.flatnonzero(borders.pieces == piece), np.flatnonzero(borders.pieces != piece)
+        tree = cKDTree(places[other])
+        found = tree.query(places[own] + shifts[own], distance_upper_bound=float(reach[own].max()))[1]
+        within = found < len(other)
+        nearest[own[within]] = other[found[within]]
+    return nearest
+
+
+def _facing(
+    borders: _Borders, places: NDArray[np.float64], nearest: NDArray[np.int64], widest: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Find the vertices beyond which the surface goes on, at the nearest one of another piece."""
+    facing = np.flatnonzero(nearest >= 0)
+    partner = nearest[facing]
+    gaps = places[partner] - places[facing]
+    ahead = np.einsum("kd,kd->k", gaps, borders.outward[facing])
+    back = -np.einsum("kd,kd->k", gaps, borders.outward[partner])
+    behind = -_OVERLAP * np.minimum(borders.lengths[facing], widest[facing])
+    opposite = np.einsum("kd,kd->k", borders.outward[facing], borders.outward[partner]) < _TURNED
+    near = np.linalg.norm(gaps, axis=1) <= widest[facing]
+    return facing[near & opposite & (np.minimum(ahead, back) >= behind)]
+
+
+def _borders(
+    vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups
+) -> tuple[_Borders | None, float]:
+    """Find where large pieces end, and the area of all; None if fewer than two of them do."""
+    open_edges = groups.order[groups.starts[groups.counts == 1]]
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    area = float(areas.sum())
+    n = len(vertices)
+    if not len(open_edges):
+        return None, area
+    ends = np.concatenate([triangles[:, :2], triangles[:, 1:]])
+    pieces = connected_components(_graph(ends[:, 0], ends[:, 1], n), directed=False)[1]
+    sizes = np.bincount(pieces[triangles[:, 0]], areas, minlength=int(pieces.max()) + 1)
+    tails, heads, tops = (triangle_slots(triangles, open_edges, shift) for shift in (0, 1, 2))
+    large = sizes[pieces[tails]] > _SMALLEST * area
+    tails, heads, tops = tails[large], heads[large], tops[large]
+    if len(np.unique(pieces[tails])) < 2:
+        return None, area
+    border = np.unique(np.concatenate([tails, heads]))
+    tail, head = np.searchsorted(border, tails), np.searchsorted(border, heads)
+    k = len(border)
+    along = vertices[heads] - vertices[tails]
+    lengths = np.linalg.norm(along, axis=1)
+    middles = (vertices[heads] + vertices[tails]) / 2
+    away = middles - vertices[tops]
+    unit = along / np.where(lengths > 0, lengths, 1)[:, None]
+    away -= np.einsum("kd,kd->k", away, unit)[:, None] * unit
+    outward = np.stack([np.bincount(tail, axis, k) + np.bincount(head, axis, k) for axis in _unit(away).T], axis=1)
+    neighbours = _graph(tail, head, k)
+    neighbours = neighbours + neighbours.T
+    for _ in range(_SMOOTHED):
+        outward = _unit(outward)
+        outward = outward + neighbours @ outward
+    loops = connected_components(neighbours, directed=False)[1]
+    enough = np.bincount(loops)[loops] >= _FEWEST
+    around = (np.bincount(tail, lengths, k) + np.bincount(head, lengths, k)) / 2
+    if len(np.unique(pieces[border[enough]])) < 2:
+        return None, area
+    loops, kept = np.unique(loops[enough], return_inverse=True)[1], np.flatnonzero(enough)
+    neighbours = neighbours[kept][:, kept]
+    return _Borders(border[kept], pieces[border[kept]], loops, around[kept], _unit(outward[kept]), neighbours), area
+
+
+def _graph(tails: NDArray[np.int64], heads: NDArray[np.int64], count: int) -> coo_array:
+    return coo_array((np.ones(len(tails)), (tails, heads)), shape=(count, count)).tocsr()
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
