@@ -13,13 +13,12 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from .mesh import TriangleMesh
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
+    from .mesh import TriangleMesh
     from .surroundings import Surroundings
 
 __all__ = ["Contact", "PartPair", "contact_with", "paired_parts"]
@@ -53,6 +52,9 @@ largest offset, and what that counts at most."""
 _WORN, _WORN_POINTS = 0.3, 300
 """Root mean square distance, in radii, up to which a large part may lie on another one when every point of it goes with
 what is nearest, as clothes do; and at how many points that is measured."""
+
+_LYING = 0.2
+"""Root mean square distance from its surroundings, in radii, up to which a large part lies on them everywhere."""
 
 _TINY = np.finfo(float).tiny
 
@@ -205,8 +207,8 @@ def paired_parts(
     for i, j in np.argwhere(possible & (shape > 1)):
         longer = np.log(_length(x_parts[i]) / _length(y_parts[j]))
         possible[i, j] = np.abs(longer) < np.log(_LARGEST_LENGTHENING)
-    worn = _worn(x_parts, y_parts, around, large)
-    difference, possible = np.minimum(difference, worn), possible | np.isfinite(worn)
+    worn, lying = _worn(x_parts, y_parts, around, large)
+    difference, possible = np.minimum(difference, worn), (possible & ~lying[:, None]) | np.isfinite(worn)
     apart = np.linalg.norm(joints[:, None] - [contact.place for contact in its_contacts], axis=2)
     elsewhere = apart / (_JOINT * (radii[:, None] + y.radii) + _BLUR * unit)
     costs = difference + np.where(large[:, None], np.minimum(elsewhere, _LARGEST_ELSEWHERE), 0)
@@ -233,22 +235,27 @@ def paired_parts(
 
 def _worn(
     parts: Sequence[TriangleMesh], partners: Sequence[TriangleMesh], around: Surroundings, large: NDArray[np.bool_]
-) -> NDArray[np.float64]:
-    """Compare parts with partners as every point goes with what is nearest: the difference, (p, q), or infinity."""
-    difference = np.full((len(parts), len(partners)), np.inf)
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Compare large parts with partners as every point goes with what is nearest: the difference, (p, q), or infinity.
+
+    And tell which of them lie on their surroundings everywhere, (p,): where these go is known, so nothing else will do.
+    """
+    difference, lying = np.full((len(parts), len(partners)), np.inf), np.zeros(len(parts), bool)
     trees = [cKDTree(partner.vertices) for partner in partners]
     for i in np.flatnonzero(large):
         part = parts[i]
-        places = around.similarities(part.vertices, around.nearest(part.vertices)[0])(part.vertices)
-        carried = TriangleMesh(places, part.triangles)
-        tree = cKDTree(places)
-        size = np.array([np.abs(np.log(carried.area / partner.area)) for partner in partners]) / np.log(_LARGEST_RATIO)
+        distances = around.nearest(part.vertices)[0]
+        lying[i] = np.sqrt(np.square(distances).mean()) < _LYING * _radius(part)
+        carry = around.similarities(part.vertices, distances)
+        places = carry(part.vertices)
+        tree, area = cKDTree(places), float(np.median(carry.scales)) ** 2 * part.area  # between fingers places are torn
+        size = np.abs(np.log([area / partner.area for partner in partners])) / np.log(_LARGEST_RATIO)
         for j in np.flatnonzero(size <= 1):
-            ahead = trees[j].query(places[_some(carried)])[0]
+            ahead = trees[j].query(places[_some(part)])[0]
             back, radius = tree.query(partners[j].vertices[_some(partners[j])])[0], _radius(partners[j])
             away = np.sqrt((np.square(ahead).mean() + np.square(back).mean()) / 2) / radius
             difference[i, j] = size[j] + away / _WORN if away < _WORN else np.inf
-    return difference
+    return difference, lying
 
 
 def _some(part: TriangleMesh) -> NDArray[np.int64]:

@@ -8,7 +8,7 @@ from engine import SurfacePoints, TriangleMesh, part_placement, run
 from engine.cleaning import clean
 from engine.followers import follow_steps
 from tests.messes import cut_along_seam, partly_turned, together
-from tests.shapes import bent, compacted, creature, icosphere, permuted, posed, rotation
+from tests.shapes import bent, compacted, creature, icosphere, permuted, plane, posed, rotation
 
 LEFT_EYE, RIGHT_EYE = np.array([1.12, 0.12, 0.55]), np.array([1.12, -0.12, 0.55])
 
@@ -354,3 +354,16 @@ def test_a_sleeve_on_an_arm_that_is_folded_finds_the_one_on_the_straight_arm():
     assert_valid(result, y)
     assert np.array_equal(result.partners, [0, 1])
     assert np.linalg.norm(result.points.positions - y_mesh[0], axis=1)[len(vertices) :].mean() < 0.05
+
+
+def test_clothes_are_no_partner_of_a_floor(rest):
+    """Of like size, and not far away; but what lies on a body goes where that goes."""
+    vertices, triangles = rest
+    worn = (vertices[triangles][:, :, 0].min(axis=1) > -0.2) & (vertices[triangles][:, :, 2].max(axis=1) < 0.25)
+    flat, faces = plane(12, 0.9)
+    floor = flat - [0.1, 0.45, 0.9], faces
+    x_mesh = together(rest, clothes(vertices, triangles, worn))
+    _, y, result = followed(x_mesh, together(rest, floor), len(vertices))
+    assert_valid(result, y)
+    assert np.array_equal(result.partners, [0, 0])
+    assert np.linalg.norm(result.points.positions - x_mesh[0], axis=1).max() < 0.06
