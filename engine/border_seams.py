@@ -156,14 +156,14 @@ def _facing(
 def _borders(
     vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups
 ) -> tuple[_Borders | None, float]:
-    """Find where large pieces end, and the area of all; None if fewer than two of them do."""
+    """Find where large pieces end, and the area of all; None, and maybe no area, if fewer than two of them do."""
     open_edges = groups.order[groups.starts[groups.counts == 1]]
+    if not len(open_edges):
+        return None, 0.0
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     area = float(areas.sum())
     n = len(vertices)
-    if not len(open_edges):
-        return None, area
     ends = np.concatenate([triangles[:, :2], triangles[:, 1:]])
     pieces = connected_components(_graph(ends[:, 0], ends[:, 1], n), directed=False)[1]
     sizes = np.bincount(pieces[triangles[:, 0]], areas, minlength=int(pieces.max()) + 1)
