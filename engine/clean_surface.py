@@ -3,18 +3,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .closest_points import ClosestPoints
 from .mesh import TriangleMesh
+from .reflection import reflected_mesh
+from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["CleanSurface", "SurfacePart"]
+    from .cleaning_notes import CleaningCounts
+
+__all__ = ["CleanSurface", "StandIn", "SurfacePart"]
+
+_NORMAL_LENGTH = 0.01
+"""How much farther, in sqrt(area), a point may be for not being on a side that faces away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +78,11 @@ class SurfacePart:
             barycentric = np.where(turned[:, None], barycentric[:, [0, 2, 1]], barycentric)
         return self.original_triangles[triangles], barycentric
 
+    def reflected(self) -> SurfacePart:
+        """Return the part as it is seen in a mirror; vertices and triangles keep their numbers."""
+        # As the triangles of the original turn as well, those that were turned against them still are.
+        return replace(self, mesh=reflected_mesh(self.mesh))
+
     def _beside_holes(
         self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -85,6 +98,67 @@ class SurfacePart:
         search = ClosestPoints(TriangleMesh(self.mesh.vertices[used], number.reshape(-1, 3)))
         found = search.nearest(points)
         return np.flatnonzero(around)[found.triangles], found.barycentric
+
+
+@dataclass(frozen=True, eq=False)
+class StandIn(SurfacePart):
+    """A surface around several pieces of a mesh, which stands for all of them.
+
+    Attributes
+    ----------
+    original_vertices, original_triangles : array of int
+        For each vertex and triangle, the nearest vertex and triangle of the original mesh.
+    place_triangles, place_barycentric : (v,) array of int, (v, 3) array of float
+        For each vertex of the original mesh, its place on the surface.
+    shown : TriangleMesh
+        The pieces.
+    shown_triangles : (s,) array of int
+        For each triangle of these, the one of the original mesh.
+    shown_turned : (s,) array of bool
+        Which of them have their last two corners exchanged against the original.
+    """
+
+    place_triangles: NDArray[np.int64]
+    place_barycentric: NDArray[np.float64]
+    shown: TriangleMesh
+    shown_triangles: NDArray[np.int64]
+    shown_turned: NDArray[np.bool_]
+
+    @cached_property
+    def shown_search(self) -> ClosestPoints:
+        """Search on the pieces."""
+        return ClosestPoints(self.shown)
+
+    def to_original(
+        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Name the points of the original mesh that are closest to points of the surface and look to the same side."""
+        points = np.einsum("kc,kcd->kd", barycentric, self.mesh.vertices[self.mesh.triangles[triangles]])
+        reach = _NORMAL_LENGTH * float(np.sqrt(self.mesh.area))
+        found = self.shown_search.nearest(
+            points, self.mesh.triangle_normals[triangles], normal_length=reach, normal_weight=reach**2
+        )
+        turned, barycentric = self.shown_turned[found.triangles], found.barycentric
+        barycentric = np.where(turned[:, None], barycentric[:, [0, 2, 1]], barycentric)
+        return self.shown_triangles[found.triangles], barycentric
+
+    def images_of(
+        self, vertices: NDArray[np.int64], starts: NDArray[np.int64], found: SurfacePoints, mesh: TriangleMesh
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Say where a map of the surface to a mesh takes the places of vertices (k,), searched from vertices there."""
+        triangles, barycentric = self.place_triangles[vertices], self.place_barycentric[vertices]
+        places = SurfacePoints.from_barycentric(self.mesh, triangles, barycentric)
+        images = ClosestPoints(mesh).walk(places.interpolate(found.positions), starts)
+        return images.triangles, images.barycentric
+
+    def reflected(self) -> StandIn:
+        """Return the surface as it is seen in a mirror; vertices and triangles keep their numbers."""
+        return replace(
+            self,
+            mesh=reflected_mesh(self.mesh),
+            place_barycentric=self.place_barycentric[:, [0, 2, 1]],
+            shown=reflected_mesh(self.shown),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +178,8 @@ class CleanSurface:
         For each vertex of the original mesh, its vertex in that part, or -1.  Welded vertices share one.
     notes : tuple of str
         A sentence for each thing that was done and that the owner of the mesh may want to know.
+    counts : CleaningCounts
+        What was done, in numbers.
     """
 
     original: TriangleMesh
@@ -111,6 +187,7 @@ class CleanSurface:
     vertex_parts: NDArray[np.int64]
     vertex_images: NDArray[np.int64]
     notes: tuple[str, ...]
+    counts: CleaningCounts
 
     @property
     def main(self) -> SurfacePart:
@@ -131,3 +208,29 @@ class CleanSurface:
     def inverted(self) -> bool:
         """Whether the normals of the main part pointed inwards."""
         return self.pieces[0].inverted
+
+    def images_of(
+        self, vertices: NDArray[np.int64], found: SurfacePoints, mesh: TriangleMesh
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Say where a map of the main part takes vertices of the original mesh.
+
+        Parameters
+        ----------
+        vertices : (k,) array of int
+            Vertices of the original mesh on the main part.
+        found : SurfacePoints
+            For each vertex of the main part, a point of another mesh.
+        mesh : TriangleMesh
+            That mesh.
+
+        Returns
+        -------
+        triangles : (k,) array of int
+            Triangles of that mesh.
+        barycentric : (k, 3) array of float
+            Barycentric coordinates there.
+        """
+        own = self.vertex_images[vertices]
+        if isinstance(self.main, StandIn):
+            return self.main.images_of(vertices, found.nearest_vertices[own], found, mesh)
+        return found.triangles[own], found.barycentric[own]

@@ -302,7 +302,8 @@ def _in_parts(
     parts_of_vertices = vertex_parts[images]
     counts.inverted = pieces[0].inverted
     counts.parts = len(areas) - 1
-    return CleanSurface(mesh, tuple(pieces), parts_of_vertices, local[images], cleaning_notes(name, counts))
+    notes = cleaning_notes(name, counts)
+    return CleanSurface(mesh, tuple(pieces), parts_of_vertices, local[images], notes, counts)
 
 
 def _main_first(work: _Work, areas: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -55,6 +55,7 @@ _SENTENCES: Final = {
         "The {0} has {1} large opening: the surface ends there.",
         "The {0} has {1} large openings: the surface ends there.",
     ),
+    "united": ("The {0} is made of {1} pieces: one surface around all of them was matched.",),
     "parts": (
         "The {0} has {1} smaller part: it follows its surroundings.",
         "The {0} has {1} smaller parts: they follow their surroundings.",
@@ -95,8 +96,10 @@ class CleaningCounts:
         Whether the main part was inside out.
     filled, left_open : int
         Holes of the main part that were closed; openings that were not.
+    united : int
+        Pieces around which one surface was put, the main one among them.
     parts : int
-        Parts beside the main one.
+        Parts beside the main one, or beside those.
     loose : int
         Vertices without a triangle.
     """
@@ -114,6 +117,7 @@ class CleaningCounts:
     inverted: bool = False
     filled: int = 0
     left_open: int = 0
+    united: int = 0
     parts: int = 0
     loose: int = 0
 

@@ -10,6 +10,7 @@ from .dense_map import EIGENPAIRS, registered_pair_steps
 from .followers import follow_steps
 from .functional_maps import nearest_both_ways
 from .handle_cutting import evened_steps
+from .joined_surface import with_limbs_steps
 from .landmarks import placed_at_vertices
 from .lifting import lift_steps
 from .map_hypotheses import LandmarkStart
@@ -112,8 +113,8 @@ def densify_steps(
         If a point does not lie on the main part of its mesh.
     """
     covered = _piece_of(source, maps[0], source_points), _piece_of(target, maps[1], target_points)
-    x = yield from within(_shape_steps(source, "source", covered[0]), 0.0, 0.1)
-    y = yield from within(_shape_steps(target, "target", covered[1]), 0.1, 0.2)
+    x = yield from within(_shape_steps(source, "source", covered[0], source_points), 0.0, 0.1)
+    y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
     yield from within(x.sample_steps(_SAMPLES, MEASURED), 0.2, 0.28)
@@ -139,11 +140,14 @@ def _piece_of(
     return None if isinstance(surface, Shape) else piece_of(surface, found, points.nearest_vertices)
 
 
-def _shape_steps(surface: TriangleMesh | Shape, name: str, covered: NDArray[np.bool_] | None) -> Steps[Shape]:
-    """Prepare what is covered of a mesh, or return a shape as it is."""
+def _shape_steps(
+    surface: TriangleMesh | Shape, name: str, covered: NDArray[np.bool_] | None, points: SurfacePoints
+) -> Steps[Shape]:
+    """Prepare what is covered of a mesh, so that points lie on it, or return a shape as it is."""
     if isinstance(surface, Shape):
         return surface
-    return (yield from Shape.steps(surface, name, excluded=None if covered is None else ~covered))
+    shape = yield from within(Shape.steps(surface, name, excluded=None if covered is None else ~covered), 0.0, 0.7)
+    return (yield from within(with_limbs_steps(shape, name, points.nearest_vertices), 0.7, 1.0))
 
 
 def _rows(shape: Shape, points: SurfacePoints) -> NDArray[np.float64]:

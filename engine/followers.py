@@ -108,8 +108,7 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
     partners = np.zeros(len(x.pieces), np.int64)
     known = x.vertex_parts == 0
     main = np.flatnonzero(known)
-    images = x.vertex_images[main]
-    triangles[main], barycentric[main] = y.main.to_original(main_map.triangles[images], main_map.barycentric[images])
+    triangles[main], barycentric[main] = y.main.to_original(*x.images_of(main, main_map, y.mesh))
     others = np.flatnonzero(~known)
     if len(others):
         body = _Mapped(x.pieces, y.pieces, {0: _Image(0, main_map)})

@@ -11,7 +11,6 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from .boundary_loops import boundary_loops
-from .clean_surface import SurfacePart
 from .edge_pairs import group_half_edges, pair_half_edges
 from .handles import genus, shortest_handle_loop_steps
 from .hole_filling import fill_holes
@@ -23,6 +22,8 @@ from .vertex_fans import split_fans
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from .clean_surface import SurfacePart
 
 __all__ = ["cut_along", "evened_steps"]
 
@@ -118,12 +119,12 @@ def cut_along(part: SurfacePart, loop: NDArray[np.int64]) -> SurfacePart | None:
     if cut_mesh.component_count > 1:
         return None
     added = np.full(len(lids), -1)
-    return SurfacePart(
-        cut_mesh,
-        np.concatenate([part.original_vertices, part.original_vertices[copied], [-1, -1]]),
-        np.concatenate([part.original_triangles, added]),
-        np.concatenate([part.turned, np.zeros(len(lids), bool)]),
-        part.inverted,
+    return replace(
+        part,
+        mesh=cut_mesh,
+        original_vertices=np.concatenate([part.original_vertices, part.original_vertices[copied], [-1, -1]]),
+        original_triangles=np.concatenate([part.original_triangles, added]),
+        turned=np.concatenate([part.turned, np.zeros(len(lids), bool)]),
     )
 
 

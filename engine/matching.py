@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .errors import MatchError
+from .joined_match import matched_with_pieces_steps
 from .partial_match import has_border, part_matched_steps
 from .progress import Progress, Steps, run, within
 from .settings import MatchSettings
@@ -105,7 +106,7 @@ def match_steps(
         result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
     else:
         end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
-        result = yield from within(matched_steps(x, y, task), 0.06, end)
+        result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.06, end)
         result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
     yield Progress(1.0, "Done")
     return result

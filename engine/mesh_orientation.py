@@ -15,7 +15,9 @@ from .triangle_components import neighbour_graph, symmetric_components, triangle
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Orientation", "inward_components", "orient_consistently", "turn_triangles"]
+    from .boundary_loops import BoundaryLoops
+
+__all__ = ["Orientation", "enclosed_volumes", "inward_components", "orient_consistently", "turn_triangles"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,29 +161,54 @@ def inward_components(
 
     Notes
     -----
-    Decided by the sign of the volume.  Openings are closed by fans to their centres for this, so that the volume does
-    not depend on the origin.  The true lid of an opening may bulge: it is trusted to stay within a half-ball over an
-    opening of its area a, of volume :math:`\tfrac{2}{3} a^{3/2} / \sqrt{\pi}`.  Where that exceeds the volume, as on a
-    sheet, inside and outside have no meaning, and the surface stays as it is.
+    Decided by the sign of the volume.  The true lid of an opening may bulge: it is trusted to stay within a half-ball
+    over an opening of its area a, of volume :math:`\tfrac{2}{3} a^{3/2} / \sqrt{\pi}`.  Where that exceeds the volume,
+    as on a sheet, inside and outside have no meaning, and the surface stays as it is.
     """
+    loops = boundary_loops(vertices, triangles, np.flatnonzero(twins < 0))
+    volumes = _enclosed_volumes(vertices, triangles, components, loops)
+    doubt = np.zeros(len(volumes))
+    if loops.count:
+        component_of_loop = np.empty(loops.count, np.int64)
+        component_of_loop[loops.labels] = components[loops.half_edges // 3]
+        doubt += np.bincount(component_of_loop, 2 / 3 * loops.areas**1.5 / np.sqrt(np.pi), len(volumes))
+    return volumes < -doubt
+
+
+def enclosed_volumes(
+    vertices: NDArray[np.float64],
+    triangles: NDArray[np.int64],
+    twins: NDArray[np.int64],
+    components: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """Volumes of components, (c,), with lids on their openings: below zero if their triangles look inward.
+
+    The parameters are those of `inward_components`.
+    """
+    loops = boundary_loops(vertices, triangles, np.flatnonzero(twins < 0))
+    return _enclosed_volumes(vertices, triangles, components, loops)
+
+
+def _enclosed_volumes(
+    vertices: NDArray[np.float64],
+    triangles: NDArray[np.int64],
+    components: NDArray[np.int64],
+    loops: BoundaryLoops,
+) -> NDArray[np.float64]:
+    """Volumes of components; openings are closed by fans to their centres, so that no volume depends on the origin."""
     count = int(components.max()) + 1
     # Volumes about a point of the component itself, without which few digits would be left far from the origin.
     origins = np.empty((count, 3))
     origins[components[::-1]] = vertices[triangles[::-1, 0]]
     a, b, c = (vertices[corner] - origins[components] for corner in triangles.T)
     volumes = np.bincount(components, _triple_product(a, b, c), count) / 6
-    doubt = np.zeros(count)
-    loops = boundary_loops(vertices, triangles, np.flatnonzero(twins < 0))
     if loops.count:
         component = components[loops.half_edges // 3]
         origin = origins[component]
         start, end = vertices[loops.tails] - origin, vertices[loops.heads] - origin
         middle = loops.centres[loops.labels] - origin
         volumes -= np.bincount(component, _triple_product(start, end, middle), count) / 6
-        component_of_loop = np.empty(loops.count, np.int64)
-        component_of_loop[loops.labels] = component
-        doubt += np.bincount(component_of_loop, 2 / 3 * loops.areas**1.5 / np.sqrt(np.pi), count)
-    return volumes < -doubt
+    return volumes
 
 
 def _triple_product(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .clean_surface import StandIn
 from .covered_parts import continued, covered_parts_steps
 from .errors import MatchError
+from .joined_surface import with_limbs_steps
 from .pieces_only import share_of, with_piece_only
 from .progress import within
 from .shape import Shape
@@ -176,7 +178,10 @@ def _cut_steps(shape: Shape, covered: NDArray[np.bool_], name: str) -> Steps[Sha
         used = np.zeros(mesh.vertex_count, bool)
         used[mesh.triangles[kept]] = True
         excluded |= ~used
-    return (yield from Shape.steps(mesh, name, excluded=excluded))
+    cut = yield from within(Shape.steps(mesh, name, excluded=excluded), 0.0, 0.7)
+    if not isinstance(shape.surface.cleaned.main, StandIn):
+        return cut
+    return (yield from within(with_limbs_steps(cut, name, np.arange(mesh.vertex_count)), 0.7, 1.0))
 
 
 def _is_below(likeness: float | None, least: float) -> bool:

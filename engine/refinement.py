@@ -11,6 +11,7 @@ from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS, RegisteredPair
 from .dense_match import dense_match_steps
 from .errors import MatchError
+from .joined_surface import joined_shapes_steps, with_limbs_steps
 from .landmarks import locate_landmarks
 from .pieces_only import piece_of, with_pieces_only
 from .progress import run, within
@@ -102,7 +103,8 @@ def refine_map_steps(
     first, second = (_left_out(mask, piece) for mask, piece in zip(excluded, pieces, strict=True))
     seen = reflected_mesh(source) if mirrored else source
     x = yield from within(Shape.steps(seen, "source", excluded=first), 0.0, 0.05)
-    y = yield from within(Shape.steps(target, "target", excluded=second), 0.05, 0.1)
+    y = yield from within(Shape.steps(target, "target", excluded=second), 0.05, 0.08)
+    x, y = yield from within(joined_shapes_steps(x, y, source_to_target, ends), 0.08, 0.1)
     known = locate_landmarks(x, y, landmarks, np.size(landmarks))
     if known is None:
         raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
@@ -204,9 +206,10 @@ def point_distortions(
     count = np.size(source_vertices)
     anchors = np.unique(np.linspace(0, count - 1, min(count, _ANCHORS)).round().astype(np.int64))
     rows = []
-    for mesh, vertices in ((source, source_vertices), (target, target_vertices)):
-        shape = Shape(mesh)
-        own = shape.surface.mesh_vertices(np.asarray(vertices, np.int64))
+    for mesh, given in ((source, source_vertices), (target, target_vertices)):
+        vertices = np.asarray(given, np.int64)
+        shape = run(with_limbs_steps(Shape(mesh), "mesh", vertices))
+        own = shape.surface.mesh_vertices(vertices)
         rows.append(shape.solver.distances(own[anchors])[:, own] / shape.scale)
     squares = np.square(rows[0] - rows[1])  # (a, k)
     others = np.maximum(len(anchors) - np.isin(np.arange(count), anchors), 1)

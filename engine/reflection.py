@@ -10,7 +10,6 @@ from .mesh import TriangleMesh
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
-    from .clean_surface import SurfacePart
     from .prepared_surface import PreparedSurface
 
 __all__ = ["reflected_mesh", "reflected_points", "reflected_surface"]
@@ -29,7 +28,7 @@ def reflected_points(reflection: TriangleMesh, points: SurfacePoints) -> Surface
 def reflected_surface(surface: PreparedSurface) -> PreparedSurface:
     """Reflect all of a prepared surface; vertices and triangles keep their numbers."""
     original, cleaned, proxy = reflected_mesh(surface.original), surface.cleaned, surface.proxy
-    pieces = tuple(_reflected_part(piece) for piece in cleaned.pieces)
+    pieces = tuple(piece.reflected() for piece in cleaned.pieces)
     coarse = pieces[0].mesh if proxy.mesh is cleaned.mesh else reflected_mesh(proxy.mesh)
     return replace(
         surface,
@@ -37,8 +36,3 @@ def reflected_surface(surface: PreparedSurface) -> PreparedSurface:
         cleaned=replace(cleaned, original=original, pieces=pieces),
         proxy=replace(proxy, mesh=coarse, points=reflected_points(coarse, proxy.points)),
     )
-
-
-def _reflected_part(part: SurfacePart) -> SurfacePart:
-    # As the triangles of the original turn as well, those that were turned against them still are.
-    return replace(part, mesh=reflected_mesh(part.mesh))

@@ -28,6 +28,29 @@ def halves_apart(vertices, triangles, gap, axis=0):
     return vertices, triangles
 
 
+def in_limbs(vertices, triangles, parts, depth):
+    """Cut a body into pieces that go on a row of triangles beneath the trunk, so deep, where they meet it.
+
+    Each vertex belongs to a part (n,), the trunk is 0.  Also returns the vertex of the body that each vertex was.
+    """
+    normals = np.zeros_like(vertices)
+    corners = vertices[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    np.add.at(normals, triangles, across[:, None])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    meshes, whole = [], []
+    for part in range(parts.max() + 1):
+        inside = parts == part
+        rows = triangles[inside[triangles].any(axis=1)]
+        if part:  # one row further
+            rows = triangles[np.isin(triangles, rows).any(axis=1)]
+        own, faces = np.unique(rows, return_inverse=True)
+        hidden = (~inside[own])[:, None] * (depth if part else 0.0)
+        meshes.append((vertices[own] - hidden * normals[own], faces.reshape(-1, 3)))
+        whole.append(own)
+    return *together(*meshes), np.concatenate(whole)
+
+
 def in_pieces(vertices, triangles):
     """Give every triangle three vertices of its own, as a raw scan or a text format has them."""
     return vertices[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import Delaunay
 
+from engine.surface_nets import surface_net
+
 
 def plane(count=20, size=1.0, jitter=0.0, seed=0):
     """Square [0, size]^2 at z = 0 of count^2 vertices.
@@ -255,7 +257,8 @@ def capsule_surface(capsules, box, resolution, turn=0.0):
         near = ((points > box[0]) & (points < box[1])).all(axis=-1)
         values = np.ones(near.shape)
         values[near] = _depth(capsules, points[near])
-        vertices, triangles = _surface_net(points, values)
+        places, triangles = surface_net(-values)
+        vertices = (places / resolution + [axis[0] for axis in axes]) @ frame.T
         sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
         if (np.unique(sides @ [len(vertices), 1], return_counts=True)[1] == 2).all():
             break
@@ -331,46 +334,3 @@ def bent(points, along, towards, length, angle):
     new_s = radius * np.sin(turned) + rest * np.cos(turned) - u * np.sin(turned)
     new_u = radius * (1 - np.cos(turned)) + rest * np.sin(turned) + u * np.cos(turned)
     return points + (new_s - s)[:, None] * along + (new_u - u)[:, None] * towards
-
-
-def _surface_net(grid, values):
-    """Mesh the surface values = 0 on a grid (x, y, z, 3): one vertex in each cell that it crosses."""
-    inside = values < 0
-    shape = np.array(values.shape)
-    cell_sums, cell_counts = np.zeros((*(shape - 1), 3)), np.zeros(shape - 1, int)
-    crossed = []
-    for axis in range(3):
-        lower, upper = (_slices(axis, part) for part in (slice(None, -1), slice(1, None)))
-        change = inside[lower] != inside[upper]
-        where = np.argwhere(change)
-        v0, v1 = values[lower][change], values[upper][change]
-        part = (v0 / (v0 - v1))[:, None]
-        points = grid[lower][change] * (1 - part) + grid[upper][change] * part
-        others = [other for other in range(3) if other != axis]
-        for i, j in ((0, 0), (-1, 0), (-1, -1), (0, -1)):
-            cell = where.copy()
-            cell[:, others] += [i, j]
-            np.add.at(cell_sums, tuple(cell.T), points)
-            np.add.at(cell_counts, tuple(cell.T), 1)
-        crossed.append((where, others, inside[lower][change] != (axis == 1)))
-    used = cell_counts > 0
-    number = np.cumsum(used).reshape(used.shape) - 1
-    vertices = cell_sums[used] / cell_counts[used][:, None]
-    quads = []
-    for where, others, forward in crossed:
-        ring = []
-        for i, j in ((0, 0), (-1, 0), (-1, -1), (0, -1)):
-            cell = where.copy()
-            cell[:, others] += [i, j]
-            ring.append(number[tuple(cell.T)])
-        quad = np.stack(ring, axis=1)
-        quads.append(np.where(forward[:, None], quad, quad[:, ::-1]))
-    a, b, c, d = np.concatenate(quads).T
-    shorter = np.linalg.norm(vertices[a] - vertices[c], axis=1) < np.linalg.norm(vertices[b] - vertices[d], axis=1)
-    first = np.where(shorter[:, None], np.stack([a, b, c], axis=1), np.stack([a, b, d], axis=1))
-    second = np.where(shorter[:, None], np.stack([a, c, d], axis=1), np.stack([b, c, d], axis=1))
-    return vertices, np.concatenate([first, second])
-
-
-def _slices(axis, part):
-    return tuple(part if other == axis else slice(None) for other in range(3))

@@ -1085,6 +1085,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Cutting islands": "アイランドを切り出しています",
     "Laying faces onto islands": "面をアイランドに配置しています",
     "Carrying weights": "ウェイトを転送しています",
+    "Joining pieces": "ピースをつないでいます",
     "Looking for missing parts": "足りない部分を探しています",
     "Looking for torn vertices": "引き離された頂点を探しています",
     "Filling in weights": "ウェイトを補充しています",
@@ -1709,6 +1710,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "The {0} has {1} large openings: the surface ends there.": (
         "{0}には大きな開口部が{1}個あります。表面はそこで終わるものとします。"
+    ),
+    "The {0} is made of {1} pieces: one surface around all of them was matched.": (
+        "{0}は {1} 個のピースでできています: すべてを包む 1 つのサーフェスでマッチしました。"
     ),
     "The {0} has {1} smaller part: it follows its surroundings.": (
         "{0}には小さなパーツが{1}個あります。周囲に従います。"

@@ -896,6 +896,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Cutting islands": "正在切分孤岛",
     "Laying faces onto islands": "正在将面放到孤岛上",
     "Carrying weights": "正在传递权重",
+    "Joining pieces": "正在合并部件",
     "Looking for missing parts": "正在查找缺失的部分",
     "Looking for torn vertices": "正在查找撕开的顶点",
     "Filling in weights": "正在填充权重",
@@ -1366,6 +1367,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The normals of the {0} point inwards: they were read the other way round.": "{0}的法线朝内：已按反方向读取。",
     "The {0} has {1} large opening: the surface ends there.": "{0}有 {1} 个大开口：表面到此为止。",
     "The {0} has {1} large openings: the surface ends there.": "{0}有 {1} 个大开口：表面到此为止。",
+    "The {0} is made of {1} pieces: one surface around all of them was matched.": (
+        "{0}由 {1} 个部件组成：匹配的是包住所有部件的一个曲面。"
+    ),
     "The {0} has {1} smaller part: it follows its surroundings.": "{0}有 {1} 个较小的部分：随周围移动。",
     "The {0} has {1} smaller parts: they follow their surroundings.": "{0}有 {1} 个较小的部分：随周围移动。",
     "The {0} has {1} loose vertex: it follows its surroundings.": "{0}有 {1} 个孤立顶点：随周围移动。",

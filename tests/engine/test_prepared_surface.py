@@ -34,7 +34,7 @@ def body():
 @pytest.fixture(scope="module")
 def dense():
     """A mesh of some thousand vertices, and what stands for it."""
-    mesh = TriangleMesh(*subdivided(*creature(0.4, 9)[:2], 2))
+    mesh = TriangleMesh(*subdivided(*creature(0.4, 9, turn=0.7)[:2], 2))
     return prepared(mesh, proxy_vertices=600)
 
 

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Match bodies that were put together from pieces: piece by piece, or all pieces of a body as one surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .errors import MatchError
+from .joined_surface import separate_limbs, with_limbs_steps
+from .pieced_body import PiecedBody, resized_share, torn_share
+from .progress import within
+from .shape_matching import matched_steps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .progress import Steps
+    from .result import MatchResult
+    from .shape import Shape
+    from .shape_matching import MatchTask
+
+__all__ = ["matched_with_pieces_steps"]
+
+_ALIKE = 0.1
+"""By how much the main parts may differ, as parts of their bodies, for the pieces to be matched one by one at first."""
+
+_TOGETHER, _MORE = 0.955, 0.02
+"""Part of the bodies from which on pieces go with one another, and how much more has to if bodies are joined."""
+
+_TORN = 0.2
+"""Part of a body in pieces that are torn off from which on pieces were taken for others."""
+
+_PLAUSIBLE = 13.5
+"""Likeness from which on bodies that were joined are matched rightly rather than not."""
+
+_FIRST, _JOINED = 0.4, 0.05
+"""Parts of the work that are done when pieces are matched one by one, and that joining those of a body takes."""
+
+
+def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tuple[MatchResult, Shape, Shape]]:
+    """Match two bodies piece by piece, or where the pieces do not go with one another, all of a body as one surface.
+
+    A head, hands or a forearm may be pieces of their own.  If both bodies are cut alike, each piece goes with one.
+    Else one may be cut elsewhere, or not at all: then one surface around all its pieces is matched.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The source and the target.
+    task : MatchTask
+        What is wanted.
+
+    Returns
+    -------
+    result : MatchResult
+        The more credible one.
+    x, y : Shape
+        What was matched.
+    """
+    limbs = separate_limbs(x.surface.cleaned), separate_limbs(y.surface.cleaned)
+    if not (limbs[0].any() or limbs[1].any()):
+        return (yield from matched_steps(x, y, task)), x, y
+    first = None
+    if abs(_main_share(x, limbs[0]) - _main_share(y, limbs[1])) < _ALIKE:
+        first = yield from within(_tried_steps(x, y, task), 0.0, _FIRST)
+    together = 0.0 if first is None else _together(first, x, y, limbs)
+    if first is not None and together >= _TOGETHER:
+        return first, x, y
+    joined = []
+    for number, (shape, name) in enumerate(((x, "source"), (y, "target"))):
+        begin, end = (_FIRST + _JOINED * (number + i) for i in (0, 1))
+        steps = with_limbs_steps(shape, name, np.flatnonzero(limbs[number]))
+        joined.append((yield from within(steps, begin, end)))
+    task.clock.lap("joining pieces")
+    begin = _FIRST + 2 * _JOINED
+    end = 1.0 if first is not None else (1 + begin) / 2
+    second = None
+    if joined[0] is not x or joined[1] is not y:
+        second = yield from within(_tried_steps(joined[0], joined[1], task), begin, end)
+    if second is None:
+        # If bodies as a whole cannot be matched either, their main parts say why.
+        return first or (yield from within(matched_steps(x, y, task), end, 1.0)), x, y
+    if first is None and not (_is_plausible(second) and _partnered(second) >= _TOGETHER):
+        # What hangs on one body alone is better left alone.
+        first = yield from within(_tried_steps(x, y, task), end, 1.0)
+        together = 0.0 if first is None else _together(first, x, y, limbs)
+    if first is None or _is_better(second, first, together):
+        return second, joined[0], joined[1]
+    return first, x, y
+
+
+def _main_share(shape: Shape, limbs: NDArray[np.bool_]) -> float:
+    """Tell what part of a body its main part is."""
+    return float(_body(shape, limbs).shares[0])
+
+
+def _tried_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult | None]:
+    """Match two surfaces; None if they cannot be."""
+    try:
+        return (yield from matched_steps(x, y, task))
+    except MatchError:
+        return None
+
+
+def _together(result: MatchResult, x: Shape, y: Shape, limbs: tuple[NDArray[np.bool_], NDArray[np.bool_]]) -> float:
+    """Tell what part of two bodies has a partner that fits to the partners of what is around it."""
+    there, back, quality = result.source_to_target, result.target_to_source, result.quality
+    if there is None or back is None or quality is None:
+        return 1.0
+    bodies = _body(x, limbs[0]), _body(y, limbs[1])
+    torn = max(torn_share(bodies[0], bodies[1], there), torn_share(bodies[1], bodies[0], back))
+    resized = max(resized_share(bodies[0], bodies[1], there), resized_share(bodies[1], bodies[0], back))
+    return min(_partnered(result), 1 - resized) * (1 - torn if torn > _TORN else 1.0)
+
+
+def _partnered(result: MatchResult) -> float:
+    """Tell what part of two bodies has a partner."""
+    quality = result.quality
+    if quality is None:
+        return 1.0
+    return min(quality.coverage, quality.source_coverage) * (1 - quality.pieces_alone)
+
+
+def _body(shape: Shape, limbs: NDArray[np.bool_]) -> PiecedBody:
+    """Take what of a mesh is of the main part, or of limbs (n,)."""
+    parts = shape.surface.cleaned.vertex_parts
+    return PiecedBody(shape.original, np.where(limbs | (parts == 0), parts, -1))
+
+
+def _is_plausible(result: MatchResult) -> bool:
+    """Say whether bodies that were joined seem to be matched rightly; with landmarks they are."""
+    if result.quality is None:
+        return False
+    return result.quality.likeness is None or result.quality.likeness >= _PLAUSIBLE
+
+
+def _is_better(joined: MatchResult, pieces: MatchResult, together: float) -> bool:
+    """Say whether a match of joined bodies is more credible than one by pieces, so much of which goes together."""
+    ours, theirs = joined.quality, pieces.quality
+    if ours is None or theirs is None:
+        return False
+    if _partnered(joined) <= together + _MORE:
+        return False
+    return _is_plausible(joined) or (theirs.likeness or 0.0) < (ours.likeness or 0.0)

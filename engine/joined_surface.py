@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One surface around all the pieces of a body that was put together from several."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .area_samples import even_samples
+from .clean_surface import StandIn
+from .cleaning import clean
+from .cleaning_notes import cleaning_notes
+from .closest_points import ClosestPoints
+from .edge_pairs import group_half_edges, pair_half_edges
+from .errors import MeshError
+from .gap_bridges import bridged
+from .mesh import TriangleMesh
+from .mesh_orientation import enclosed_volumes
+from .progress import Progress, Steps, within
+from .proxy import Proxy, proxy_steps
+from .shape import Shape
+from .solid_indicator import solid_indicator
+from .surface_nets import surface_net
+from .triangle_components import triangle_components
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .clean_surface import CleanSurface, SurfacePart
+    from .surface_map import SurfaceMap
+
+__all__ = ["joined_shapes_steps", "joined_steps", "separate_limbs", "with_limbs_steps"]
+
+_BESIDE = 0.02
+"""How far from what is known already, in sqrt(area), a piece goes on beyond it: eyes, teeth and clothes do not."""
+
+_MOSTLY = 0.3
+"""Part of a piece that must do so: the rest may lie in others."""
+
+_LYING = 0.04
+"""How far, in sqrt(area), most of a piece may be from a surface around it: its vertices are 0.015 apart."""
+
+_LEAST_MORE = 0.04
+"""Part of the surface in such pieces from which on they matter: a head or two hands."""
+
+_SAMPLES = 3000
+"""Points that all pieces are compared at."""
+
+_SPACING = 0.007
+"""Distance of the places of the grid, in sqrt(area): half a finger of a person."""
+
+_LEVEL = 0.4
+"""How far inside counts as inside: less than half, so that open ends that stop short of each other meet."""
+
+_FLAT = 0.02
+"""Volume, by the power 3/2 of the area, below which a piece has no inside: a ball has 0.094."""
+
+_NORMAL_LENGTH = 0.01
+"""How much farther, in sqrt(area), a place may be for not being on a side that faces away."""
+
+_WIDEST = 0.06
+"""Widest gap that is bridged, in sqrt(area)."""
+
+_LABEL = "Joining pieces"
+
+
+def separate_limbs(cleaned: CleanSurface) -> NDArray[np.bool_]:
+    """Tell which vertices of a mesh, (n,), are of pieces that the main one lacks as a body: no eyes and no clothes."""
+    return _taking_part(cleaned)[cleaned.vertex_parts] & (cleaned.vertex_parts > 0)
+
+
+def with_limbs_steps(shape: Shape, name: str, vertices: NDArray[np.int64]) -> Steps[Shape]:
+    """Join the pieces of a body if given vertices (k,) of it are not all on the main one, but on others.
+
+    Returns
+    -------
+    Shape
+        The body as one surface, or what was given.
+    """
+    surface = shape.surface
+    limbs = separate_limbs(surface.cleaned)
+    known = vertices[(vertices >= 0) & (vertices < len(limbs))]
+    if not limbs[known].any():
+        return shape
+    joined = yield from joined_steps(surface.cleaned, name)
+    if joined is surface.cleaned:
+        return shape
+    return Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh)))
+
+
+def joined_shapes_steps(
+    x: Shape, y: Shape, found: SurfaceMap, ends: tuple[NDArray[np.int64], NDArray[np.int64]]
+) -> Steps[tuple[Shape, Shape]]:
+    """Join the pieces of two bodies if a map takes the main piece of one to other pieces of the other.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The source and the target.
+    found : SurfaceMap
+        A map from the source.
+    ends : pair of (k,) array of int
+        Vertices of the source and of the target that have to be on what is matched.
+
+    Returns
+    -------
+    x, y : Shape
+        The bodies as one surface each, or what was given.
+    """
+    limbs = separate_limbs(x.surface.cleaned), separate_limbs(y.surface.cleaned)
+    main, on_main = (shape.surface.cleaned.vertex_parts == 0 for shape in (x, y))
+    images, areas = found.nearest_vertices, x.original.vertex_areas
+    across = (main & limbs[1][images]) | (limbs[0] & on_main[images])
+    if areas @ across > _LEAST_MORE * areas[main | limbs[0]].sum():
+        ends = np.flatnonzero(limbs[0]), np.flatnonzero(limbs[1])
+    x = yield from within(with_limbs_steps(x, "source", ends[0]), 0.0, 0.5)
+    y = yield from within(with_limbs_steps(y, "target", ends[1]), 0.5, 1.0)
+    return x, y
+
+
+def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Steps[CleanSurface]:
+    """Put one surface around the main part of a mesh and the pieces that go on beyond it.
+
+    Parameters
+    ----------
+    cleaned : CleanSurface
+        The mesh, and its pieces.
+    name : str
+        What notes call it.
+    vertices : int
+        About how many vertices the surface should have.
+
+    Returns
+    -------
+    CleanSurface
+        That surface in the place of the main part; what was given if the pieces have no inside together.
+
+    Notes
+    -----
+    What is inside of the pieces is found on a grid, however they lie in each other and where they are open, and gaps
+    between them are bridged.  The surface is where that begins.  What is finer than the grid, such as fingers that
+    touch, is one there.
+    """
+    taking_part = _taking_part(cleaned)
+    body = _Body.of([piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if takes])
+    unit = float(np.sqrt(body.mesh.area))
+    yield Progress(0.0, _LABEL)
+    solid = solid_indicator(body.solid, _SPACING * unit)
+    yield Progress(0.3, _LABEL)
+    values = bridged(solid.values, _LEVEL, _WIDEST * unit / solid.spacing)
+    yield Progress(0.5, _LABEL)
+    places, triangles = surface_net(values, _LEVEL)
+    if not len(triangles):
+        return cleaned
+    try:
+        skin = clean(TriangleMesh(places * solid.spacing + solid.origin, triangles)).mesh
+    except MeshError:
+        return cleaned
+    coarse = yield from within(proxy_steps(skin, vertices), 0.6, 0.9, _LABEL)
+    # What is too far away from all else was not reached.
+    taking_part &= _lying_on(coarse.mesh, cleaned.pieces)
+    if not taking_part[0] or taking_part.sum() == 1:
+        return cleaned
+    body = _Body.of([piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if takes])
+    number = np.cumsum(~taking_part)
+    number[taking_part] = 0
+    parts = np.append(number, -1)[cleaned.vertex_parts]
+    main = body.stand_in(coarse.mesh, cleaned)
+    yield Progress(1.0, _LABEL)
+    nearest = main.mesh.triangles[main.place_triangles, main.place_barycentric.argmax(axis=1)]
+    others = tuple(piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if not takes)
+    united = int(taking_part.sum())
+    counts = replace(cleaned.counts, united=united, parts=cleaned.counts.parts + 1 - united, left_open=0)
+    return replace(
+        cleaned,
+        pieces=(main, *others),
+        vertex_parts=parts,
+        vertex_images=np.where(parts == 0, nearest, cleaned.vertex_images),
+        notes=cleaning_notes(name, counts),
+        counts=counts,
+    )
+
+
+def _taking_part(cleaned: CleanSurface) -> NDArray[np.bool_]:
+    """Tell which pieces (p,) go on beyond those before them: the main one, and limbs if these matter."""
+    pieces = cleaned.pieces
+    areas = np.array([piece.mesh.area for piece in pieces])
+    least = _LEAST_MORE * areas.sum()
+    taking_part = np.arange(len(pieces)) == 0
+    if areas[1:].sum() <= least:
+        return taking_part
+    samples = [even_samples(piece.mesh, areas.sum() / _SAMPLES) for piece in pieces]
+    known = samples[0]
+    for number in range(1, len(pieces)):
+        beside = cKDTree(known).query(samples[number])[0] > _BESIDE * np.sqrt(areas.sum())
+        if beside.mean() > _MOSTLY:
+            taking_part[number] = True
+            known = np.concatenate([known, samples[number]])
+    taking_part[1:] &= areas[1:][taking_part[1:]].sum() > least
+    return taking_part
+
+
+def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> NDArray[np.bool_]:
+    """Tell which pieces (p,) lie on a surface, or near beneath it, for the most part."""
+    tree, lying = cKDTree(mesh.vertices), np.zeros(len(pieces), bool)
+    for number, piece in enumerate(pieces):
+        distances = tree.query(even_samples(piece.mesh, mesh.area / _SAMPLES))[0]
+        lying[number] = np.median(distances) < _LYING * np.sqrt(mesh.area)
+    return lying
+
+
+def _together(meshes: list[TriangleMesh]) -> TriangleMesh:
+    """Put meshes into one."""
+    firsts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes[:-1])])
+    triangles = [mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]
+    return TriangleMesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """The pieces of a body, turned to look outward.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        All of them, with filled holes.
+    vertices, triangles : (n,) and (m,) array of int
+        The original vertex and triangle of each, -1 in filled holes.
+    turned : (m,) array of bool
+        Which have their last two corners exchanged against the original.
+    solid : TriangleMesh
+        Those that have an inside.
+    """
+
+    mesh: TriangleMesh
+    vertices: NDArray[np.int64]
+    triangles: NDArray[np.int64]
+    turned: NDArray[np.bool_]
+    solid: TriangleMesh
+
+    @classmethod
+    def of(cls, pieces: list[SurfacePart]) -> _Body:
+        """Turn pieces outward."""
+        together = _together([piece.mesh for piece in pieces])
+        groups = group_half_edges(together.triangles, together.vertex_count)
+        twins = pair_half_edges(together.vertices, together.triangles, groups)
+        components = triangle_components(twins)
+        volumes = enclosed_volumes(together.vertices, together.triangles, twins, components)
+        inward = (volumes < 0)[components]
+        areas = np.bincount(components, together.triangle_areas)
+        has_inside = (np.abs(volumes) >= _FLAT * areas**1.5) | (areas == areas.max())
+        triangles = np.where(inward[:, None], together.triangles[:, [0, 2, 1]], together.triangles)
+        return cls(
+            TriangleMesh(together.vertices, triangles),
+            np.concatenate([piece.original_vertices for piece in pieces]),
+            np.concatenate([piece.original_triangles for piece in pieces]),
+            np.concatenate([piece.turned for piece in pieces]) ^ inward,
+            TriangleMesh(together.vertices, triangles[has_inside[components]]),
+        )
+
+    def stand_in(self, mesh: TriangleMesh, cleaned: CleanSurface) -> StandIn:
+        """Let a surface around the body stand for it."""
+        kept = self.triangles >= 0
+        shown = TriangleMesh(self.mesh.vertices, self.mesh.triangles[kept])
+        reach = _NORMAL_LENGTH * float(np.sqrt(mesh.area))
+        looking = {"normal_length": reach, "normal_weight": reach**2}
+        here = ClosestPoints(shown).nearest(mesh.vertices, mesh.vertex_normals, **looking)
+        own = self.vertices[here.nearest_vertices(shown.triangles)]
+        # Every original vertex, also one that was welded to another, is where its surface is nearest.
+        its = np.flatnonzero(self.vertices >= 0)
+        normals = np.zeros((cleaned.original.vertex_count, 3))
+        normals[self.vertices[its]] = self.mesh.vertex_normals[its]
+        places = ClosestPoints(mesh).nearest(cleaned.original.vertices, normals, **looking)
+        return StandIn(
+            mesh,
+            own,
+            self.triangles[kept][here.triangles][mesh.triangles[:, 0]],
+            np.zeros(mesh.triangle_count, bool),
+            inverted=False,
+            place_triangles=places.triangles,
+            place_barycentric=places.barycentric,
+            shown=shown,
+            shown_triangles=self.triangles[kept],
+            shown_turned=self.turned[kept],
+        )

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bodies in pieces, and whether a map keeps these together and as large as they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import TriangleMesh
+    from .surface_map import SurfaceMap
+
+__all__ = ["PiecedBody", "resized_share", "torn_share"]
+
+_TOUCHING, _APART = 0.02, 0.08
+"""How much farther than its nearest vertex from other pieces one may be that touches them, and how far apart the images
+are of a piece that is torn off: in sqrt(area)."""
+
+
+@dataclass(frozen=True, eq=False)
+class PiecedBody:
+    """A body in pieces.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The mesh, n vertices.
+    pieces : (n,) array of int
+        The piece that each vertex is of; -1 if it is not of the body.
+    """
+
+    mesh: TriangleMesh
+    pieces: NDArray[np.int64]
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Area of each vertex as a part of the body's, (n,)."""
+        areas = self.mesh.vertex_areas * (self.pieces >= 0)
+        return areas / areas.sum()
+
+    @cached_property
+    def unit(self) -> float:
+        """Square root of the area of the body."""
+        return float(np.sqrt(self.mesh.vertex_areas[self.pieces >= 0].sum()))
+
+    @cached_property
+    def shares(self) -> NDArray[np.float64]:
+        """Area of each piece as a part of the body's, (p,)."""
+        return self._on_pieces(self.pieces, self.areas)
+
+    def carried_shares(self, images: NDArray[np.int64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Sum areas (k,) that go to vertices (k,) of the mesh, for each piece, (p,)."""
+        return self._on_pieces(self.pieces[images], areas)
+
+    def _on_pieces(self, pieces: NDArray[np.int64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
+        sums: NDArray[np.float64] = np.bincount(pieces + 1, areas, int(self.pieces.max()) + 2).astype(np.float64)
+        return sums[1:]
+
+
+def resized_share(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> float:
+    """Tell what part of a body a map would have to move from some pieces of the other to others, to fill them evenly.
+
+    Parameters
+    ----------
+    source, target : PiecedBody
+        The bodies.
+    found : SurfaceMap
+        A map from the source to the target.
+
+    Returns
+    -------
+    float
+        Half of the sum over pieces of the target of how much their shares of its area differ from the shares of the
+        source's that are mapped there (the distance in total variation).  Near zero for bodies that are cut alike.
+    """
+    carried = target.carried_shares(found.nearest_vertices, source.areas)
+    return float(np.abs(carried - target.shares).sum() / 2)
+
+
+def torn_share(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> float:
+    """Tell what part of a body is in pieces whose images do not touch those of what they touch.
+
+    Parameters
+    ----------
+    source, target : PiecedBody
+        The bodies.
+    found : SurfaceMap
+        A map from the source to the target.
+
+    Returns
+    -------
+    float
+        The part of the source's area; the first piece, which the others hang on, is in none.
+    """
+    vertices, images = source.mesh.vertices, found.positions
+    body = np.flatnonzero(source.pieces >= 0)
+    torn = 0.0
+    for piece in np.unique(source.pieces[source.pieces > 0]):
+        its, others = body[source.pieces[body] == piece], body[source.pieces[body] != piece]
+        distances, nearest = cKDTree(vertices[others]).query(vertices[its])
+        touching = distances <= distances.min() + _TOUCHING * source.unit
+        apart = np.linalg.norm(images[its] - images[others[nearest]], axis=1) / target.unit - distances / source.unit
+        if np.median(apart[touching]) > _APART:
+            torn += float(source.areas[its].sum())
+    return torn

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One surface around all pieces of a body."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from engine import Shape, TriangleMesh
+from engine.cleaning import clean
+from engine.closest_points import ClosestPoints
+from engine.handles import genus
+from engine.joined_surface import separate_limbs, with_limbs_steps
+from engine.progress import run
+from engine.reflection import reflected_surface
+from engine.surface import SurfacePoints
+from tests.limbs import modular_creature
+from tests.messes import together
+from tests.shapes import creature, icosphere, permuted, rotation
+
+
+def joined(mesh):
+    return run(with_limbs_steps(Shape(mesh, "source"), "source", np.arange(mesh.vertex_count))).surface
+
+
+@pytest.fixture(scope="module")
+def body():
+    return modular_creature()
+
+
+@pytest.fixture(scope="module")
+def surface(body):
+    return joined(body.mesh)
+
+
+def whole():
+    vertices, triangles, _ = creature(0.0, 10)
+    return TriangleMesh(vertices, triangles)
+
+
+def closeness(mesh, points):
+    """Distances of points from a mesh, over the root of the area of the creature."""
+    return np.sqrt(ClosestPoints(mesh).nearest(points).squared_distances) / 2.48
+
+
+def test_it_is_the_surface_of_the_whole_body(surface):
+    mesh = surface.mesh
+    assert mesh.is_closed
+    assert mesh.component_count == 1
+    assert genus(mesh) == 0
+    assert mesh.area == pytest.approx(whole().area, rel=0.05)
+    assert closeness(whole(), mesh.vertices).max() < 0.02
+    assert closeness(mesh, whole().vertices).max() < 0.02
+    assert any("made of 7 pieces" in note for note in surface.cleaned.notes)
+    assert not any("opening" in note or "smaller part" in note for note in surface.cleaned.notes)
+
+
+def test_there_and_back_leads_home(surface, body):
+    every = np.arange(body.mesh.vertex_count)
+    assert (surface.cleaned.vertex_parts == 0).all()
+    places = SurfacePoints.from_barycentric(
+        surface.mesh, surface.cleaned.main.place_triangles, surface.cleaned.main.place_barycentric
+    )
+    back = surface.on_original(places)
+    away = np.linalg.norm(back.positions - body.mesh.vertices[every], axis=1) / 2.48
+    assert np.median(away) < 0.004
+    assert away.max() < 0.03  # beneath the trunk
+    # The nearest vertices lie no farther than the spacing of either mesh.
+    near = body.mesh.vertices[surface.vertices] - surface.mesh.vertices
+    assert (np.linalg.norm(near, axis=1) / 2.48).max() < 0.05
+
+
+def test_a_map_of_it_is_one_of_all_vertices(surface, body):
+    identity = SurfacePoints.at_vertices(surface.mesh, np.arange(surface.mesh.vertex_count))
+    every = np.arange(body.mesh.vertex_count)
+    triangles, barycentric = surface.cleaned.images_of(every, identity, surface.mesh)
+    images = SurfacePoints.from_barycentric(surface.mesh, triangles, barycentric)
+    assert (np.linalg.norm(images.positions - body.mesh.vertices, axis=1) / 2.48).max() < 0.03
+
+
+def test_pieces_that_are_inside_out_do_not_matter(body, surface):
+    triangles = body.mesh.triangles.copy()
+    for piece in (0, 2, 5):
+        turned = body.pieces[triangles[:, 0]] == piece
+        triangles[turned] = triangles[turned][:, ::-1]
+    other = joined(TriangleMesh(body.mesh.vertices, triangles))
+    assert closeness(surface.mesh, other.mesh.vertices).max() < 0.005
+
+
+def test_order_place_and_size_do_not_matter(body, surface):
+    vertices, triangles, _ = permuted(body.mesh.vertices, body.mesh.triangles)
+    turn = rotation([1.0, 2, 3], 1.0)
+    other = joined(TriangleMesh(1000 * vertices @ turn.T + 700, triangles))
+    back = (other.mesh.vertices - 700) @ turn / 1000
+    assert closeness(surface.mesh, back).max() < 0.01
+    assert np.median(closeness(surface.mesh, back)) < 0.002
+
+
+def test_gaps_are_bridged(body):
+    vertices = body.mesh.vertices.copy()
+    for piece in range(1, 7):
+        own = body.pieces == piece
+        away = vertices[own].mean(axis=0) - vertices[body.pieces == 0].mean(axis=0)
+        vertices[own] += 0.2 * away / np.linalg.norm(away)
+    found = joined(TriangleMesh(vertices, body.mesh.triangles))
+    assert found.mesh.component_count == 1
+    assert found.cleaned.main.shown.triangle_count == body.mesh.triangle_count
+    assert (closeness(found.mesh, vertices) < 0.02).mean() > 0.98
+
+
+def test_seen_in_a_mirror_it_stands_for_the_mirrored_body(surface, body):
+    mirrored = reflected_surface(surface)
+    main = mirrored.cleaned.main
+    places = SurfacePoints.from_barycentric(mirrored.mesh, main.place_triangles, main.place_barycentric)
+    back = mirrored.on_original(places)
+    away = np.linalg.norm(back.positions - body.mesh.vertices * [-1, 1, 1], axis=1) / 2.48
+    assert np.median(away) < 0.004
+    assert mirrored.mesh.vertices == pytest.approx(surface.mesh.vertices * [-1, 1, 1])
+
+
+def test_limbs_are_separate_but_eyes_and_clothes_are_not(body):
+    vertices, triangles, _ = creature(0.0, 10)
+    mesh = TriangleMesh(vertices, triangles)
+    middle = abs(vertices[:, 0]) < 0.4
+    coat = vertices + 0.03 * mesh.vertex_normals, triangles[middle[triangles].all(axis=1)]
+    ball, faces = icosphere(3)
+    eye = 0.06 * ball + [1.2, 0.1, 0.5], faces
+    clothed = clean(TriangleMesh(*together((vertices, triangles), coat, eye)))
+    assert not separate_limbs(clothed).any()
+    assert np.array_equal(separate_limbs(clean(body.mesh)), body.pieces > 0)
+
+
+def test_eyes_stay_pieces_of_their_own(body):
+    ball, faces = icosphere(3)
+    eyes = [(0.06 * ball + [1.2, side, 0.5], faces) for side in (-0.1, 0.1)]
+    found = joined(TriangleMesh(*together((body.mesh.vertices, body.mesh.triangles), *eyes)))
+    assert len(found.cleaned.pieces) == 3
+    count = body.mesh.vertex_count
+    assert np.array_equal(found.cleaned.vertex_parts > 0, np.arange(count + 2 * len(ball)) >= count)
+    assert {"The source has 2 smaller parts: they follow their surroundings."} <= set(found.cleaned.notes)
+
+
+def test_a_mesh_in_one_piece_has_no_limbs():
+    shape = Shape(whole())
+    assert not separate_limbs(shape.surface.cleaned).any()
+    assert run(with_limbs_steps(shape, "source", np.arange(5))) is shape
+
+
+def test_only_what_is_asked_for_is_joined(body):
+    shape = Shape(body.mesh)
+    assert run(with_limbs_steps(shape, "source", np.flatnonzero(body.pieces == 0))) is shape
+    other = run(with_limbs_steps(shape, "source", np.flatnonzero(body.pieces == 3)[:2]))
+    assert (other.surface.cleaned.vertex_parts == 0).all()
+    # What does not exist is refused elsewhere, in words.
+    assert run(with_limbs_steps(shape, "source", np.array([-1, 10**6]))) is shape
+
+
+def test_sheets_have_no_inside():
+    """A floor beside a body in two pieces is not a part of it."""
+    vertices, triangles, _ = creature(0.0, 10)
+    ahead = vertices[:, 0] > 0.1
+    front, rear = (triangles[keep[triangles].all(axis=1)] for keep in (ahead, ~ahead))
+    floor = np.array([[-2.0, -2, -1.5], [2, -2, -1.5], [2, 2, -1.5], [-2, 2, -1.5]]), np.array([[0, 1, 2], [0, 2, 3]])
+    found = joined(TriangleMesh(*together((vertices, front), (vertices, rear), floor)))
+    assert found.mesh.vertices[:, 2].min() > -1.3
+    nearest = cKDTree(found.mesh.vertices).query(vertices)[0]
+    assert np.median(nearest) / 2.48 < 0.02
+
+
+def test_what_is_too_far_away_stays_a_piece(body):
+    vertices = body.mesh.vertices.copy()
+    vertices[body.pieces == 2] += [0.0, 0.0, -3.0]
+    found = joined(TriangleMesh(vertices, body.mesh.triangles))
+    assert len(found.cleaned.pieces) == 2
+    assert np.array_equal(found.cleaned.vertex_parts, (body.pieces == 2).astype(int))
+    assert any("made of 6 pieces" in note for note in found.cleaned.notes)
+
+
+def test_scattered_pieces_are_not_joined(body):
+    vertices = body.mesh.vertices + np.arange(7)[body.pieces, None] * [0.0, 0.0, 3.0]
+    shape = Shape(TriangleMesh(vertices, body.mesh.triangles))
+    assert run(with_limbs_steps(shape, "source", np.arange(len(vertices)))) is shape

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is inside of surfaces."""
+
+import numpy as np
+import pytest
+
+from engine import TriangleMesh
+from engine.solid_indicator import solid_indicator
+from tests.messes import together, without_disc
+from tests.shapes import creature, icosphere, rotation
+
+
+def places(solid):
+    counts = np.indices(solid.values.shape).transpose(1, 2, 3, 0)
+    return solid.origin + solid.spacing * counts
+
+
+def at(solid, point):
+    return solid.values[tuple(np.round((np.asarray(point) - solid.origin) / solid.spacing).astype(int))]
+
+
+def test_a_ball_is_inside_of_itself():
+    solid = solid_indicator(TriangleMesh(*icosphere(12)), 0.04)
+    distances = np.linalg.norm(places(solid), axis=-1)
+    assert solid.values[distances < 0.88] == pytest.approx(1, abs=0.02)
+    assert solid.values[distances > 1.12] == pytest.approx(0, abs=0.02)
+    middle = solid.values[abs(distances - 1) < 0.01]
+    assert middle.mean() == pytest.approx(0.5, abs=0.06)
+
+
+def test_what_lies_in_two_balls_counts_twice():
+    vertices, triangles = icosphere(12)
+    both = together((vertices, triangles), (vertices + np.array([1.0, 0, 0]), triangles))
+    solid = solid_indicator(TriangleMesh(*both), 0.04)
+    assert at(solid, [0.5, 0, 0]) == pytest.approx(2, abs=0.03)
+    assert at(solid, [-0.5, 0, 0]) == pytest.approx(1, abs=0.03)
+    assert at(solid, [1.5, 0, 0]) == pytest.approx(1, abs=0.03)
+
+
+def test_an_opening_fades():
+    opened = TriangleMesh(*without_disc(*icosphere(12), np.array([0.0, 0, 1]), 0.3))
+    solid = solid_indicator(opened, 0.04)
+    assert at(solid, [0, 0, 0]) == pytest.approx(1, abs=0.05)
+    assert at(solid, [0, 0, 0.97]) == pytest.approx(0.5, abs=0.15)
+    assert at(solid, [0, 0, 1.2]) == pytest.approx(0, abs=0.2)
+
+
+def test_inside_out_is_outside():
+    vertices, triangles = icosphere(8)
+    solid = solid_indicator(TriangleMesh(vertices, triangles[:, ::-1]), 0.05)
+    assert at(solid, [0, 0, 0]) == pytest.approx(-1, abs=0.03)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
+def test_size_and_place_do_not_matter(scale):
+    vertices, triangles, _ = creature(0.5, 9)
+    turned = vertices @ rotation([1.0, 2, 3], 0.8).T
+    solid = solid_indicator(TriangleMesh(scale * turned + 5 * scale, triangles), 0.05 * scale)
+    corners = vertices[triangles]
+    volume = np.einsum("md,md->m", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+    assert solid.values.sum() * (solid.spacing / scale) ** 3 == pytest.approx(volume, rel=0.03)
+    assert solid.spacing == 0.05 * scale
+
+
+def test_scattered_pieces_get_a_coarser_grid():
+    vertices, triangles = icosphere(4)
+    far = together((vertices, triangles), (vertices + 100.0, triangles))
+    solid = solid_indicator(TriangleMesh(*far), 0.05)
+    assert solid.values.size < 8_000_000
+    assert solid.spacing > 0.05
