@@ -142,13 +142,16 @@ class StandIn(SurfacePart):
         barycentric = np.where(turned[:, None], barycentric[:, [0, 2, 1]], barycentric)
         return self.shown_triangles[found.triangles], barycentric
 
+    def places(self, vertices: NDArray[np.int64]) -> SurfacePoints:
+        """Places of vertices (k,) of the original mesh on the surface."""
+        triangles, barycentric = self.place_triangles[vertices], self.place_barycentric[vertices]
+        return SurfacePoints.from_barycentric(self.mesh, triangles, barycentric)
+
     def images_of(
         self, vertices: NDArray[np.int64], starts: NDArray[np.int64], found: SurfacePoints, mesh: TriangleMesh
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Say where a map of the surface to a mesh takes the places of vertices (k,), searched from vertices there."""
-        triangles, barycentric = self.place_triangles[vertices], self.place_barycentric[vertices]
-        places = SurfacePoints.from_barycentric(self.mesh, triangles, barycentric)
-        images = ClosestPoints(mesh).walk(places.interpolate(found.positions), starts)
+        images = ClosestPoints(mesh).walk(self.places(vertices).interpolate(found.positions), starts)
         return images.triangles, images.barycentric
 
     def reflected(self) -> StandIn:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, vstack
 
 from .bone_fit import BoneTransforms, fit_bones, skinned
+from .clean_surface import StandIn
 from .cleaning import clean
 from .closest_points import ClosestPoints, FoundPoints
 from .digit_fit import with_digits
@@ -17,6 +18,7 @@ from .errors import RigError
 from .fitted_rig import FittedRig
 from .followers import follow_steps
 from .homes import Homes
+from .joined_surface import joined_steps, separate_limbs
 from .laplacian import laplace_beltrami
 from .posed_registration import PosedRegistration, facing
 from .progress import Progress, Steps, run, within
@@ -113,7 +115,8 @@ def fit_rig_steps(
     """
     weights = _checked(weights, source, skeleton)
     yield Progress(0.0, "Cleaning")
-    x, y = clean(source, "source"), clean(target, "target")
+    x = yield from within(_cleaned_steps(source, "source"), 0.0, 0.02)
+    y = yield from within(_cleaned_steps(target, "target"), 0.02, 0.05)
     body, there = x.mesh, _on_main(y, source_to_target, x)
     back = _on_main(x, target_to_source, y)
     moving = _of_main(x, weights)
@@ -134,7 +137,7 @@ def fit_rig_steps(
         if found is not None:
             bones, positions, maps = found.bones, found.positions, found.maps
     posed = skinned(source.vertices, weights, bones.linear, bones.translations)
-    registered = _spread(x, posed, positions)
+    registered = _spread(x, posed, positions, bones.posed)
     return FittedRig(
         skeleton,
         weights,
@@ -146,6 +149,12 @@ def fit_rig_steps(
         registered,
         *maps,
     )
+
+
+def _cleaned_steps(mesh: TriangleMesh, name: str) -> Steps[CleanSurface]:
+    """Clean a mesh, and put one surface around it if limbs are pieces of their own: bones move these, too."""
+    cleaned = clean(mesh, name)
+    return (yield from joined_steps(cleaned, name)) if separate_limbs(cleaned).any() else cleaned
 
 
 def _checked(weights: csr_array, source: TriangleMesh, skeleton: Skeleton) -> csr_array:
@@ -173,8 +182,15 @@ def _of_main(x: CleanSurface, weights: csr_array) -> csr_array:
 
 def _on_main(image: CleanSurface, surface_map: SurfaceMap, domain: CleanSurface) -> FoundPoints:
     """Name the images of the main part's vertices on the main part of the other mesh; holes' centres get any."""
-    vertices = np.maximum(domain.main.original_vertices, 0)
-    positions, corners = surface_map.positions[vertices], surface_map.nearest_vertices[vertices]
+    if isinstance(domain.main, StandIn):
+        own = SurfacePoints.at_vertices(domain.mesh, np.arange(domain.mesh.vertex_count))
+        triangles, barycentric = domain.main.to_original(own.triangles, own.barycentric)
+        points = SurfacePoints.from_barycentric(domain.original, triangles, barycentric)
+        positions, vertices = points.interpolate(surface_map.positions), points.nearest_vertices
+    else:
+        vertices = np.maximum(domain.main.original_vertices, 0)
+        positions = surface_map.positions[vertices]
+    corners = surface_map.nearest_vertices[vertices]
     search = ClosestPoints(image.mesh)
     starts = np.where(image.vertex_parts[corners] == 0, image.vertex_images[corners], -1)
     lost = np.flatnonzero(starts < 0)
@@ -183,11 +199,16 @@ def _on_main(image: CleanSurface, surface_map: SurfaceMap, domain: CleanSurface)
     return search.walk(positions, starts)
 
 
-def _spread(x: CleanSurface, posed: NDArray[np.float64], positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Positions of all vertices of the original mesh: of the main part (n, 3), and as posed elsewhere."""
+def _spread(
+    x: CleanSurface, posed: NDArray[np.float64], positions: NDArray[np.float64], posed_body: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Positions of all vertices of the original mesh: of the main part (n, 3), posed (n, 3), and as posed elsewhere."""
     whole = posed.copy()
-    main = x.vertex_parts == 0
-    whole[main] = positions[x.vertex_images[main]]
+    main = np.flatnonzero(x.vertex_parts == 0)
+    if isinstance(x.main, StandIn):
+        whole[main] += x.main.places(main).interpolate(positions - posed_body)
+    else:
+        whole[main] = positions[x.vertex_images[main]]
     return whole
 
 

@@ -57,10 +57,7 @@ def test_it_is_the_surface_of_the_whole_body(surface):
 def test_there_and_back_leads_home(surface, body):
     every = np.arange(body.mesh.vertex_count)
     assert (surface.cleaned.vertex_parts == 0).all()
-    places = SurfacePoints.from_barycentric(
-        surface.mesh, surface.cleaned.main.place_triangles, surface.cleaned.main.place_barycentric
-    )
-    back = surface.on_original(places)
+    back = surface.on_original(surface.cleaned.main.places(every))
     away = np.linalg.norm(back.positions - body.mesh.vertices[every], axis=1) / 2.48
     assert np.median(away) < 0.004
     assert away.max() < 0.03  # beneath the trunk
@@ -109,9 +106,7 @@ def test_gaps_are_bridged(body):
 
 def test_seen_in_a_mirror_it_stands_for_the_mirrored_body(surface, body):
     mirrored = reflected_surface(surface)
-    main = mirrored.cleaned.main
-    places = SurfacePoints.from_barycentric(mirrored.mesh, main.place_triangles, main.place_barycentric)
-    back = mirrored.on_original(places)
+    back = mirrored.on_original(mirrored.cleaned.main.places(np.arange(body.mesh.vertex_count)))
     away = np.linalg.norm(back.positions - body.mesh.vertices * [-1, 1, 1], axis=1) / 2.48
     assert np.median(away) < 0.004
     assert mirrored.mesh.vertices == pytest.approx(surface.mesh.vertices * [-1, 1, 1])

@@ -6,6 +6,7 @@ from scipy.sparse import csr_array
 from engine import ClosestPoints, RigError, Skeleton, SurfaceMap, TriangleMesh, fit_rig
 from engine.bone_fit import skinned
 from tests.engine.test_bone_fit import pose
+from tests.limbs import modular_creature
 from tests.shapes import creature, permuted
 from tests.skeletons import CONTROLS, creature_bones, creature_weights
 
@@ -54,6 +55,19 @@ def pair():
     return Pair()
 
 
+class PairInPieces(Pair):
+    """The same with the source, or the target, put together from a trunk, head, legs and tail."""
+
+    def __init__(self, source, target):
+        self.names, parents, heads, tails = creature_bones()
+        self.source, self.skeleton = source.mesh, Skeleton(parents, heads, tails)
+        self.weights = creature_weights(source.rest)
+        self.linear, self.translations = pose(self.skeleton, angle=0.35, seed=5)
+        posed = skinned(target.mesh.vertices, creature_weights(target.rest), self.linear, self.translations)
+        self.rest, self.target = target.mesh, TriangleMesh(posed, target.mesh.triangles)
+        self.maps = self.between(source.rest, target.rest)
+
+
 def slid_along(pair, by=0.06):
     """Maps that have slid along the body, as those of a matcher do on smooth limbs."""
 
@@ -83,6 +97,21 @@ def test_maps_that_slid_become_better(scale):
     assert np.linalg.norm(pair.heads(rig) - pair.true_heads(), axis=1).mean() < 0.03 * scale
     assert rig.target_to_source.flipped_faces(pair.target, pair.source) < 0.01
     assert ((rig.target_to_source.confidence >= 0) & (rig.target_to_source.confidence <= 1)).all()
+
+
+@pytest.mark.parametrize("in_pieces", [(True, False), (False, True), (True, True)])
+def test_limbs_that_are_pieces_of_their_own_are_fitted_as_well(in_pieces):
+    uncut = (9.0, 9.0, 9.0)
+    cuts = [(0.45, 0.5, 0.8) if cut else uncut for cut in in_pieces]
+    pair = PairInPieces(modular_creature(0.0, cuts=cuts[0]), modular_creature(0.0, 0.7, cuts=cuts[1]))
+    maps = slid_along(pair, 0.03)
+    before = pair.errors(maps).mean()
+    rig = pair.fitted(maps)
+    assert np.linalg.norm(pair.heads(rig) - pair.true_heads(), axis=1).max() < 0.03
+    assert pair.errors((rig.source_to_target, rig.target_to_source)).mean() < before / 2
+    images = pair.maps[0].positions
+    assert np.linalg.norm(rig.registered - images, axis=1).mean() < 0.02
+    assert np.linalg.norm(rig.posed - images, axis=1).mean() < 0.02
 
 
 def test_it_is_the_same_each_time(pair):
