@@ -38,6 +38,10 @@ which end at the same place is one."""
 _ALONGSIDE = 0.7
 """Length of a border that runs along others, as a part of all of it, from which on it was one with them."""
 
+_LYING, _LYING_POINTS = 0.5, 500
+"""Part of a piece that may be as near to another one as a gap is wide; of one that lies on the other, as clothes or the
+inner side of a shell do, all is.  And at how many points that is told."""
+
 _SMOOTHED = 3
 """How often the directions in which a surface ends are averaged along its border, which may be ragged."""
 
@@ -64,6 +68,8 @@ class _Borders:
         Direction in which the surface would go on, a unit vector.
     neighbours : (k, k) sparse array
         1 for the next vertices along the border.
+    owners : (n,) array of int
+        The piece of every vertex of the mesh.
     """
 
     vertices: NDArray[np.int64]
@@ -72,6 +78,7 @@ class _Borders:
     lengths: NDArray[np.float64]
     outward: NDArray[np.float64]
     neighbours: coo_array
+    owners: NDArray[np.int64]
 
 
 def seam_partners(vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups) -> NDArray[np.int64]:
@@ -119,6 +126,7 @@ def seam_partners(vertices: NDArray[np.float64], triangles: NDArray[np.int64], g
     joined = alongside[borders.loops] >= _ALONGSIDE
     mutual = one & (nearest[nearest] == np.arange(count)) & one[nearest]
     chosen = np.flatnonzero(mutual & (joined | joined[nearest]))
+    chosen = chosen[~_on_others(vertices, borders, chosen, nearest[chosen], _GAP * float(np.sqrt(area)))]
     first, second = borders.vertices[chosen], borders.vertices[nearest[chosen]]
     representatives[np.maximum(first, second)] = np.minimum(first, second)
     return representatives
@@ -151,6 +159,25 @@ def _facing(
     opposite = np.einsum("kd,kd->k", borders.outward[facing], borders.outward[partner]) < _TURNED
     near = np.linalg.norm(gaps, axis=1) <= widest[facing]
     return facing[near & opposite & (np.minimum(ahead, back) >= behind)]
+
+
+def _on_others(
+    vertices: NDArray[np.float64],
+    borders: _Borders,
+    first: NDArray[np.int64],
+    second: NDArray[np.int64],
+    reach: float,
+) -> NDArray[np.bool_]:
+    """Tell for which vertices of borders that face each other, (c,) each, one piece lies on the other all over."""
+    pairs = np.sort(np.stack([borders.pieces[first], borders.pieces[second]], axis=1), axis=1)
+    kinds, number = np.unique(pairs, axis=0, return_inverse=True)
+    lying = np.zeros(len(kinds), bool)
+    for kind, pair in enumerate(kinds):
+        smaller, larger = sorted((np.flatnonzero(borders.owners == piece) for piece in pair), key=len)
+        some = smaller[np.linspace(0, len(smaller) - 1, min(len(smaller), _LYING_POINTS)).astype(np.int64)]
+        near = np.isfinite(cKDTree(vertices[larger]).query(vertices[some], distance_upper_bound=reach)[0])
+        lying[kind] = near.mean() > _LYING
+    return lying[number.reshape(-1)]
 
 
 def _borders(
@@ -194,7 +221,8 @@ def _borders(
         return None, area
     loops, kept = np.unique(loops[enough], return_inverse=True)[1], np.flatnonzero(enough)
     neighbours = neighbours[kept][:, kept]
-    return _Borders(border[kept], pieces[border[kept]], loops, around[kept], _unit(outward[kept]), neighbours), area
+    outward = _unit(outward[kept])
+    return _Borders(border[kept], pieces[border[kept]], loops, around[kept], outward, neighbours, pieces), area
 
 
 def _graph(tails: NDArray[np.int64], heads: NDArray[np.int64], count: int) -> coo_array:

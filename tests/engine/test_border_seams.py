@@ -8,7 +8,7 @@ from engine import TriangleMesh
 from engine.border_seams import seam_partners
 from engine.cleaning import clean
 from engine.edge_pairs import group_half_edges
-from tests.messes import halves_apart, partly_turned, together
+from tests.messes import halves_apart, partly_turned, together, without_faces
 from tests.shapes import compacted, creature, cylinder, plane
 
 
@@ -40,6 +40,16 @@ def test_halves_that_were_not_merged_are_one_surface(gap, noise, turned):
     assert surface.mesh.area == pytest.approx(TriangleMesh(vertices, before).area, rel=0.05)
     assert len(surface.mesh.edges) == 3 * surface.mesh.triangle_count / 2  # closed
     assert any("joined with the other border" in note for note in surface.notes)
+
+
+@pytest.mark.parametrize("part", [0.1, 0.2])
+def test_both_sides_of_a_shell_stay_apart_though_both_have_holes(part):
+    vertices, triangles, _ = creature(0.0, 12)
+    mesh = TriangleMesh(vertices, triangles)
+    inner = vertices - 0.02 * mesh.vertex_normals
+    outer_faces = without_faces(vertices, triangles, part, seed=1)[1]
+    inner_faces = without_faces(vertices, triangles[:, ::-1], part, seed=2)[1]
+    assert not len(partners(*together((vertices, outer_faces), (inner, inner_faces))))
 
 
 def test_halves_far_apart_are_pieces():
