@@ -9,7 +9,7 @@ import numpy as np
 
 from .errors import MatchError
 from .joined_surface import separate_limbs, with_limbs_steps
-from .pieced_body import PiecedBody, resized_share, torn_share
+from .pieced_body import PiecedBody, resized_share, torn_share, without_partner
 from .progress import within
 from .shape_matching import matched_steps
 
@@ -110,9 +110,14 @@ def _together(result: MatchResult, x: Shape, y: Shape, limbs: tuple[NDArray[np.b
     if there is None or back is None or quality is None:
         return 1.0
     bodies = _body(x, limbs[0]), _body(y, limbs[1])
+    lonely = without_partner(bodies[0], bodies[1], there), without_partner(bodies[1], bodies[0], back)
+    # What only one of them has, such as a bag, is no reason to join pieces; if both have some, they are cut elsewhere.
+    alone = min(float(body.shares[pieces].sum()) for body, pieces in zip(bodies, lonely, strict=True))
+    bodies = bodies[0].without(lonely[0]), bodies[1].without(lonely[1])
     torn = max(torn_share(bodies[0], bodies[1], there), torn_share(bodies[1], bodies[0], back))
     resized = max(resized_share(bodies[0], bodies[1], there), resized_share(bodies[1], bodies[0], back))
-    return min(_partnered(result), 1 - resized) * (1 - torn if torn > _TORN else 1.0)
+    covered = min(quality.coverage, quality.source_coverage)
+    return min(covered * (1 - alone), 1 - resized) * (1 - torn if torn > _TORN else 1.0)
 
 
 def _partnered(result: MatchResult) -> float:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .surface_map import SurfaceMap
 
-__all__ = ["PiecedBody", "resized_share", "torn_share"]
+__all__ = ["PiecedBody", "resized_share", "torn_share", "without_partner"]
 
 _TOUCHING, _APART = 0.02, 0.08
 """How much farther than its nearest vertex from other pieces one may be that touches them, and how far apart the images
@@ -54,6 +54,10 @@ class PiecedBody:
         """Area of each piece as a part of the body's, (p,)."""
         return self._on_pieces(self.pieces, self.areas)
 
+    def without(self, pieces: NDArray[np.int64]) -> PiecedBody:
+        """Return the body without some pieces."""
+        return PiecedBody(self.mesh, np.where(np.isin(self.pieces, pieces), -1, self.pieces))
+
     def carried_shares(self, images: NDArray[np.int64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum areas (k,) that go to vertices (k,) of the mesh, for each piece, (p,)."""
         return self._on_pieces(self.pieces[images], areas)
@@ -61,6 +65,14 @@ class PiecedBody:
     def _on_pieces(self, pieces: NDArray[np.int64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
         sums: NDArray[np.float64] = np.bincount(pieces + 1, areas, int(self.pieces.max()) + 2).astype(np.float64)
         return sums[1:]
+
+
+def without_partner(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> NDArray[np.int64]:
+    """Tell which pieces of a body but the first have none of the other: a map takes most of them to its first piece."""
+    main = target.pieces[found.nearest_vertices] == 0
+    shares = np.bincount(source.pieces + 1, source.areas * main, int(source.pieces.max()) + 2)[1:]
+    alone = np.flatnonzero(shares > source.shares / 2)
+    return alone[alone > 0]
 
 
 def resized_share(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> float:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import SurfaceMap, SurfacePoints
-from engine.pieced_body import PiecedBody, resized_share, torn_share
+from engine.pieced_body import PiecedBody, resized_share, torn_share, without_partner
 from tests.limbs import modular_creature
 
 
@@ -58,3 +58,17 @@ def test_what_is_beside_its_place_in_the_same_piece_is_not(body):
     found = to_vertices(body, images)
     assert torn_share(body, body, found) == 0
     assert resized_share(body, body, found) == pytest.approx(body.areas[moved].sum())
+
+
+def test_pieces_that_go_to_the_trunk_have_no_partner(body):
+    images = np.arange(body.mesh.vertex_count)
+    assert not len(without_partner(body, body, to_vertices(body, images)))
+    images[body.pieces == 4] = np.flatnonzero(body.pieces == 0)[0]
+    images[body.pieces == 5] = np.flatnonzero(body.pieces == 6)[0]
+    assert np.array_equal(without_partner(body, body, to_vertices(body, images)), [4])
+
+
+def test_a_body_without_some_pieces(body):
+    less = body.without(np.array([2, 5]))
+    assert less.shares[[2, 5]] == pytest.approx(0)
+    assert less.shares[0] == pytest.approx(body.shares[0] / (1 - body.shares[2] - body.shares[5]))
