@@ -85,10 +85,13 @@ def with_limbs_steps(shape: Shape, name: str, vertices: NDArray[np.int64]) -> St
     known = vertices[(vertices >= 0) & (vertices < len(limbs))]
     if not limbs[known].any():
         return shape
-    joined = yield from joined_steps(surface.cleaned, name)
-    if joined is surface.cleaned:
-        return shape
-    return Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh)))
+    if shape.joined is None:
+        joined = yield from joined_steps(surface.cleaned, name)
+        if joined is surface.cleaned:
+            shape.joined = shape
+        else:
+            shape.joined = Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh)))
+    return shape.joined
 
 
 def joined_shapes_steps(

@@ -65,9 +65,12 @@ class Shape:
         For each vertex of the surface that is used, its own or the nearest vertex of the original mesh.
     scale : float
         Square root of the area of the surface that is used: the unit of all distances below.
+    joined : Shape or None
+        The shape of all pieces of the body as one surface, once that was needed; see `with_limbs_steps`.
     """
 
     surface: PreparedSurface
+    joined: Shape | None
 
     def __init__(
         self,
@@ -99,7 +102,7 @@ class Shape:
         return shape
 
     def _start(self, surface: PreparedSurface) -> None:
-        self.surface = surface
+        self.surface, self.joined = surface, None
         self.original, self.mesh, self.vertices = surface.original, surface.mesh, surface.vertices
         self.scale = float(np.sqrt(self.mesh.area))
         self.solver = GeodesicSolver(self.mesh)
@@ -234,7 +237,7 @@ class Shape:
     def reflected(self) -> Shape:
         """Return the shape as it is seen in a mirror, with all that does not depend on the side it is seen from."""
         shape = copy.copy(self)
-        shape.surface = reflected_surface(self.surface)
+        shape.surface, shape.joined = reflected_surface(self.surface), None
         shape.original, shape.mesh = shape.surface.original, shape.surface.mesh
         shape._views = {}  # noqa: SLF001
         shape.__dict__.pop("directions", None)

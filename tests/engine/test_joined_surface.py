@@ -140,6 +140,15 @@ def test_a_mesh_in_one_piece_has_no_limbs():
     assert run(with_limbs_steps(shape, "source", np.arange(5))) is shape
 
 
+def test_a_shape_is_joined_only_once(body):
+    shape, every = Shape(body.mesh), np.arange(body.mesh.vertex_count)
+    joined_shape = run(with_limbs_steps(shape, "source", every))
+    assert run(with_limbs_steps(shape, "source", every)) is joined_shape
+    # Seen in a mirror it is another one.
+    other = run(with_limbs_steps(shape.reflected(), "source", every))
+    assert other.mesh.vertices[:, 0].min() == pytest.approx(-joined_shape.mesh.vertices[:, 0].max(), abs=0.02)
+
+
 def test_only_what_is_asked_for_is_joined(body):
     shape = Shape(body.mesh)
     assert run(with_limbs_steps(shape, "source", np.flatnonzero(body.pieces == 0))) is shape
