@@ -62,12 +62,13 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     limbs = separate_limbs(x.surface.cleaned), separate_limbs(y.surface.cleaned)
     if not (limbs[0].any() or limbs[1].any()):
         return (yield from matched_steps(x, y, task)), x, y
-    first = None
-    if abs(_main_share(x, limbs[0]) - _main_share(y, limbs[1])) < _ALIKE:
+    bodies = _body(x, limbs[0]), _body(y, limbs[1])
+    first, together = None, 0.0
+    if abs(bodies[0].shares[0] - bodies[1].shares[0]) < _ALIKE:
         first = yield from within(_tried_steps(x, y, task), 0.0, _FIRST)
-    together = 0.0 if first is None else _together(first, x, y, limbs)
-    if first is not None and together >= _TOGETHER:
-        return first, x, y
+        together = 0.0 if first is None else _together_but_for_extras(first, bodies)
+        if first is not None and together >= _TOGETHER:
+            return first, x, y
     joined = []
     for number, (shape, name) in enumerate(((x, "source"), (y, "target"))):
         begin, end = (_FIRST + _JOINED * (number + i) for i in (0, 1))
@@ -85,15 +86,10 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     if first is None and not (_is_plausible(second) and _partnered(second) >= _TOGETHER):
         # What hangs on one body alone is better left alone.
         first = yield from within(_tried_steps(x, y, task), end, 1.0)
-        together = 0.0 if first is None else _together(first, x, y, limbs)
+        together = 0.0 if first is None else min(_together(first, bodies), _partnered(first))
     if first is None or _is_better(second, first, together):
         return second, joined[0], joined[1]
     return first, x, y
-
-
-def _main_share(shape: Shape, limbs: NDArray[np.bool_]) -> float:
-    """Tell what part of a body its main part is."""
-    return float(_body(shape, limbs).shares[0])
 
 
 def _tried_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult | None]:
@@ -104,20 +100,28 @@ def _tried_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult | Non
         return None
 
 
-def _together(result: MatchResult, x: Shape, y: Shape, limbs: tuple[NDArray[np.bool_], NDArray[np.bool_]]) -> float:
+def _together_but_for_extras(result: MatchResult, bodies: tuple[PiecedBody, PiecedBody]) -> float:
+    """Tell what part of two bodies goes together, without what only one of them has, such as a bag.
+
+    If both have pieces without a partner, they are cut elsewhere.
+    """
+    there, back = result.source_to_target, result.target_to_source
+    if there is None or back is None:
+        return 1.0
+    lonely = without_partner(*bodies, there), without_partner(*bodies[::-1], back)
+    alone = min(float(body.shares[pieces].sum()) for body, pieces in zip(bodies, lonely, strict=True))
+    return (1 - alone) * _together(result, (bodies[0].without(lonely[0]), bodies[1].without(lonely[1])))
+
+
+def _together(result: MatchResult, bodies: tuple[PiecedBody, PiecedBody]) -> float:
     """Tell what part of two bodies has a partner that fits to the partners of what is around it."""
     there, back, quality = result.source_to_target, result.target_to_source, result.quality
     if there is None or back is None or quality is None:
         return 1.0
-    bodies = _body(x, limbs[0]), _body(y, limbs[1])
-    lonely = without_partner(bodies[0], bodies[1], there), without_partner(bodies[1], bodies[0], back)
-    # What only one of them has, such as a bag, is no reason to join pieces; if both have some, they are cut elsewhere.
-    alone = min(float(body.shares[pieces].sum()) for body, pieces in zip(bodies, lonely, strict=True))
-    bodies = bodies[0].without(lonely[0]), bodies[1].without(lonely[1])
-    torn = max(torn_share(bodies[0], bodies[1], there), torn_share(bodies[1], bodies[0], back))
-    resized = max(resized_share(bodies[0], bodies[1], there), resized_share(bodies[1], bodies[0], back))
+    torn = max(torn_share(*bodies, there), torn_share(*bodies[::-1], back))
+    resized = max(resized_share(*bodies, there), resized_share(*bodies[::-1], back))
     covered = min(quality.coverage, quality.source_coverage)
-    return min(covered * (1 - alone), 1 - resized) * (1 - torn if torn > _TORN else 1.0)
+    return min(covered, 1 - resized) * (1 - torn if torn > _TORN else 1.0)
 
 
 def _partnered(result: MatchResult) -> float:
