@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .closest_points import ClosestPoints
+from .closest_points import ClosestPoints, facing
 from .mesh import TriangleMesh
 from .reflection import reflected_mesh
 from .surface import SurfacePoints
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from .cleaning_notes import CleaningCounts
 
 __all__ = ["CleanSurface", "StandIn", "SurfacePart"]
-
-_NORMAL_LENGTH = 0.01
-"""How much farther, in sqrt(area), a point may be for not being on a side that faces away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,10 +131,8 @@ class StandIn(SurfacePart):
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Name the points of the original mesh that are closest to points of the surface and look to the same side."""
         points = np.einsum("kc,kcd->kd", barycentric, self.mesh.vertices[self.mesh.triangles[triangles]])
-        reach = _NORMAL_LENGTH * float(np.sqrt(self.mesh.area))
-        found = self.shown_search.nearest(
-            points, self.mesh.triangle_normals[triangles], normal_length=reach, normal_weight=reach**2
-        )
+        size = float(np.sqrt(self.mesh.area))
+        found = facing(self.shown_search, points, self.mesh.triangle_normals[triangles], size)
         turned, barycentric = self.shown_turned[found.triangles], found.barycentric
         barycentric = np.where(turned[:, None], barycentric[:, [0, 2, 1]], barycentric)
         return self.shown_triangles[found.triangles], barycentric

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from .mesh import TriangleMesh
 
-__all__ = ["ClosestPoints", "FoundPoints", "closest_in_triangles"]
+__all__ = ["ClosestPoints", "FoundPoints", "closest_in_triangles", "facing"]
 
 _BLOCK = 10_000
 """Points that are searched side by side; the last steps, of few points each, are then shared by many."""
@@ -39,6 +39,10 @@ _MANY = 20_000
 
 _REMEMBERED = 4
 """How many of the vertices visited last a search remembers: the three corners of a triangle and one to spare."""
+
+_NORMAL_LENGTH, _NORMAL_GATE = 0.008, 0.3
+"""How many units of length (in the root of the area) a unit of difference of the normals counts when points are
+matched, and below which cosine only: more would draw points of a curved surface together."""
 
 _TINY = np.finfo(float).tiny
 
@@ -326,6 +330,24 @@ class ClosestPoints:
                 walk.search(start, steps)
             triangles[part], barycentric[part], squared_distances[part] = walk.found()
         return FoundPoints(triangles, barycentric, squared_distances)
+
+
+def facing(
+    search: ClosestPoints, points: NDArray[np.float64], normals: NDArray[np.float64], size: float
+) -> FoundPoints:
+    """Find the closest point of a surface to each point, among those that look to the same side.
+
+    Parameters
+    ----------
+    search : ClosestPoints
+        The surface.
+    points, normals : (k, 3) array of float
+        The points, and the unit normals that they should agree with.
+    size : float
+        Root of the area of the surfaces.
+    """
+    length = _NORMAL_LENGTH * size
+    return search.nearest(points, normals, normal_length=length, normal_weight=length**2, normal_gate=_NORMAL_GATE)
 
 
 class _Rings:

@@ -13,7 +13,7 @@ from .area_samples import even_samples
 from .clean_surface import StandIn
 from .cleaning import clean
 from .cleaning_notes import cleaning_notes
-from .closest_points import ClosestPoints
+from .closest_points import ClosestPoints, facing
 from .edge_pairs import group_half_edges, pair_half_edges
 from .errors import MeshError
 from .gap_bridges import bridged
@@ -57,9 +57,6 @@ _LEVEL = 0.4
 
 _FLAT = 0.02
 """Volume, by the power 3/2 of the area, below which a piece has no inside: a ball has 0.094."""
-
-_NORMAL_LENGTH = 0.01
-"""How much farther, in sqrt(area), a place may be for not being on a side that faces away."""
 
 _WIDEST = 0.06
 """Widest gap that is bridged, in sqrt(area)."""
@@ -268,15 +265,14 @@ class _Body:
         """Let a surface around the body stand for it."""
         kept = self.triangles >= 0
         shown = TriangleMesh(self.mesh.vertices, self.mesh.triangles[kept])
-        reach = _NORMAL_LENGTH * float(np.sqrt(mesh.area))
-        looking = {"normal_length": reach, "normal_weight": reach**2}
-        here = ClosestPoints(shown).nearest(mesh.vertices, mesh.vertex_normals, **looking)
+        size = float(np.sqrt(mesh.area))
+        here = facing(ClosestPoints(shown), mesh.vertices, mesh.vertex_normals, size)
         own = self.vertices[here.nearest_vertices(shown.triangles)]
         # Every original vertex, also one that was welded to another, is where its surface is nearest.
         its = np.flatnonzero(self.vertices >= 0)
         normals = np.zeros((cleaned.original.vertex_count, 3))
         normals[self.vertices[its]] = self.mesh.vertex_normals[its]
-        places = ClosestPoints(mesh).nearest(cleaned.original.vertices, normals, **looking)
+        places = facing(ClosestPoints(mesh), cleaned.original.vertices, normals, size)
         return StandIn(
             mesh,
             own,

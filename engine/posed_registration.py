@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array, vstack
 from scipy.sparse.linalg import splu
 
-from .closest_points import ClosestPoints, FoundPoints
+from .closest_points import ClosestPoints, FoundPoints, facing
 from .elastic import ElasticSurface
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .laplacian import LaplaceBeltrami
     from .mesh import TriangleMesh
 
-__all__ = ["PosedRegistration", "facing"]
+__all__ = ["PosedRegistration"]
 
 _SLIDING = 0.01
 """How much a point's distance along the target's surface from where it was counts, against that across."""
@@ -28,10 +28,6 @@ _SLIDING = 0.01
 _ROTATION_RADIUS = 0.04
 _SCALE_RADIUS = 0.05
 """Over what distances rotations and scales are averaged, in units of the root of the target's area."""
-
-_NORMAL_LENGTH, _NORMAL_GATE = 0.008, 0.3
-"""How many units of length (in the root of the area) a unit of difference of the normals counts when points are
-matched, and below which cosine only: more would draw points of a curved surface together."""
 
 _BACK, _REACH = 0.7, 0.015
 """How much the body's own vertices count that look for the target, and at what distance they count half."""
@@ -55,24 +51,6 @@ class _Target:
     shares: NDArray[np.float64]
     centre: NDArray[np.float64]
     scale: float
-
-
-def facing(
-    search: ClosestPoints, points: NDArray[np.float64], normals: NDArray[np.float64], size: float
-) -> FoundPoints:
-    """Find the closest point of a surface to each point, among those that look to the same side.
-
-    Parameters
-    ----------
-    search : ClosestPoints
-        The surface.
-    points, normals : (k, 3) array of float
-        The points, and the unit normals that they should agree with.
-    size : float
-        Root of the area of the surfaces.
-    """
-    length = _NORMAL_LENGTH * size
-    return search.nearest(points, normals, normal_length=length, normal_weight=length**2, normal_gate=_NORMAL_GATE)
 
 
 class PosedRegistration:

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, vstack
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .clean_surface import StandIn
 from .cleaning import clean
-from .closest_points import ClosestPoints, FoundPoints
+from .closest_points import ClosestPoints, FoundPoints, facing
 from .digit_fit import with_digits
 from .errors import RigError
 from .fitted_rig import FittedRig
@@ -20,7 +20,7 @@ from .followers import follow_steps
 from .homes import Homes
 from .joined_surface import joined_steps, separate_limbs
 from .laplacian import laplace_beltrami
-from .posed_registration import PosedRegistration, facing
+from .posed_registration import PosedRegistration
 from .progress import Progress, Steps, run, within
 from .proxy import proxy_steps
 from .quality import map_confidence

@@ -3,9 +3,9 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.closest_points import ClosestPoints
+from engine.closest_points import ClosestPoints, facing
 from engine.laplacian import laplace_beltrami
-from engine.posed_registration import PosedRegistration, facing
+from engine.posed_registration import PosedRegistration
 from tests.shapes import creature, icosphere, plane
 
 
