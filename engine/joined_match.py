@@ -9,6 +9,7 @@ import numpy as np
 
 from .errors import MatchError
 from .joined_surface import separate_limbs, with_limbs_steps
+from .partial_match import has_border
 from .pieced_body import PiecedBody, resized_share, torn_share, without_partner
 from .progress import within
 from .shape_matching import matched_steps
@@ -31,6 +32,9 @@ _TOGETHER, _MORE = 0.955, 0.02
 
 _TORN = 0.2
 """Part of a body in pieces that are torn off from which on pieces were taken for others."""
+
+_ALL, _CLEAR = 0.99, 20.0
+"""Part of the main parts with a partner, and likeness, from which on these are whole bodies, whatever else there is."""
 
 _PLAUSIBLE = 13.5
 """Likeness from which on bodies that were joined are matched rightly rather than not."""
@@ -64,10 +68,13 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         return (yield from matched_steps(x, y, task)), x, y
     bodies = _body(x, limbs[0]), _body(y, limbs[1])
     first, together = None, 0.0
-    if abs(bodies[0].shares[0] - bodies[1].shares[0]) < _ALIKE:
+    more = float(bodies[0].shares[0] - bodies[1].shares[0])
+    alike = abs(more) < _ALIKE
+    # Without its limbs, a trunk is open; what is closed may be all of a body, and the rest what it stands on.
+    if alike or not has_border(y if more > 0 else x):
         first = yield from within(_tried_steps(x, y, task), 0.0, _FIRST)
         together = 0.0 if first is None else _together_but_for_extras(first, bodies)
-        if first is not None and together >= _TOGETHER:
+        if first is not None and together >= _TOGETHER and (alike or _is_clear(first)):
             return first, x, y
     joined = []
     for number, (shape, name) in enumerate(((x, "source"), (y, "target"))):
@@ -86,7 +93,8 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     if first is None and not (_is_plausible(second) and _partnered(second) >= _TOGETHER):
         # What hangs on one body alone is better left alone.
         first = yield from within(_tried_steps(x, y, task), end, 1.0)
-        together = 0.0 if first is None else min(_together(first, bodies), _partnered(first))
+    if first is not None and not alike and (together < _TOGETHER or _likeness(first) < _likeness(second)):
+        together = min(_together(first, bodies), _partnered(first))
     if first is None or _is_better(second, first, together):
         return second, joined[0], joined[1]
     return first, x, y
@@ -138,18 +146,25 @@ def _body(shape: Shape, limbs: NDArray[np.bool_]) -> PiecedBody:
     return PiecedBody(shape.original, np.where(limbs | (parts == 0), parts, -1))
 
 
+def _likeness(result: MatchResult) -> float:
+    """How credible a match is; with landmarks, it is said to be."""
+    known = None if result.quality is None else result.quality.likeness
+    return np.inf if known is None else known
+
+
 def _is_plausible(result: MatchResult) -> bool:
-    """Say whether bodies that were joined seem to be matched rightly; with landmarks they are."""
-    if result.quality is None:
-        return False
-    return result.quality.likeness is None or result.quality.likeness >= _PLAUSIBLE
+    """Say whether bodies that were joined seem to be matched rightly."""
+    return _likeness(result) >= _PLAUSIBLE
+
+
+def _is_clear(result: MatchResult) -> bool:
+    """Say whether all of the main parts is alike: nothing is missing on them."""
+    covered = 0.0 if result.quality is None else min(result.quality.coverage, result.quality.source_coverage)
+    return covered >= _ALL and _likeness(result) >= _CLEAR
 
 
 def _is_better(joined: MatchResult, pieces: MatchResult, together: float) -> bool:
     """Say whether a match of joined bodies is more credible than one by pieces, so much of which goes together."""
-    ours, theirs = joined.quality, pieces.quality
-    if ours is None or theirs is None:
-        return False
     if _partnered(joined) <= together + _MORE:
         return False
-    return _is_plausible(joined) or (theirs.likeness or 0.0) < (ours.likeness or 0.0)
+    return _is_plausible(joined) or _likeness(pieces) < _likeness(joined)

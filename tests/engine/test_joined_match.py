@@ -5,14 +5,16 @@ import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, densify, match
+from engine.cleaning import clean
 from engine.joined_match import matched_with_pieces_steps
+from engine.joined_surface import separate_limbs
 from engine.progress import run
 from engine.refinement import point_distortions, refine_map
 from engine.shape_matching import MatchTask
 from engine.surface import SurfacePoints
 from tests.limbs import modular_creature
 from tests.messes import together
-from tests.shapes import creature, cylinder
+from tests.shapes import creature, cylinder, icosphere
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
 
@@ -126,6 +128,20 @@ def test_what_cannot_be_joined_is_refused_as_before(whole):
     apart = TriangleMesh(*together(*((vertices + np.array([2.0 * i, 0, 0]), triangles) for i in range(3))))
     with pytest.raises(MatchError, match="points cannot be matched"):
         match(whole[0], apart, MatchSettings(points=20, samples=100, hypotheses=2))
+
+
+def test_what_a_body_stands_beside_stays_a_piece(whole):
+    """A ball that touches the back is large, but the body is all there without it."""
+    vertices, triangles, rest = creature(0.8, 10, turn=0.7)
+    ball, faces = icosphere(6)
+    target = TriangleMesh(*together((vertices, triangles), (0.4 * ball + [0.0, 0.0, 0.72], faces)))
+    assert separate_limbs(clean(target)).any()
+    result = match(whole[0], target, QUICK)
+    assert not any("one surface around all" in note for note in result.notes)
+    its_rest = np.concatenate([rest, np.full((len(ball), 3), np.nan)])
+    found = errors(result.target_to_source, its_rest, whole[1])[: len(rest)]
+    assert found.mean() < 0.02
+    assert result.quality.pieces_alone > 0.2
 
 
 def test_bodies_in_one_piece_are_matched_as_they_are(whole):
