@@ -22,6 +22,7 @@ _LONGER, _MORE = 1.5, 3.0
 places of the grid more."""
 
 _MOST_BRIDGES = 32
+"""Gaps that are filled at most, which bounds the time."""
 
 
 def bridged(values: NDArray[np.float32], level: float, widest: float) -> NDArray[np.float32]:

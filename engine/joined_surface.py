@@ -70,7 +70,16 @@ def separate_limbs(cleaned: CleanSurface) -> NDArray[np.bool_]:
 
 
 def with_limbs_steps(shape: Shape, name: str, vertices: NDArray[np.int64]) -> Steps[Shape]:
-    """Join the pieces of a body if given vertices (k,) of it are not all on the main one, but on others.
+    """Join the pieces of a body if some vertices of it are on limbs beside the main piece.
+
+    Parameters
+    ----------
+    shape : Shape
+        The body.
+    name : str
+        What notes call it.
+    vertices : (k,) array of int
+        Vertices of the original mesh; those that do not exist are passed over.
 
     Returns
     -------
