@@ -24,8 +24,9 @@ help:
 demo: environment
 	$(RUN) tools/demo.py
 
+# As many tests at once as there are cores, so each has one; what a file of tests prepares is prepared once.
 test: environment
-	$(RUN) -m pytest
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(RUN) -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile
 
 lint: environment
 	$(RUN) -m ruff check .

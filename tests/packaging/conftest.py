@@ -4,6 +4,7 @@
 import zipfile
 
 import pytest
+from filelock import FileLock
 
 from tests.packaging.environments import PLATFORM
 from tools.build_package import build_with_wheels
@@ -12,7 +13,9 @@ from tools.build_package import build_with_wheels
 @pytest.fixture(scope="session")
 def packages(tmp_path_factory):
     """The zips by platform, built for this run."""
-    paths = build_with_wheels(tmp_path_factory.mktemp("packages"))
+    # Of several processes the first fetches the wheels.
+    with FileLock(tmp_path_factory.getbasetemp().parent / "packages.lock"):
+        paths = build_with_wheels(tmp_path_factory.mktemp("packages"))
     return {path.stem.split("-")[-1]: path for path in paths}
 
 
