@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from .dense_map import EIGENPAIRS, registered_pair_steps
-from .followers import follow_steps
 from .functional_maps import nearest_both_ways
 from .handle_cutting import evened_steps
 from .joined_surface import with_limbs_steps
@@ -18,12 +17,13 @@ from .pieces_only import piece_of, with_pieces_only
 from .pinning import pinned
 from .polishing import Polish, finer_surface_steps
 from .progress import Progress, Steps, run, within
-from .quality import MatchQuality, assess_maps, map_confidence, with_pieces_alone
+from .quality import MatchQuality, assess_maps, with_pieces
 from .reflection import reflected_mesh, reflected_points
 from .registration import POLISH
 from .shape import Shape
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
+from .whole_maps import whole_maps_steps
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
     from .registration import Stage
+    from .whole_maps import WholeMap
 
 __all__ = ["MEASURED", "DenseMatch", "dense_match_steps", "densify", "densify_steps"]
 
@@ -213,12 +214,11 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     yield Progress(0.8, "Judging the map")
     quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness)
     yield Progress(0.85, "Mapping every vertex")
-    trusted = map_confidence(main_x, main_y, there, back, likeness=pair.likeness)
-    forward, alone = yield from within(_followed_steps(x, y, there, trusted), 0.85, 0.92)
-    yield Progress(0.92, "Mapping every vertex")
-    trusted = map_confidence(main_y, main_x, back, there, likeness=pair.likeness)
-    backward, alone_back = yield from within(_followed_steps(y, x, back, trusted), 0.92, 1.0)
-    quality = with_pieces_alone(quality, max(alone, alone_back))
+    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, likeness=pair.likeness)
+    whole = yield from within(steps, 0.85, 1.0)
+    forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)
+    alone = max(whole.there.alone, whole.back.alone)
+    quality = with_pieces(quality, alone, whole.there.share)
     if pair.landmarks is not None:
         given, partners = pair.landmarks.source.original, pair.landmarks.target.original
         forward = _at_landmarks(forward, y.original, given, partners)
@@ -242,12 +242,8 @@ def _main_map_steps(pair: RegisteredPair, polish: Polish | None, here: int) -> S
     return (yield from lift_steps(*ends, target_proxy=y.proxy, proxy_map=proxy_map, search=y.dense_search))
 
 
-def _followed_steps(
-    x: PreparedSurface, y: PreparedSurface, main_map: SurfacePoints, confidence: NDArray[np.float64]
-) -> Steps[tuple[SurfaceMap, float]]:
-    """Extend a map of the main part to all vertices of the original mesh; also the part that found no counterpart."""
-    followed = yield from follow_steps(x.cleaned, y.cleaned, main_map)
-    triangles = y.kept_triangles[followed.points.triangles]
-    points = SurfacePoints.from_barycentric(y.original, triangles, followed.points.barycentric)
-    trusted = followed.confidence * confidence[followed.surroundings]
-    return SurfaceMap(points, trusted, y.original.vertex_count), followed.alone
+def _on_original(found: WholeMap, y: PreparedSurface) -> SurfaceMap:
+    """Name a map of all vertices by the triangles of the original mesh, excluded ones counted."""
+    triangles = y.kept_triangles[found.points.triangles]
+    points = SurfacePoints.from_barycentric(y.original, triangles, found.points.barycentric)
+    return SurfaceMap(points, found.confidence, y.original.vertex_count)

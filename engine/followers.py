@@ -56,7 +56,7 @@ class FollowedMap:
         For each vertex of X, a point of the original mesh Y.
     confidence : (n,) array of float
         For each, a factor between 0 and 1 for the confidence of the map of the main part at `surroundings`: 1 for the
-        vertices of the main part itself.
+        vertices of the main part itself, and for those of parts that have one on Y.
     surroundings : (n,) array of int
         The vertex of the main part of X that each is, or that is nearest to it.
     partners : (p,) array of int
@@ -122,7 +122,6 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
             triangles[vertices], barycentric[vertices] = partner.to_original(
                 image.points.triangles[at], image.points.barycentric[at]
             )
-            confidence[vertices] = 1 / (1 + image.difference)
             partners[number] = image.partner
             known[vertices] = True
         alone, distances = others[~known[others]], distances[~known[others]]
@@ -138,11 +137,10 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
 
 @dataclass(frozen=True, eq=False)
 class _Image:
-    """The part that another one is mapped to, a point there for each of its vertices, and how unlike the two are."""
+    """The part that another one is mapped to, and a point there for each of its vertices."""
 
     partner: int
     points: SurfacePoints
-    difference: float = 0.0
 
 
 class _Mapped:
@@ -251,7 +249,7 @@ class _PartMaps:
             steps = laid_onto_steps(part, partner, pair, followed.around, thoroughly=number in self._large)
             found = yield from within(steps, *done)
             points = SurfacePoints.from_barycentric(partner, found.triangles, found.barycentric)
-            self.mapped[number] = _Image(candidates[pair.partner], points, pair.difference)
+            self.mapped[number] = _Image(candidates[pair.partner], points)
             self._free.remove(candidates[pair.partner])
             yield Progress(done[1], "Mapping every vertex")
 

@@ -85,8 +85,6 @@ class PartPair:
         By how much the partner is larger.
     radius : float
         Root mean square distance of the partner from its centre.
-    difference : float
-        How far they are from alike, 0 if they are.
     centres : pair of (3,) arrays of float
         Centres of both.
     touching : (v,) array of int
@@ -100,7 +98,6 @@ class PartPair:
     rotations: list[NDArray[np.float64]]
     ratio: float
     radius: float
-    difference: float
     centres: tuple[NDArray[np.float64], NDArray[np.float64]]
     touching: NDArray[np.int64]
     joint: NDArray[np.float64]
@@ -223,7 +220,6 @@ def paired_parts(
             ],
             float(y.radii[j] / x.radii[i]),
             float(y.radii[j]),
-            float(difference[i, j]),
             (x.centres[i], y.centres[j]),
             contacts[i].vertices,
             joints[i],

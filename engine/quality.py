@@ -19,7 +19,15 @@ if TYPE_CHECKING:
     from .mesh import TriangleMesh
     from .surface import SurfacePoints
 
-__all__ = ["MatchQuality", "assess_maps", "map_confidence", "of_covered_part", "with_pieces_alone"]
+__all__ = [
+    "MatchQuality",
+    "assess_maps",
+    "closeness",
+    "map_confidence",
+    "of_covered_part",
+    "trip_confidence",
+    "with_pieces",
+]
 
 _TRUSTED_ROUND_TRIP = 0.02
 """Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
@@ -72,7 +80,7 @@ class MatchQuality:
         By how much the best other candidate, such as the map turned by 180 degrees, was less credible; None if there
         was no other.  Below one the choice was not clear.
     confidence : float
-        All of this in one number, 0 to 1.
+        All of this in one number, 0 to 1; that of pieces beside the main part counts by their areas.
     sentence : str
         The same for a person to read.
     source_coverage : float
@@ -122,7 +130,13 @@ def map_confidence(
         hundredths of sqrt(area) from the true ones.  Zero for what has no partner on the target.
     """
     known = with_partner(source, target, there, back)
-    return _confidence(source, target, there, back, known) * _closeness(likeness)
+    return _confidence(source, target, there, back, known) * closeness(likeness)
+
+
+def trip_confidence(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Trust points, 0 to 1, by how far (k,) they are from where two maps bring them, there and back, in sqrt(area)."""
+    confidence: NDArray[np.float64] = 1 / (1 + np.square(distances / _TRUSTED_ROUND_TRIP))
+    return confidence
 
 
 def _confidence(
@@ -135,7 +149,7 @@ def _confidence(
     """Judge each vertex's image, (n,), by where it is known to have a partner, (n,)."""
     distances = round_trips(source, there, back) / np.sqrt(source.area)
     stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
-    confidence = 1 / ((1 + np.square(distances / _TRUSTED_ROUND_TRIP)) * (1 + np.square(stretch / _TRUSTED_STRETCH)))
+    confidence = trip_confidence(distances) / (1 + np.square(stretch / _TRUSTED_STRETCH))
     return np.clip(neighbour_means(source, confidence), 0, 1) * known
 
 
@@ -179,9 +193,19 @@ def assess_maps(
     return replace(quality, sentence=_sentence(quality))
 
 
-def with_pieces_alone(quality: MatchQuality, alone: float) -> MatchQuality:
-    """Say of a map, too, what part of the surface is in separate pieces without a counterpart."""
-    more = replace(quality, pieces_alone=alone)
+def with_pieces(quality: MatchQuality, alone: float, share: float) -> MatchQuality:
+    """Say of a map of main parts, too, what is known of the pieces beside them.
+
+    Parameters
+    ----------
+    quality : MatchQuality
+        That of the main parts.
+    alone : float
+        What part of the surface is in separate pieces without a counterpart.
+    share : float
+        Mean confidence of the whole surface, as a part of that of the main part.
+    """
+    more = replace(quality, pieces_alone=alone, confidence=min(share * quality.confidence, 1.0))
     return replace(more, sentence=_sentence(more))
 
 
@@ -194,7 +218,7 @@ def of_covered_part(quality: MatchQuality, share: float, *, of_source: bool) -> 
     return replace(more, sentence=_sentence(more))
 
 
-def _closeness(likeness: float | None) -> float:
+def closeness(likeness: float | None) -> float:
     """Estimate the part of what both maps agree on that is as near to the truth as it seems, 0 to 1."""
     if likeness is None:
         return 1.0

@@ -16,17 +16,16 @@ from .closest_points import ClosestPoints, FoundPoints, facing
 from .digit_fit import with_digits
 from .errors import RigError
 from .fitted_rig import FittedRig
-from .followers import follow_steps
 from .homes import Homes
 from .joined_surface import joined_steps, separate_limbs
 from .laplacian import laplace_beltrami
 from .posed_registration import PosedRegistration
 from .progress import Progress, Steps, run, within
 from .proxy import proxy_steps
-from .quality import map_confidence
 from .stunted_digits import stunted_digits, with_stiff_digits
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
+from .whole_maps import whole_maps_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -369,16 +368,6 @@ def _maps_steps(pair: _Pair, positions: NDArray[np.float64], homes: Homes) -> St
     back = homes.on_body(lying, facing(lying, y.mesh.vertices, y.mesh.vertex_normals, size), y.mesh.vertices)
     on_y = SurfacePoints.from_barycentric(y.mesh, there.triangles, there.barycentric)
     on_x = SurfacePoints.from_barycentric(x.mesh, back.triangles, back.barycentric)
-    trusted = map_confidence(x.mesh, y.mesh, on_y, on_x)
-    forward = yield from within(_followed_steps(x, y, on_y, trusted), 0.0, 0.5)
-    trusted = map_confidence(y.mesh, x.mesh, on_x, on_y)
-    return forward, (yield from within(_followed_steps(y, x, on_x, trusted), 0.5, 1.0))
-
-
-def _followed_steps(
-    x: CleanSurface, y: CleanSurface, main_map: SurfacePoints, confidence: NDArray[np.float64]
-) -> Steps[SurfaceMap]:
-    """Extend a map of the main part to all vertices of the original mesh."""
-    followed = yield from follow_steps(x, y, main_map)
-    trusted = followed.confidence * confidence[followed.surroundings]
-    return SurfaceMap(followed.points, trusted, y.original.vertex_count)
+    forth, home = yield from whole_maps_steps(x, y, on_y, on_x)
+    forward = SurfaceMap(forth.points, forth.confidence, y.original.vertex_count)
+    return forward, SurfaceMap(home.points, home.confidence, x.original.vertex_count)

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import TriangleMesh
 from engine.missing_parts import with_partner
-from engine.quality import assess_maps, map_confidence, with_pieces_alone
+from engine.quality import assess_maps, map_confidence, with_pieces
 from tests.bodies import mirrored_body
 from tests.engine.test_missing_parts import at, cut_square, nearest_on, without_cap
 from tests.shapes import creature, icosphere, permuted, plane, rotation
@@ -228,9 +228,16 @@ def test_so_is_a_small_part():
 
 def test_pieces_without_a_counterpart_are_mentioned_if_they_are_not_few(ball):
     quality = by_index(ball, ball)
-    few, many = (with_pieces_alone(quality, share) for share in (0.01, 0.12))
+    few, many = (with_pieces(quality, share, 1.0) for share in (0.01, 0.12))
     assert few.sentence == quality.sentence
     assert many.sentence.startswith("Separate pieces, 12% of a mesh, have no counterpart on the other")
     assert (few.pieces_alone, many.pieces_alone) == (0.01, 0.12)
-    doubtful = with_pieces_alone(by_index(ball, ball, 0.2), 0.12)
+    doubtful = with_pieces(by_index(ball, ball, 0.2), 0.12, 1.0)
     assert doubtful.sentence.startswith("Another map was almost as likely")
+
+
+def test_pieces_that_are_less_to_be_trusted_than_the_main_part_count_as_well(ball):
+    quality = by_index(ball, ball, 2.0)
+    less = with_pieces(quality, 0.0, 0.6)
+    assert less.confidence == pytest.approx(0.6 * quality.confidence)
+    assert with_pieces(quality, 0.0, 5.0).confidence <= 1
