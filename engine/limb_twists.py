@@ -25,10 +25,7 @@ __all__ = ["Untwisted", "Winding", "rolled_back", "untwisted"]
 _LIMBS, _APART = 8, 0.25
 """How many limbs are looked at, and how far apart, in sqrt(area), their tips are at least."""
 
-_SHARE = 0.55
-"""Part of the way to the nearest other tip up to which a limb may reach."""
-
-_LONGEST = 0.6
+_LONGEST = 0.8
 """Length of limbs that is looked at, in sqrt(area)."""
 
 _WIDTH = 0.03
@@ -37,8 +34,17 @@ _WIDTH = 0.03
 _FEWEST_VERTICES, _FEWEST_RINGS = 15, 4
 """Vertices around a limb, and rings along it, that are needed to say which way round it lies."""
 
-_WIDER = 1.8
+_WIDER = 2.5
 """How many times as wide as those before all rings are from where on the limb is the body."""
+
+_WIDE_RINGS = 5
+"""How many rings in a row may be wider than that though there is more of the limb beyond: those of a hand."""
+
+_MOSTLY = 0.5
+"""Part of a ring that must be of a limb, and not of another one, for the limb to go on."""
+
+_THIN = 0.5
+"""Part of the median radius of its rings up to which a limb has its tip."""
 
 _LONG = 2.5
 """Ratio of the two lowest eigenvalues from which on a body is turned back like a limb; that of a rod is 4."""
@@ -46,8 +52,8 @@ _LONG = 2.5
 _SLICES = 60
 """Parts of a long body, each of the same difference of its first eigenfunction, whose lengths are measured."""
 
-_ANGLES, _TURNS = 16, 2
-"""Angles about the axis that are tried in each turn, and how many turns either way."""
+_TRIED, _ANGLES, _TURNS = 16, 32, 2
+"""Angles about the axis that are tried in a turn, how many are told apart, and how many turns either way."""
 
 _NORMAL_LENGTH = 0.05
 """How many units of length a unit of difference of the normals counts when points are matched."""
@@ -58,18 +64,18 @@ _POINT = 1e-12
 _GAIN = 0.02
 """Part of its cost that turning a limb must save."""
 
-_LEAST_TURN = 0.35
+_LEAST_TURN = 0.8
 """Turn of any ring, in radians, below which a limb is left to the registration."""
 
-_NEARLY = 1.25
-"""How many times as much it may cost to wind a limb the other way that is worth a try."""
+_NEARLY, _MOST_OTHERS = 2.0, 2
+"""How many times as much it may cost to wind a limb otherwise that is worth a try, and how many are tried at most."""
 
 
 class Winding(NamedTuple):
-    """Vertices (v,) of a limb, and their positions (v, 3) if it is wound about its axis a full turn otherwise."""
+    """Vertices (v,) of a limb, and their positions (v, 3) in each other way that it might be wound about its axis."""
 
     vertices: NDArray[np.int64]
-    positions: NDArray[np.float64]
+    positions: list[NDArray[np.float64]]
 
 
 class Untwisted(NamedTuple):
@@ -132,8 +138,8 @@ def untwisted(
     already.
 
     An arm whose hand lies right may still be wound about itself by a full turn, and twisted by half a turn it costs as
-    much as by half a turn the other way.  So the best angles that end about a full turn away are found as well, and
-    offered if they cost little more.
+    much as by half a turn the other way; and a flat hand fits nearly as well upside down.  So the best angles that turn
+    the tip otherwise are found as well, and offered if they cost little more.
 
     Parameters
     ----------
@@ -198,14 +204,18 @@ def _turned_back(
         for ring, radius, centre, axis in zip(limb.rings, limb.radii, centres, axes, strict=True):
             places, seen = positions[ring.vertices] - centre, normals[ring.vertices]
             asked = np.concatenate([_turned(places, axis) + centre, _NORMAL_LENGTH * _turned(seen, axis)], axis=2)
-            images = target.vertices[tree.query(asked.reshape(-1, 6))[1]].reshape(_ANGLES, -1, 3)
+            images = target.vertices[tree.query(asked.reshape(-1, 6))[1]].reshape(_TRIED, -1, 3)
             rest = source.vertices[ring.vertices]
             misfits, _ = _rigid_misfits(rest, images, ring.weights)
             costs.append(ring.area / radius**2 * misfits)
             rotations.append(_rigid_misfits(rest, positions[ring.vertices][None], ring.weights)[1][0])
-        angles, other = _best_angles(limb, np.array(costs), _twists(np.array(rotations), axes))
-        if other is not None:
-            otherwise.append(Winding(limb.vertices, _moved(limb, centres, axes, other, positions)))
+        # Between the angles that were tried, costs change as waves do.
+        waves = np.fft.rfft(costs, axis=1) * (_ANGLES / _TRIED)
+        finer = np.fft.irfft(waves, _ANGLES, axis=1).clip(min=0)
+        angles, others = _best_angles(limb, finer, _twists(np.array(rotations), axes))
+        if others:
+            ways = [_moved(limb, centres, axes, other, positions) for other in others]
+            otherwise.append(Winding(limb.vertices, ways))
         if np.abs(angles).max() > _LEAST_TURN:
             turned = turned.copy() if turned is positions else turned
             turned[limb.vertices] = _moved(limb, centres, axes, angles, positions)
@@ -213,27 +223,52 @@ def _turned_back(
 
 
 def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
-    """Find limbs and the rings around them, as far as they are no wider than limbs are."""
+    """Find limbs and the rings around them, as far as they are no wider than limbs are; no vertex is in two of them."""
     tips = spread_extremities(shape, _LIMBS, _APART, filled=False)
-    if not len(tips):
-        return []
     rows = shape.sample_rows[tips].astype(np.float64)
-    apart = shape.sample_distances[np.ix_(tips, tips)] + np.diag(np.full(len(tips), np.inf))
-    nearest = rows.argmin(axis=0)
-    limbs = []
-    for number, row in enumerate(rows):
-        own = np.flatnonzero(nearest == number)
-        rings = _rings(source, own, row[own], min(_SHARE * apart[number].min(), _LONGEST))
+    everything = np.arange(len(source.vertices))
+    found = []
+    for row in rows:
+        rings = _rings(source, everything, row, _LONGEST)
         if len(rings) < _FEWEST_RINGS:
-            continue
-        radii = _radii(source, rings)
-        # A hand is wider than its fingers, but the forearm is not: only what is wide from there on is the body.
-        slender = [k for k in range(1, len(rings)) if radii[k] <= _WIDER * np.median(radii[:k])]
-        rings = rings[: max(slender, default=-1) + 1]
-        if len(rings) >= _FEWEST_RINGS:
-            inside = own[row[own] < rings[-1].distance]
-            limbs.append(_Limb(inside, row[inside], rings, radii[: len(rings)], held=True))
+            rings = []
+        radii = _radii(source, rings) if rings else np.empty(0)
+        chosen = _stout(radii[: _slender(radii)])
+        found.append((rings[chosen], radii[chosen]))
+    limbs = []
+    claims = np.full((len(found), len(everything)), np.inf)
+    for claim, (rings, radii), row in zip(claims, found, rows, strict=True):
+        if rings:
+            near = row < rings[-1].distance
+            claim[near] = row[near] * np.interp(row[near], [ring.distance for ring in rings], radii) ** 3
+    for number, ((rings, radii), row) in enumerate(zip(found, rows, strict=True)):
+        # What two limbs reach is of the one that is thinner there; if they are alike, whose tip is nearer.
+        others = claims[np.arange(len(claims)) != number].min(axis=0, initial=np.inf)
+        lost = np.isfinite(claims[number]) & (others <= claims[number])
+        kept = [ring.weights @ ~lost[ring.vertices] > _MOSTLY for ring in rings]
+        own = rings[: kept.index(False) if False in kept else len(kept)]
+        if len(own) >= _FEWEST_RINGS:
+            inside = np.flatnonzero((row < own[-1].distance) & ~lost)
+            limbs.append(_Limb(inside, row[inside], own, radii[: len(own)], held=True))
     return limbs
+
+
+def _slender(radii: NDArray[np.float64]) -> int:
+    """How many of the rings of these radii (k,), from the tip on, are of the limb: the others are of the body."""
+    # A hand is wider than its fingers, but the forearm is not: only what is wide from there on is the body.
+    last = 0
+    for number in range(1, len(radii)):
+        if radii[number] <= _WIDER * np.median(radii[:number]):
+            last = number
+        elif number - last > _WIDE_RINGS:
+            break
+    return min(last + 1, len(radii))
+
+
+def _stout(radii: NDArray[np.float64]) -> slice:
+    """Which rings of a limb say how it is turned: all but those at the tip that are so thin that any turn is cheap."""
+    enough = np.flatnonzero(radii >= _THIN * np.median(radii)) if len(radii) else [0]
+    return slice(int(enough[0]), len(radii))
 
 
 def _long_body(shape: Shape, source: DeformableSurface) -> list[_Limb]:
@@ -299,8 +334,8 @@ def _axis(positions: NDArray[np.float64], rings: list[_Ring]) -> tuple[NDArray[n
 
 
 def _turned(vectors: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Turn vectors (m, 3) about a unit axis by all angles of a turn, (a, m, 3)."""
-    angles = np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
+    """Turn vectors (m, 3) about a unit axis by the angles that are tried, (a, m, 3)."""
+    angles = np.arange(_TRIED) * (2 * np.pi / _TRIED)
     rotations = Rotation.from_rotvec(angles[:, None] * axis).as_matrix()
     return vectors @ rotations.transpose(0, 2, 1)
 
@@ -326,14 +361,16 @@ def _twists(rotations: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArra
 
 def _best_angles(
     limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
     """Find the angles (k,) of least cost to turn the rings by, all zero if they save too little, and others.
 
-    The others are the best that turn the tip by about a full turn more or less, if these cost little more.
+    The others are the best that turn the tip otherwise, by a third of a turn or more, if these cost little more.
     """
     steps = np.arange(-_TURNS * _ANGLES, _TURNS * _ANGLES + 1)
     tried, costs = steps * (2 * np.pi / _ANGLES), costs[:, steps % _ANGLES]
-    stiffness = np.pi * ((limb.radii[1:] + limb.radii[:-1]) / 2) ** 3 / _WIDTH
+    # Where a limb widens there is a joint, which turns more easily than a tube so wide.
+    radii = np.minimum(limb.radii, np.median(limb.radii))
+    stiffness = np.pi * ((radii[1:] + radii[:-1]) / 2) ** 3 / _WIDTH
     differences = tried[None, :] - tried[:, None]  # the next ring's angle less this one's
     begun = steps == 0 if limb.held else np.abs(steps) <= _ANGLES // 2
     total = np.where(begun, costs[-1], np.inf)
@@ -353,10 +390,16 @@ def _best_angles(
     best, unturned = int(total.argmin()), int(np.flatnonzero(steps == 0)[0])
     now = costs[:, unturned].sum() + (stiffness * np.square(twists)).sum()
     chosen = np.zeros(len(limb.radii)) if total[best] > (1 - _GAIN) * now else angles(best)
-    turns_away = np.abs(np.abs(steps - steps[best]) - _ANGLES) <= _ANGLES // 8
-    other = int(np.where(turns_away, total, np.inf).argmin())
-    possible = limb.held and total[other] < _NEARLY * total[best]
-    return chosen, angles(other) if possible else None
+    others: list[int] = []
+    # Whatever the angles, rings fit no better than that.
+    least = costs.min(axis=1).sum()
+    for tip in np.argsort(total, kind="stable") if limb.held else ():
+        if total[tip] - least > _NEARLY * (total[best] - least) or len(others) == _MOST_OTHERS:
+            break
+        beside = total[max(tip - 1, 0) : tip + 2]
+        if total[tip] <= beside.min() and all(np.abs(tip - taken) > _ANGLES // 3 for taken in (best, *others)):
+            others.append(int(tip))
+    return chosen, [angles(tip) for tip in others]
 
 
 def _moved(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limbs that may be wound about their axes in two ways, which only the whole deformation tells apart."""
+"""Limbs that may be wound about their axes in several ways, which only the whole deformation tells apart."""
 
 from __future__ import annotations
 
@@ -21,8 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = ["local_costs", "wound_steps"]
 
-_BETTER = 0.9
-"""Cost of a limb that is wound the other way, as part of that of the first way, from which on it is taken."""
+_APART = 0.02
+"""Distance, in sqrt(area), from which on two registrations differ at a place: there they are compared."""
+
+_MISFIT_WEIGHT = 320.0
+"""How much squared distances count against elastic energy, a quarter of what they do at the end of the registrations:
+arms beside a head fit badly at first, however they are wound."""
 
 
 def wound_steps(
@@ -52,29 +56,36 @@ def wound_steps(
     Registration
         With each limb as it costs less.
     """
-    positions, otherwise = untwisted
-    first = yield from within(register(positions), 0.0, 0.3 if otherwise else 1.0)
-    if not otherwise:
-        return first
-    # Limbs hardly touch each other, so all are tried at once.
-    second = yield from within(register(_replaced(untwisted, range(len(otherwise)))), 0.3, 0.6)
-    before, after = (local_costs(source, target, found) for found in (first, second))
-    better = [
-        number
-        for number, limb in enumerate(otherwise)
-        if after[limb.vertices].sum() < _BETTER * before[limb.vertices].sum()
-    ]
-    if not better or len(better) == len(otherwise):
-        return second if better else first
-    return (yield from within(register(_replaced(untwisted, better)), 0.6, 1.0))
+    otherwise = untwisted.otherwise
+    count = max((len(limb.positions) for limb in otherwise), default=0)
+    share = 1 / (count + 2 if count else 1)
+    found, costs = [], []
+    for way in range(count + 1):
+        # Limbs hardly touch each other, so all are tried at once.
+        tried = [min(way, len(limb.positions)) for limb in otherwise]
+        registration = yield from within(register(_wound(untwisted, tried)), way * share, (way + 1) * share)
+        found.append((tried, registration))
+        costs.append(local_costs(source, target, registration))
+    kept = []
+    for number, limb in enumerate(otherwise):
+        best = 0
+        for way in range(1, len(limb.positions) + 1):
+            apart = np.linalg.norm(found[way][1].positions - found[best][1].positions, axis=1)[limb.vertices]
+            differing = limb.vertices[apart > _APART]
+            if costs[way][differing].sum() < costs[best][differing].sum():
+                best = way
+        kept.append(found[best][0][number])
+    for tried, registration in found:
+        if tried == kept:
+            return registration
+    return (yield from within(register(_wound(untwisted, kept)), 1 - share, 1.0))
 
 
 def local_costs(
     source: DeformableSurface, target: DeformableSurface, registration: Registration
 ) -> NDArray[np.float64]:
     """Costs (n_x,) of a registration around each vertex of the source: energy, and distances from and to the target."""
-    # As the registration itself weighs them in its last round.
-    positions, weight = registration.positions, FINE.weights[-1]
+    positions, weight = registration.positions, _MISFIT_WEIGHT
     costs = source.elastic.energies(positions, source.elastic.rotations(positions, FINE.rotation_radius))
     images, back = registration.on_target, registration.on_source
     there = np.einsum("kc,kcd->kd", images.barycentric, target.vertices[target.triangles[images.triangles]])
@@ -86,10 +97,10 @@ def local_costs(
     return costs + np.bincount(nearest, apart, len(costs))
 
 
-def _replaced(untwisted: Untwisted, numbers: range | list[int]) -> NDArray[np.float64]:
-    """Positions (n, 3) with the limbs of these numbers wound otherwise."""
+def _wound(untwisted: Untwisted, ways: list[int]) -> NDArray[np.float64]:
+    """Positions (n, 3) with each limb wound in one of its ways: 0 as it is, then each of the others."""
     positions = untwisted.positions.copy()
-    for number in numbers:
-        limb = untwisted.otherwise[number]
-        positions[limb.vertices] = limb.positions
+    for limb, way in zip(untwisted.otherwise, ways, strict=True):
+        if way:
+            positions[limb.vertices] = limb.positions[way - 1]
     return positions

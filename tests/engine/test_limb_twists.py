@@ -46,9 +46,9 @@ def bent(vertices):
     return np.stack([(1 / BEND - z) * np.sin(BEND * x), y, 1 / BEND - (1 / BEND - z) * np.cos(BEND * x)], axis=1)
 
 
-def twisted(vertices, most):
+def twisted(vertices, most, begin=0.45, length=0.3):
     """Turn what lies along x about it: the more the nearer to one end, and not at all in the middle."""
-    angles = most * np.clip((vertices[:, 0] - 0.45) / 0.3, 0, 1)
+    angles = most * np.clip((vertices[:, 0] - begin) / length, 0, 1)
     x, y, z = vertices.T
     return np.stack([x, np.cos(angles) * y - np.sin(angles) * z, np.sin(angles) * y + np.cos(angles) * z], axis=1)
 
@@ -118,18 +118,56 @@ def test_what_is_right_stays_as_it_is(form, straight, made):
 
 def test_what_is_twisted_by_less_than_half_a_turn_might_be_twisted_the_other_way():
     vertices, triangles = lopsided()
-    mesh, target = TriangleMesh(vertices, triangles), surface(TriangleMesh(twisted(vertices, 2.5), triangles))
+    vertices = vertices * [1, 0.7, 0.7]  # thin enough for the twist to be worth it
+    mesh, target = TriangleMesh(vertices, triangles), surface(TriangleMesh(twisted(vertices, 3.0), triangles))
     found = untwisted(shape(mesh), surface(mesh), target, target.vertices)
     np.testing.assert_array_equal(found.positions, target.vertices)
     (other,) = found.otherwise
-    along = vertices[other.vertices, 0]
-    moved = other.positions - target.vertices[other.vertices]
-    apart, radii = (np.linalg.norm(places, axis=1) for places in (moved, target.vertices[other.vertices, 1:]))
+    along, rest = vertices[other.vertices, 0], target.vertices[other.vertices]
     # Only one end is twisted; what is half-way there lies on the other side, and the tip nearly where it was.
     halfway, tip = np.abs(along - 0.65) < 0.02, along > 0.95
-    assert along.min() > 0.4
-    assert apart[halfway].max() > 1.2 * radii[halfway].max()
+    assert along.min() > 0
+    apart = min((np.linalg.norm(way - rest, axis=1) for way in other.positions), key=lambda away: away[tip].max())
+    assert apart[halfway].max() > 1.1 * np.linalg.norm(rest[halfway, 1:], axis=1).max()
     assert apart[tip].max() < 0.45 * apart.max()
+
+
+def test_a_flat_limb_might_lie_upside_down():
+    vertices, triangles = lopsided()
+    vertices = vertices * [1, 0.7, 0.7]
+    mesh, target = TriangleMesh(vertices, triangles), surface(TriangleMesh(twisted(vertices, 2.8), triangles))
+    (other,) = untwisted(shape(mesh), surface(mesh), target, target.vertices).otherwise
+    along, rest = vertices[other.vertices, 0], target.vertices[other.vertices]
+    # Across the limb, near its end, what was on one side is on the other.
+    end = (along > 0.85) & (along < 0.9)
+    across = [(places[end] - places[end].mean(axis=0))[:, 1:] for places in (rest, *other.positions)]
+    agreements = [np.sum(across[0] * way) / np.square(across[0]).sum() for way in across[1:]]
+    assert min(agreements) < -0.9
+
+
+def test_a_limb_is_turned_back_from_where_it_leaves_the_body():
+    vertices, triangles = icosphere(24)
+    along = vertices[:, 0]
+    radii = np.maximum(np.linalg.norm(vertices[:, 1:], axis=1), 1e-9)
+    width = np.interp(along, [-1, -0.9, -0.2, 0, 0.9, 1], [0, 0.4, 0.4, 0.08, 0.08, 0])
+    wide = np.where(vertices[:, 1] > 0, 0.4, 1.0) * width  # so that half a turn does not bring it onto itself
+    vertices = np.stack([along, wide * vertices[:, 1] / radii, 0.6 * width * vertices[:, 2] / radii], axis=1)
+    mesh = TriangleMesh(vertices, triangles)
+    target = surface(mesh)
+    wrong = target.in_unit_size(twisted(vertices, 1.3, 0.05, 0.2))
+    after = untwisted(shape(mesh), target, target, wrong).positions
+    arm = along > 0.05
+    before, after = (np.linalg.norm(places - target.vertices, axis=1)[arm].mean() for places in (wrong, after))
+    assert before > 0.01
+    assert after < 0.6 * before
+
+
+def test_a_thin_end_of_a_limb_does_not_make_it_another_way_to_lie():
+    """A fingertip can be spun at no cost, and says nothing."""
+    vertices, triangles = paddle()
+    mesh = TriangleMesh(vertices, triangles)
+    found = untwisted(shape(mesh), surface(mesh), surface(mesh), surface(mesh).vertices)
+    assert not found.otherwise
 
 
 def test_order_of_the_vertices_and_motion_do_not_matter(straight, made):
