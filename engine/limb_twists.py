@@ -134,8 +134,8 @@ def untwisted(
     which dynamic programming finds [1]_, with the last ring, at the body, held: :math:`D_k` is the mean squared
     distance of a ring at rest, moved as a rigid body, from where it meets the target if it is turned; :math:`A_k` and
     :math:`r_k` are its area and radius.  The second sum is what it takes to twist a tube of the mean radius
-    :math:`\bar r_k` between rings at the distance h, where they are turned by :math:`\tau_k` against each other
-    already.
+    :math:`\bar r_k`, at most the median of the limb, between rings at the distance h, where they are turned by
+    :math:`\tau_k` against each other already.
 
     An arm whose hand lies right may still be wound about itself by a full turn, and twisted by half a turn it costs as
     much as by half a turn the other way; and a flat hand fits nearly as well upside down.  So the best angles that turn
