@@ -186,7 +186,7 @@ class Follower:
         positions, isometry = candidate.registration.positions, candidate.isometry
         register = partial(register_steps, source, target, stages=(FINE,), isometry=isometry, ties=self.ties)
         if self.ties is None:
-            steps = wound_steps(register, source, target, untwisted(self.x, source, target, positions))
+            steps = wound_steps(register, source, target, untwisted(self.x, source, target, positions, isometry))
         else:  # what landmarks hold stays the way round it is
             steps = register(positions)
         first = yield from within(steps, 0.0, 0.2)

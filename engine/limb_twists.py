@@ -61,8 +61,9 @@ _NORMAL_LENGTH = 0.05
 _POINT = 1e-12
 """Squared radius, in units of the area, of what is no more than a point."""
 
-_GAIN = 0.02
-"""Part of its cost that turning a limb must save."""
+_GAIN, _GAIN_UNLIKE = 0.02, 0.2
+"""Part of its cost that turning a limb must save, in one body posed otherwise and in bodies of unlike build: rings of
+these are no rigid bodies, and meet hardly better one way than another."""
 
 _LEAST_TURN = 0.8
 """Turn of any ring, in radians, below which a limb is left to the registration."""
@@ -120,7 +121,11 @@ class _Limb:
 
 
 def untwisted(
-    shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
+    shape: Shape,
+    source: DeformableSurface,
+    target: DeformableSurface,
+    positions: NDArray[np.float64],
+    isometry: float = 1.0,
 ) -> Untwisted:
     r"""Turn back what a registration has turned about the axis of a limb.
 
@@ -149,6 +154,8 @@ def untwisted(
         The surfaces.
     positions : (n, 3) array of float
         Where a registration takes the vertices of the source.
+    isometry : float
+        From 0, bodies of unlike build, to 1, one body in two poses: the less, the more turning a limb must save.
 
     Returns
     -------
@@ -159,7 +166,8 @@ def untwisted(
     ----------
     .. [1] R. Bellman, "Dynamic Programming", Princeton University Press 1957.
     """
-    return _turned_back(_limbs(shape, source), source, target, positions)
+    gain = _GAIN_UNLIKE + isometry * (_GAIN - _GAIN_UNLIKE)
+    return _turned_back(_limbs(shape, source), source, target, positions, gain)
 
 
 def rolled_back(
@@ -185,11 +193,15 @@ def rolled_back(
         The same, with parts of the body turned where that makes them fit better; `positions` themselves if there are
         none, or if the body is not long.
     """
-    return _turned_back(_long_body(shape, source), source, target, positions).positions
+    return _turned_back(_long_body(shape, source), source, target, positions, _GAIN).positions
 
 
 def _turned_back(
-    limbs: list[_Limb], source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
+    limbs: list[_Limb],
+    source: DeformableSurface,
+    target: DeformableSurface,
+    positions: NDArray[np.float64],
+    gain: float,
 ) -> Untwisted:
     """Turn back limbs that have no vertex in common; the positions themselves if there is nothing to be turned."""
     if not limbs:
@@ -212,7 +224,7 @@ def _turned_back(
         # Between the angles that were tried, costs change as waves do.
         waves = np.fft.rfft(costs, axis=1) * (_ANGLES / _TRIED)
         finer = np.fft.irfft(waves, _ANGLES, axis=1).clip(min=0)
-        angles, others = _best_angles(limb, finer, _twists(np.array(rotations), axes))
+        angles, others = _best_angles(limb, finer, _twists(np.array(rotations), axes), gain)
         if others:
             ways = [_moved(limb, centres, axes, other, positions) for other in others]
             otherwise.append(Winding(limb.vertices, ways))
@@ -360,11 +372,12 @@ def _twists(rotations: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArra
 
 
 def _best_angles(
-    limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.float64]
+    limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.float64], gain: float
 ) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
-    """Find the angles (k,) of least cost to turn the rings by, all zero if they save too little, and others.
+    """Find the angles (k,) of least cost to turn the rings by, all zero if they save no more than a gain, and others.
 
-    The others are the best that turn the tip otherwise, by a third of a turn or more, if these cost little more.
+    The gain is a part of the cost as it is.  The others are the best that turn the tip otherwise, by a third of a turn
+    or more, if these cost little more.
     """
     steps = np.arange(-_TURNS * _ANGLES, _TURNS * _ANGLES + 1)
     tried, costs = steps * (2 * np.pi / _ANGLES), costs[:, steps % _ANGLES]
@@ -389,17 +402,18 @@ def _best_angles(
 
     best, unturned = int(total.argmin()), int(np.flatnonzero(steps == 0)[0])
     now = costs[:, unturned].sum() + (stiffness * np.square(twists)).sum()
-    chosen = np.zeros(len(limb.radii)) if total[best] > (1 - _GAIN) * now else angles(best)
-    others: list[int] = []
+    turning = total[best] <= (1 - gain) * now
+    tips = [best if turning else unturned]
     # Whatever the angles, rings fit no better than that.
     least = costs.min(axis=1).sum()
     for tip in np.argsort(total, kind="stable") if limb.held else ():
-        if total[tip] - least > _NEARLY * (total[best] - least) or len(others) == _MOST_OTHERS:
+        if total[tip] - least > _NEARLY * (total[best] - least) or len(tips) > _MOST_OTHERS:
             break
         beside = total[max(tip - 1, 0) : tip + 2]
-        if total[tip] <= beside.min() and all(np.abs(tip - taken) > _ANGLES // 3 for taken in (best, *others)):
-            others.append(int(tip))
-    return chosen, [angles(tip) for tip in others]
+        if total[tip] <= beside.min() and all(np.abs(tip - taken) > _ANGLES // 3 for taken in tips):
+            tips.append(int(tip))
+    chosen = angles(best) if turning else np.zeros(len(limb.radii))
+    return chosen, [angles(tip) for tip in tips[1:]]
 
 
 def _moved(

@@ -107,6 +107,18 @@ def test_a_hand_is_turned_back_though_it_is_wider_than_its_finger():
     assert after < 0.6 * before
 
 
+def test_limbs_of_another_build_are_turned_only_if_that_saves_much():
+    vertices, triangles = blade()
+    vertices = vertices * [1, 0.7, 1.4]
+    source = surface(TriangleMesh(vertices, triangles))
+    other = surface(TriangleMesh(vertices * [1, 0.7, 1.2], triangles))  # wide where the source is thin
+    made = shape(source.mesh)
+    little, much = (on_surface(other, other.in_unit_size(twisted(vertices, most))) for most in (1.3, 2.0))
+    np.testing.assert_array_equal(untwisted(made, source, other, little, isometry=0.0).positions, little)
+    for wrong, isometry in (little, 1.0), (much, 0.0):
+        assert np.abs(untwisted(made, source, other, wrong, isometry).positions - wrong).max() > 0.02
+
+
 @pytest.mark.parametrize("form", [np.asarray, bent])
 def test_what_is_right_stays_as_it_is(form, straight, made):
     vertices, triangles = blade()
