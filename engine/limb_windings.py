@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from .closest_points import FoundPoints
     from .deformable import DeformableSurface
     from .limb_twists import Untwisted
     from .registration import Registration
@@ -27,6 +28,13 @@ _APART = 0.02
 _MISFIT_WEIGHT = 320.0
 """How much squared distances count against elastic energy, a quarter of what they do at the end of the registrations:
 arms beside a head fit badly at first, however they are wound."""
+
+_FEATURE_LENGTH = 0.11
+"""How many units of length a unit of difference of the normals or of the curvatures counts, where ways are compared: a
+round arm fits any way round, but its elbow does not."""
+
+_MOST_CURVED = 0.2
+"""Difference of curvatures from which on more says no more: along seams and borders they have no meaning."""
 
 
 def wound_steps(
@@ -84,17 +92,33 @@ def wound_steps(
 def local_costs(
     source: DeformableSurface, target: DeformableSurface, registration: Registration
 ) -> NDArray[np.float64]:
-    """Costs (n_x,) of a registration around each vertex of the source: energy, and distances from and to the target."""
-    positions, weight = registration.positions, _MISFIT_WEIGHT
+    """Costs (n_x,) of a registration around each vertex of the source: energy, and misfits to and from the target."""
+    positions = registration.positions
+    on_target, on_source = registration.on_target, registration.on_source
+    own = positions, source.search.moved(positions).vertex_normals, source.curvatures
+    others = target.vertices, target.normals, target.curvatures
     costs = source.elastic.energies(positions, source.elastic.rotations(positions, FINE.rotation_radius))
-    images, back = registration.on_target, registration.on_source
-    there = np.einsum("kc,kcd->kd", images.barycentric, target.vertices[target.triangles[images.triangles]])
-    costs += weight * source.mass * np.square(there - positions).sum(axis=1)
-    corners = source.triangles[back.triangles]
-    here = np.einsum("kc,kcd->kd", back.barycentric, positions[corners])
-    nearest = corners[np.arange(len(corners)), back.barycentric.argmax(axis=1)]
-    apart = weight * target.mass * np.square(here - target.vertices).sum(axis=1)
+    costs += _MISFIT_WEIGHT * source.mass * _misfits(on_target, target.triangles, own, others)
+    apart = _MISFIT_WEIGHT * target.mass * _misfits(on_source, source.triangles, others, own)
+    corners = source.triangles[on_source.triangles]
+    nearest = corners[np.arange(len(corners)), on_source.barycentric.argmax(axis=1)]
     return costs + np.bincount(nearest, apart, len(costs))
+
+
+def _misfits(
+    matches: FoundPoints,
+    triangles: NDArray[np.int64],
+    own: tuple[NDArray[np.float64], ...],
+    others: tuple[NDArray[np.float64], ...],
+) -> NDArray[np.float64]:
+    """Squared differences (k,) of positions, normals and curvatures between vertices and the points they match."""
+    corners = triangles[matches.triangles]
+    places, normals, curvatures = (
+        np.square(np.einsum("kc,kcd->kd", matches.barycentric, theirs[corners]) - mine).sum(axis=1)
+        for mine, theirs in zip(own, others, strict=True)
+    )
+    misfits: NDArray[np.float64] = places + _FEATURE_LENGTH**2 * (normals + np.minimum(curvatures, _MOST_CURVED**2))
+    return misfits
 
 
 def _wound(untwisted: Untwisted, ways: list[int]) -> NDArray[np.float64]:

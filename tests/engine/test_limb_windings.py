@@ -98,12 +98,36 @@ def test_nothing_is_registered_twice_where_nothing_else_might_be_meant(straight)
     assert laid.count == 1
 
 
-def test_costs_of_all_vertices_are_energy_and_distances(straight):
+def test_costs_of_all_vertices_are_energy_and_misfits_both_ways(straight):
     moved = straight.vertices * [1.02, 0.9, 1.1]
     registration = run(Laid(straight, straight)(moved))
-    back = straight.mass @ registration.on_source.squared_distances
-    whole = registration.energy + 320 * (registration.misfit + back)
-    assert local_costs(straight, straight, registration).sum() == pytest.approx(whole, rel=1e-6)
+    laid = straight.search.moved(moved).vertex_normals
+    here, there = (moved, laid, straight.curvatures), (straight.vertices, straight.normals, straight.curvatures)
+    misfit = 0.0
+    for found, own, others in (registration.on_target, here, there), (registration.on_source, there, here):
+        corners = straight.triangles[found.triangles]
+        places, normals, curvatures = (
+            np.square((found.barycentric[:, :, None] * other[corners]).sum(axis=1) - mine).sum(axis=1)
+            for mine, other in zip(own, others, strict=True)
+        )
+        misfit += straight.mass @ (places + 0.11**2 * (normals + np.minimum(curvatures, 0.04)))
+    costs = local_costs(straight, straight, registration)
+    assert costs.sum() == pytest.approx(registration.energy + 320 * misfit, rel=1e-9)
+
+
+def test_a_round_limb_costs_more_where_its_elbow_lies_on_the_wrong_side():
+    vertices, triangles = icosphere(16)
+    x, y, z = (vertices * [1, 0.12, 0.12]).T
+    elbow = np.exp(-np.square(x / 0.1)) * np.clip(y / 0.12, 0, None) ** 2
+    mesh = TriangleMesh(np.stack([x, y + 0.02 * elbow, z], axis=1), triangles)
+    arm = DeformableSurface(mesh, laplace_beltrami(mesh))
+    turned = Laid(arm, arm)
+    wrong = run(turned(arm.vertices * [1, -1, -1]))
+    costs = local_costs(arm, arm, wrong)
+    distances = 320 * (wrong.misfit + arm.mass @ wrong.on_source.squared_distances)
+    assert wrong.energy < 1e-9
+    assert costs.sum() > 4 * distances
+    assert costs[np.abs(x) < 0.25].sum() > 0.7 * costs.sum()
 
 
 def test_costs_are_where_the_surface_is_wound(straight):
