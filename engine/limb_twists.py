@@ -160,7 +160,7 @@ def untwisted(
     Returns
     -------
     Untwisted
-        The same, with limbs turned where that makes them fit better, and other windings of limbs, one for each at most.
+        The same, with limbs turned where that makes them fit better, and other windings of limbs, two for each at most.
 
     References
     ----------
