@@ -26,7 +26,7 @@ demo: environment
 
 # As many tests at once as there are cores, so each has one; what a file of tests prepares is prepared once.
 test: environment
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(RUN) -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 HIERMATCH_PROCESSES=1 $(RUN) -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile
 
 lint: environment
 	$(RUN) -m ruff check .

@@ -5,6 +5,7 @@ from .closest_points import ClosestPoints
 from .dense_match import DenseMatch, densify, densify_steps
 from .errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .fitted_rig import FittedRig
+from .helpers import use_processes
 from .joint_placement import PlacedJoints, place_joints
 from .local_frames import LocalFrames, bone_frames, surface_frames
 from .matching import match, match_steps
@@ -85,5 +86,6 @@ __all__ = [
     "surface_frames",
     "symmetry_map",
     "symmetry_map_steps",
+    "use_processes",
     "wrap_steps",
 ]

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from .closest_points import FoundPoints
 from .functional_maps import PointMaps
 from .limb_twists import rolled_back, untwisted
 from .limb_windings import wound_steps
-from .map_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
+from .map_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
+from .map_search import MapLead
 from .progress import Steps, within
 from .registration import (
     AGAIN,
@@ -27,16 +28,20 @@ from .registration import (
     restarted_steps,
     smooth_start,
 )
+from .sharing import shared_steps
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from .deformable import DeformableSurface
+    from .map_domain import MapDomain
     from .shape import Shape
     from .ties import Ties
+
+    _Common = tuple["Follower", MapDomain, MapDomain]
 
 __all__ = ["Candidate", "CloseFit", "Follower"]
 
@@ -130,6 +135,7 @@ class Follower:
     target: DeformableSurface
     ties: Ties | None = None
     ties_back: Ties | None = None
+    is_sent_once: ClassVar[bool] = True
 
     @cached_property
     def _smooth(self) -> NDArray[np.float64]:
@@ -140,6 +146,19 @@ class Follower:
     def _functions(self) -> NDArray[np.float64]:
         """All functions of the source, (n_x, k)."""
         return _functions(self.x, len(self.x.spectrum))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what the surfaces stand for, and what is made in no time."""
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        return state | {"x": self.x.lean(), "y": self.y.lean()}
+
+    def all_steps(self, hypotheses: Sequence[MapHypothesis]) -> Steps[list[Candidate]]:
+        """Follow up several hypotheses between the same domains; see `steps`."""
+        if not hypotheses:
+            return []
+        items = [(_lead_of(hypothesis), hypothesis.__dict__.get("images")) for hypothesis in hypotheses]
+        found = yield from shared_steps(_followed_steps, (self, *hypotheses[0].domains), items)
+        return [Candidate(hypothesis, *rest) for hypothesis, rest in zip(hypotheses, found, strict=True)]
 
     def steps(self, hypothesis: MapHypothesis) -> Steps[Candidate]:
         """Register the source from where a hypothesis takes it, and judge what comes of it."""
@@ -180,16 +199,28 @@ class Follower:
         isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))
         return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic), isometry)
 
+    def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
+        """Register several candidates closely, between the same domains; see `close_steps`."""
+        items = [(_lead_of(c.hypothesis), (c.registration, c.score, c.likeness, c.isometry)) for c in candidates]
+        common = self, *candidates[0].hypothesis.domains
+        found = yield from shared_steps(_closely_followed_steps, common, items)
+        return [CloseFit(candidate, *rest) for candidate, rest in zip(candidates, found, strict=True)]
+
     def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
         """Register closely: the source, then the target from where it lies, then the source again."""
         source, target = self.source, self.target
         positions, isometry = candidate.registration.positions, candidate.isometry
-        register = partial(register_steps, source, target, stages=(FINE,), isometry=isometry, ties=self.ties)
+
+        def register_all_steps(starts: list[NDArray[np.float64]]) -> Steps[list[Registration]]:
+            """Register from several positions."""
+            items = [(start, isometry) for start in starts]
+            return (yield from shared_steps(_finely_registered_steps, (self, *candidate.hypothesis.domains), items))
+
         if self.ties is None:
-            steps = wound_steps(register, source, target, untwisted(self.x, source, target, positions, isometry))
+            way = untwisted(self.x, source, target, positions, isometry)
+            first = yield from within(wound_steps(register_all_steps, source, target, way), 0.0, 0.2)
         else:  # what landmarks hold stays the way round it is
-            steps = register(positions)
-        first = yield from within(steps, 0.0, 0.2)
+            (first,) = yield from within(register_all_steps([positions]), 0.0, 0.2)
         matches = first.on_source, first.on_target
         restart = partial(restarted_steps, stages=_STAGES, isometry=isometry)
         steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back)
@@ -243,6 +274,36 @@ class Follower:
             self.target.triangles[on_target.triangles, on_target.barycentric.argmax(axis=1)],
             self.source.triangles[on_source.triangles, on_source.barycentric.argmax(axis=1)],
         )
+
+
+def _lead_of(hypothesis: MapHypothesis) -> MapLead:
+    """Return a hypothesis without what all of them share."""
+    return MapLead(hypothesis.points, hypothesis.score, hypothesis.orientation, hypothesis.terms, hypothesis.origin)
+
+
+def _followed_steps(
+    common: _Common, item: tuple[MapLead, PointMaps | None]
+) -> Steps[tuple[Registration, float, float, float]]:
+    """Find what `Follower.steps` does, beside the hypothesis."""
+    follow, x, y = common
+    found = yield from follow.steps(hypothesis_of((x, y), *item))
+    return found.registration, found.score, found.likeness, found.isometry
+
+
+def _closely_followed_steps(
+    common: _Common, item: tuple[MapLead, tuple[Registration, float, float, float]]
+) -> Steps[tuple[Registration, Registration, float]]:
+    """Find what `Follower.close_steps` does, beside the candidate."""
+    (follow, x, y), (lead, rest) = common, item
+    found = yield from follow.close_steps(Candidate(hypothesis_of((x, y), lead), *rest))
+    return found.registration, found.reverse, found.score
+
+
+def _finely_registered_steps(common: _Common, item: tuple[NDArray[np.float64], float]) -> Steps[Registration]:
+    """Register the source from some positions."""
+    follow, (start, isometry) = common[0], item
+    steps = register_steps(follow.source, follow.target, start, (FINE,), isometry=isometry, ties=follow.ties)
+    return (yield from steps)
 
 
 def _functions(shape: Shape, count: int) -> NDArray[np.float64]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -134,6 +134,11 @@ class ClosestPoints:
         self._rings = rings
         self._coordinates = np.ascontiguousarray(vertices.T)  # (3, n): whole rows are faster to compute with
         self._trees: dict[float, cKDTree] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what is computed when that is asked for."""
+        kept = "vertices", "_rings", "_coordinates"
+        return {name: self.__dict__[name] for name in kept} | {"_trees": {}}
 
     def moved(self, vertices: NDArray[np.float64]) -> ClosestPoints:
         """Return a search on the same triangles with other positions (n, d) of the vertices.

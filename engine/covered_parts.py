@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,7 @@ from .missing_parts import with_partner
 from .part_search import part_placements_steps
 from .progress import Steps, within
 from .shape import Shape
+from .sharing import shared_steps
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
@@ -159,7 +161,8 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
     scores, taken = np.array([fit.score for fit in fits]), np.array([fit.places for fit in fits]) / whole.scale
     best = best_and_rivals(scores, taken, _REFINED, _HOPEFUL[1])
-    refined = yield from within(_refined_steps(fitter, [fits[way] for way in best]), 0.75, 1.0)
+    followed = shared_steps(_refined_steps, fitter, [fits[way] for way in best])
+    refined = list(chain.from_iterable((yield from within(followed, 0.75, 1.0))))
     found: list[tuple[NDArray[np.bool_], float]] = []
     for fit in sorted([*fits, *refined], key=lambda fit: fit.score):
         if found and fit.score >= found[0][1] + _CONTESTED:
@@ -240,41 +243,46 @@ def continued(
 
 def _registered_steps(fitter: _Fitter, starts: list[tuple[NDArray[np.bool_], NDArray[np.int64]]]) -> Steps[list[_Fit]]:
     """Compare pieces with the part, and register the most credible ones and their rivals."""
-    proposals: list[_Proposal] = []
-    for number, (covered, images) in enumerate(starts):
-        begin, end = (0.6 * (number + i) / len(starts) for i in (0, 1))
-        proposal = yield from within(fitter.proposal_steps(covered, images), begin, end)
-        if proposal is not None:
-            proposals.append(proposal)
-    fits: list[_Fit] = []
+    proposed = yield from within(shared_steps(_proposed_steps, fitter, starts), 0.0, 0.6)
+    proposals = [proposal for proposal in proposed if proposal is not None]
     scores = np.array([proposal.hypothesis.score for proposal in proposals])
     places = np.array([proposal.places for proposal in proposals]) / fitter.whole.scale
     best = best_and_rivals(scores, places, _REGISTERED, _HOPEFUL[0])
-    for number, way in enumerate(best):
-        begin, end = (0.6 + 0.4 * (number + i) / len(best) for i in (0, 1))
-        fits.append((yield from within(fitter.fit_steps(proposals[way]), begin, end)))
-    return fits
+    steps = shared_steps(_fitted_steps, fitter, [proposals[way] for way in best])
+    return (yield from within(steps, 0.6, 1.0))
 
 
-def _refined_steps(fitter: _Fitter, fits: list[_Fit]) -> Steps[list[_Fit]]:
-    """Cut pieces out anew by what registrations cover, and register these."""
+def _proposed_steps(fitter: _Fitter, start: tuple[NDArray[np.bool_], NDArray[np.int64]]) -> Steps[_Proposal | None]:
+    """Compare a piece with the part."""
+    return (yield from fitter.proposal_steps(*start))
+
+
+def _fitted_steps(fitter: _Fitter, proposal: _Proposal) -> Steps[_Fit]:
+    """Register a piece to the part."""
+    return (yield from fitter.fit_steps(proposal))
+
+
+def _refined_steps(fitter: _Fitter, fit: _Fit) -> Steps[list[_Fit]]:
+    """Cut a piece out anew by what a registration covers, and register it, again and again."""
     refined: list[_Fit] = []
-    for number, fit in enumerate(fits):
-        last = fit
-        for again in range(_ROUNDS):
-            begin, end = ((number + (again + i) / _ROUNDS) / len(fits) for i in (0, 1))
-            covered = fitter.covered(last) | fitter.grown(last)
-            images = fitter.nearest_samples(last.places[fitter.part.samples])
-            proposal = yield from within(fitter.proposal_steps(covered, images, known=True), begin, (begin + end) / 2)
-            if proposal is None:
-                break
-            last = yield from within(fitter.fit_steps(proposal), (begin + end) / 2, end)
-            refined.append(last)
+    last = fit
+    for again in range(_ROUNDS):
+        begin, end = ((again + i) / _ROUNDS for i in (0, 1))
+        covered = fitter.covered(last) | fitter.grown(last)
+        images = fitter.nearest_samples(last.places[fitter.part.samples])
+        proposal = yield from within(fitter.proposal_steps(covered, images, known=True), begin, (begin + end) / 2)
+        if proposal is None:
+            break
+        last = yield from within(fitter.fit_steps(proposal), (begin + end) / 2, end)
+        refined.append(last)
     return refined
 
 
 class _Fitter:
     """Registers pieces of the whole to the part."""
+
+    is_sent_once = True
+    """See `sharing.shared_steps`."""
 
     def __init__(self, whole: Shape, part: Shape) -> None:
         self.whole, self.part = whole, part

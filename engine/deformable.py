@@ -56,6 +56,9 @@ class DeformableSurface:
         Area of each vertex; they sum to one.
     """
 
+    is_sent_once = True
+    """See `sharing.shared_steps`."""
+
     def __init__(self, mesh: TriangleMesh, laplace: LaplaceBeltrami) -> None:
         self.mesh = mesh
         self._laplace = laplace

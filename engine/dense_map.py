@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -146,10 +147,7 @@ def registered_pair_steps(
     if as_they_are:
         plausible += [unrefined_hypothesis(hypotheses[0].domains, start) for start in starts]
     follow = Follower(x, y, source, target, ties, ties_back)
-    candidates = []
-    for number, hypothesis in enumerate(plausible):
-        begin, end = (0.42 + 0.18 * (number + i) / len(plausible) for i in (0, 1))
-        candidates.append((yield from within(follow.steps(hypothesis), begin, end)))
+    candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
     rough: list[MapHypothesis] = []
     if search and candidates[0].hypothesis.is_doubtful:
@@ -180,12 +178,13 @@ def _unrefined_steps(
 ) -> Steps[list[Candidate]]:
     """Follow up rough maps, too, that would not lead to where a candidate is; the most credible candidate first."""
     taken = [candidate.registration.positions for candidate in candidates]
-    for number, hypothesis in enumerate(hypotheses):
-        start = follow.start(hypothesis.images)
+    starts = [follow.start(hypothesis.images) for hypothesis in hypotheses]
+    new = [all(follow.apart(start, positions) > _LIKE for positions in taken) for start in starts]
+    followed = yield from follow.all_steps(list(compress(hypotheses, new)))
+    for start, candidate in zip(compress(starts, new), followed, strict=True):
         if all(follow.apart(start, positions) > _LIKE for positions in taken):
-            begin, end = ((number + i) / len(hypotheses) for i in (0, 1))
-            candidates = [*candidates, (yield from within(follow.steps(hypothesis), begin, end))]
-            taken += [start, candidates[-1].registration.positions]
+            candidates = [*candidates, candidate]
+            taken += [start, candidate.registration.positions]
     return sorted(candidates, key=lambda candidate: candidate.score)
 
 
@@ -213,11 +212,7 @@ def _contenders(follow: Follower, candidates: list[Candidate]) -> list[Candidate
 
 def _contest_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[CloseFit]]:
     """Register the candidates that may be chosen closely; the most credible first."""
-    contenders = _contenders(follow, candidates)
-    fits = []
-    for number, candidate in enumerate(contenders):
-        begin, end = ((number + i) / len(contenders) for i in (0, 1))
-        fits.append((yield from within(follow.close_steps(candidate), begin, end)))
+    fits = yield from follow.all_close_steps(_contenders(follow, candidates))
     return sorted(fits, key=lambda fit: fit.score)
 
 
@@ -233,7 +228,8 @@ def _limbs_repaired_steps(follow: Follower, best: Candidate) -> Steps[Candidate 
     start = repaired_start(*shapes, wrong)
     if start is None:
         return None
-    hypotheses = yield from within(map_hypotheses_steps(*shapes, (start,), search=False), 0.0, 0.3)
+    domains = best.hypothesis.domains
+    hypotheses = yield from within(map_hypotheses_steps(*shapes, (start,), search=False, domains=domains), 0.0, 0.3)
     repaired = yield from within(follow.steps(hypotheses[0]), 0.3, 1.0)
     right = follow.vertex_maps(repaired.registration)
     # What exchanges the ends of limbs may fit a little better by all other measures.

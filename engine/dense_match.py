@@ -15,12 +15,14 @@ from .lifting import lift_steps
 from .map_hypotheses import LandmarkStart
 from .pieces_only import piece_of, with_pieces_only
 from .pinning import pinned
-from .polishing import Polish, finer_surface_steps
+from .polishing import Polish, finer_surfaces_steps
 from .progress import Progress, Steps, run, within
 from .quality import MatchQuality, assess_maps, with_pieces
 from .reflection import reflected_mesh, reflected_points
 from .registration import POLISH
 from .shape import Shape
+from .shape_preparation import Wanted, prepared_shapes_steps
+from .sharing import MOST_SENT, here_steps, shared_steps
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
 from .whole_maps import whole_maps_steps
@@ -29,10 +31,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from .deformable import DeformableSurface
     from .dense_map import RegisteredPair
     from .mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
-    from .registration import Stage
+    from .registration import Registration, Stage
     from .whole_maps import WholeMap
 
 __all__ = ["MEASURED", "DenseMatch", "dense_match_steps", "densify", "densify_steps"]
@@ -118,9 +121,7 @@ def densify_steps(
     y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
-    yield from within(x.sample_steps(_SAMPLES, MEASURED), 0.2, 0.28)
-    yield from within(y.sample_steps(_SAMPLES, MEASURED), 0.28, 0.34)
-    yield from within(x.spectrum_steps(EIGENPAIRS), 0.34, 0.35)
+    yield from within(prepared_shapes_steps(x, y, Wanted(_SAMPLES, MEASURED, EIGENPAIRS)), 0.2, 0.35)
     mirrored = _mirrors(x, y, start)
     # Seen in a mirror, the source is matched by a map that keeps the orientation.
     seen = x.reflected() if mirrored else x
@@ -199,14 +200,15 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     polished = None
     largest = max(main_x.vertex_count, main_y.vertex_count)
     if largest <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
-        finer_x = yield from within(finer_surface_steps(x), 0.0, 0.1)
-        finer_y = yield from within(finer_surface_steps(y), 0.1, 0.2)
-        polished = Polish(finer_x, finer_y, polish, pair.landmarks)
-    there = yield from within(_main_map_steps(pair, polished, 0), 0.2, 0.5)
+        finer = yield from within(finer_surfaces_steps(x, y), 0.0, 0.2)
+        polished = Polish(*finer, polish, pair.landmarks)
+    lift = _Lift((x, y), (pair.source, pair.target), (pair.registration, pair.reverse), polished)
     if involution:
+        there = yield from within(_main_map_steps(lift, 0), 0.2, 0.8)
         back = reflected_points(main_x, there)
     else:
-        back = yield from within(_main_map_steps(pair, polished, 1), 0.5, 0.8)
+        share = shared_steps if largest <= MOST_SENT else here_steps
+        there, back = yield from within(share(_main_map_steps, lift, (0, 1)), 0.2, 0.8)
     if pair.landmarks is not None:
         here, partners = pair.landmarks.source.main, pair.landmarks.target.main
         there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
@@ -228,16 +230,23 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     return DenseMatch(forward, backward, quality)
 
 
-def _main_map_steps(pair: RegisteredPair, polish: Polish | None, here: int) -> Steps[SurfacePoints]:
+@dataclass(frozen=True, eq=False)
+class _Lift:
+    """Two surfaces, X and Y, what was registered in their place, each to the other, and how that is polished."""
+
+    surfaces: tuple[PreparedSurface, PreparedSurface]
+    deformable: tuple[DeformableSurface, DeformableSurface]
+    registrations: tuple[Registration, Registration]
+    polish: Polish | None
+
+
+def _main_map_steps(lift: _Lift, here: int) -> Steps[SurfacePoints]:
     """Map every vertex of the main part of X to that of Y (`here` is 0), or of Y to that of X (1)."""
-    x, y = pair.x.surface, pair.y.surface
-    target, registration = pair.target, pair.registration
-    if here:
-        x, y, target, registration = y, x, pair.source, pair.reverse
-    positions = target.in_its_units(registration.positions)
+    x, y, registration = lift.surfaces[here], lift.surfaces[1 - here], lift.registrations[here]
+    positions = lift.deformable[1 - here].in_its_units(registration.positions)
     proxy_map = registration.on_target.nearest_vertices(y.mesh.triangles)
-    if polish is not None:
-        return (yield from polish.steps(positions, proxy_map, here))
+    if lift.polish is not None:
+        return (yield from lift.polish.steps(positions, proxy_map, here))
     ends = x.cleaned.mesh, x.proxy, positions, y.cleaned.mesh
     return (yield from lift_steps(*ends, target_proxy=y.proxy, proxy_map=proxy_map, search=y.dense_search))
 

@@ -96,6 +96,9 @@ class GeodesicSolver:
     (2, mesh.vertex_count)
     """
 
+    is_sent_once = True
+    """See `sharing.shared_steps`."""
+
     def __init__(self, mesh: TriangleMesh) -> None:
         tables = corner_tables(mesh)
         self._vertex_count = mesh.vertex_count

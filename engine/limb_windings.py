@@ -38,7 +38,7 @@ _MOST_CURVED = 0.2
 
 
 def wound_steps(
-    register: Callable[[NDArray[np.float64]], Steps[Registration]],
+    register: Callable[[list[NDArray[np.float64]]], Steps[list[Registration]]],
     source: DeformableSurface,
     target: DeformableSurface,
     untwisted: Untwisted,
@@ -48,7 +48,7 @@ def wound_steps(
     Parameters
     ----------
     register : callable
-        Registers the source from given positions (n, 3).
+        Registers the source from several positions, (n, 3) each.
     source, target : DeformableSurface
         The surfaces.
     untwisted : Untwisted
@@ -66,14 +66,14 @@ def wound_steps(
     """
     otherwise = untwisted.otherwise
     count = max((len(limb.positions) for limb in otherwise), default=0)
-    share = 1 / (count + 2 if count else 1)
-    found, costs = [], []
-    for way in range(count + 1):
-        # Limbs hardly touch each other, so all are tried at once.
-        tried = [min(way, len(limb.positions)) for limb in otherwise]
-        registration = yield from within(register(_wound(untwisted, tried)), way * share, (way + 1) * share)
-        found.append((tried, registration))
-        costs.append(local_costs(source, target, registration))
+    share = (count + 1) / (count + 2 if count else 1)
+    # Limbs hardly touch each other, so all are tried at once.
+    ways = [[min(way, len(limb.positions)) for limb in otherwise] for way in range(count + 1)]
+    registered = yield from within(register([_wound(untwisted, tried) for tried in ways]), 0.0, share)
+    found = list(zip(ways, registered, strict=True))
+    if not count:
+        return registered[0]
+    costs = [local_costs(source, target, registration) for registration in registered]
     kept = []
     for number, limb in enumerate(otherwise):
         best = 0
@@ -86,7 +86,8 @@ def wound_steps(
     for tried, registration in found:
         if tried == kept:
             return registration
-    return (yield from within(register(_wound(untwisted, kept)), 1 - share, 1.0))
+    (registration,) = yield from within(register([_wound(untwisted, kept)]), share, 1.0)
+    return registration
 
 
 def local_costs(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -57,6 +57,9 @@ class MapDomain:
         Eigenvalues.
     """
 
+    is_sent_once = True
+    """See `sharing.shared_steps`."""
+
     def __init__(self, shape: Shape, size: int) -> None:
         self.shape = shape.limited(_COARSE)
         spectrum, scale = shape.spectrum, shape.scale
@@ -64,6 +67,15 @@ class MapDomain:
         self.values = spectrum.values[:size] * scale**2
         self.coarse_count = self.shape.sample_count
         self.vertices = _filled_up(shape.mesh.vertices / scale, self.shape.samples, _FINE)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what the surface stands for, and what is made in no time."""
+        return {**self.__dict__, "shape": self.shape.lean(), "functions": self.functions.shape[1]}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make what was left out."""
+        self.__dict__.update(state)
+        self.functions = self.shape.spectrum.functions[:, : state["functions"]] * self.shape.scale
 
     @cached_property
     def coarse_basis(self) -> SampledBasis:

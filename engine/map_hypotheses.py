@@ -24,6 +24,7 @@ from .map_domain import MapDomain
 from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
 from .map_search import MapLead, distinct_leads, fitting_maps_steps, rough_maps_steps
 from .progress import Progress, Steps, run, within
+from .sharing import shared_steps
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -36,6 +37,7 @@ __all__ = [
     "LandmarkStart",
     "MapHypothesis",
     "assessed_everywhere",
+    "hypothesis_of",
     "map_hypotheses_steps",
     "refined_hypothesis_steps",
     "unrefined_hypotheses_steps",
@@ -134,7 +136,13 @@ class MapHypothesis:
 
 
 def map_hypotheses_steps(
-    x: Shape, y: Shape, starts: Sequence[LandmarkStart] = (), *, search: bool = True, mirrored: bool = True
+    x: Shape,
+    y: Shape,
+    starts: Sequence[LandmarkStart] = (),
+    *,
+    search: bool = True,
+    mirrored: bool = True,
+    domains: tuple[MapDomain, MapDomain] | None = None,
 ) -> Steps[list[MapHypothesis]]:
     """Propose dense maps between two surfaces, most credible first.
 
@@ -154,6 +162,8 @@ def map_hypotheses_steps(
         Whether matchings of extremities are tried as well; without, there must be a start.
     mirrored : bool
         Whether matchings of extremities that mirror the surface are followed up even if there are others.
+    domains : pair of MapDomain, optional
+        Those of the surfaces, if earlier hypotheses have them.
 
     Yields
     ------
@@ -174,21 +184,17 @@ def map_hypotheses_steps(
     for start in starts:
         _check(start, x, y)
     size = min(len(x.spectrum), len(y.spectrum))
-    a, b = MapDomain(x, size), MapDomain(y, size)
+    a, b = domains = domains or (MapDomain(x, size), MapDomain(y, size))
     yield Progress(0.05, "Comparing maps")
     leads: list[MapLead] = []
     if search:
         steps = rough_maps_steps(a, b) if mirrored else _keeping_leads_steps(a, b)
         leads = yield from within(steps, 0.05, 0.4)
-    refined: list[MapLead] = []
     candidates = [(_between_fine(a, b, _smooth_maps(a, b, lead.points)), lead.origin) for lead in leads]
     candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
-    for number, (points, origin) in enumerate(candidates):
-        begin, end = (0.4 + 0.6 * (number + i) / len(candidates) for i in (0, 1))
-        finer = refine_bijective_steps(a.fine_basis, b.fine_basis, points, _FINE_SIZES)
-        refined.append(_assessed(a, b, (yield from within(finer, begin, end)), origin))
+    refined = yield from within(shared_steps(_refined_lead_steps, domains, candidates), 0.4, 1.0)
     kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
-    return [_hypothesis((a, b), lead) for lead in kept]
+    return [hypothesis_of(domains, lead) for lead in kept]
 
 
 def unrefined_hypotheses_steps(domains: tuple[MapDomain, MapDomain]) -> Steps[list[MapHypothesis]]:
@@ -211,31 +217,27 @@ def unrefined_hypotheses_steps(domains: tuple[MapDomain, MapDomain]) -> Steps[li
     list of MapHypothesis
         The most credible matching of X to Y, and of Y to X.  Their scores are comparable among each other.
     """
-    x, y = domains
-    there = yield from within(fitting_maps_steps(x, y), 0.0, 0.25)
-    best_there = yield from within(_best_unrefined_steps(domains, there), 0.25, 0.5)
-    back = yield from within(fitting_maps_steps(y, x), 0.5, 0.75)
-    turned = [PointMaps(points.on_x, points.on_y) for points in back]
-    best_back = yield from within(_best_unrefined_steps(domains, turned), 0.75, 1.0)
-    return [hypothesis for hypothesis in (best_there, best_back) if hypothesis is not None]
+    found = yield from shared_steps(_best_unrefined_steps, domains, (0, 1))
+    return [hypothesis_of(domains, *best) for best in found if best is not None]
 
 
-def _best_unrefined_steps(
-    domains: tuple[MapDomain, MapDomain], proposed: list[PointMaps]
-) -> Steps[MapHypothesis | None]:
-    """Choose the most credible of maps between the coarse samples, if any keeps the orientation."""
-    x, y = domains
+def _best_unrefined_steps(domains: tuple[MapDomain, MapDomain], way: int) -> Steps[tuple[MapLead, PointMaps] | None]:
+    """Choose the most credible matching of X to Y (way 0), or of Y to X (1), if any keeps the orientation."""
+    (x, y), turned = domains, way == 1
+    proposed = yield from within(fitting_maps_steps(*(domains[::-1] if turned else domains)), 0.0, 0.5)
+    if turned:
+        proposed = [PointMaps(points.on_x, points.on_y) for points in proposed]
     best: tuple[MapLead, FunctionalMaps] | None = None
     for number, points in enumerate(proposed):
         maps = _smooth_maps(x, y, points)
         lead = _assessed(x, y, _between_fine(x, y, maps), "matching")
         if lead.orientation > 0 and (best is None or lead.score < best[0].score):
             best = lead, maps
-        yield Progress((number + 1) / len(proposed), "Comparing maps")
+        yield Progress(0.5 + 0.5 * (number + 1) / len(proposed), "Comparing maps")
     if best is None:
         return None
     images = yield from within(points_from_functions_steps(best[1], x.functions, y.functions), 1.0, 1.0)
-    return _hypothesis(domains, best[0], images)
+    return best[0], images
 
 
 def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: LandmarkStart) -> MapHypothesis:
@@ -246,7 +248,7 @@ def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: LandmarkSt
     x, y = domains
     lead = _assessed(x, y, _from_landmarks(x, y, start), start.origin)
     rows = (np.asarray(distances, np.float64).T for distances in (start.source_distances, start.target_distances))
-    return _hypothesis(domains, lead, nearest_both_ways(*rows))
+    return hypothesis_of(domains, lead, nearest_both_ways(*rows))
 
 
 def assessed_everywhere(domains: tuple[MapDomain, MapDomain], images: PointMaps) -> MapLead:
@@ -281,7 +283,7 @@ def refined_hypothesis_steps(
     x, y = domains
     rough = _at_fine_samples(x, y, images)
     points = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, rough, _FINE_SIZES)
-    return _hypothesis(domains, _assessed(x, y, points, origin))
+    return hypothesis_of(domains, _assessed(x, y, points, origin))
 
 
 def _at_fine_samples(x: MapDomain, y: MapDomain, images: PointMaps) -> PointMaps:
@@ -289,7 +291,16 @@ def _at_fine_samples(x: MapDomain, y: MapDomain, images: PointMaps) -> PointMaps
     return PointMaps(y.nearest_samples(images.on_y[x.vertices]), x.nearest_samples(images.on_x[y.vertices]))
 
 
-def _hypothesis(domains: tuple[MapDomain, MapDomain], lead: MapLead, images: PointMaps | None = None) -> MapHypothesis:
+def _refined_lead_steps(domains: tuple[MapDomain, MapDomain], start: tuple[PointMaps, str]) -> Steps[MapLead]:
+    """Refine a map between the fine samples, from somewhere, and score it."""
+    x, y = domains
+    points = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, start[0], _FINE_SIZES)
+    return _assessed(x, y, points, start[1])
+
+
+def hypothesis_of(
+    domains: tuple[MapDomain, MapDomain], lead: MapLead, images: PointMaps | None = None
+) -> MapHypothesis:
     """Make a hypothesis of a lead, with its map between all vertices if that is known already."""
     hypothesis = MapHypothesis(domains, lead.points, lead.score, lead.orientation, lead.terms, lead.origin)
     if images is not None:

@@ -14,6 +14,7 @@ from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_st
 from .lifted_matchings import LiftedMatchings
 from .map_scores import map_orientation, spectral_terms
 from .progress import Progress, Steps, within
+from .sharing import shared_steps
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -110,11 +111,12 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     usual: list[MapLead] = []
     fitting: list[MapLead] = []
     searches = [(search, sign) for search in _searches(x, y) for sign in signs]
-    for number, (search, sign) in enumerate(searches):
-        begin, end = ((number + i) / len(searches) for i in (0, 1))
-        found = yield from within(_searched_steps(x, y, search, sign), begin, end)
-        usual += found[0]
-        fitting += found[1]
+    # The longest first: then what is shared with helpers ends at about the same time.
+    order = sorted(range(len(searches)), key=lambda number: -searches[number][0].kept[searches[number][1]])
+    found = yield from shared_steps(_searched_steps, (x, y), [searches[number] for number in order])
+    for _, of_search in sorted(zip(order, found, strict=True), key=lambda pair: pair[0]):
+        usual += of_search[0]
+        fitting += of_search[1]
     chosen = _candidates(y, usual, _VARIANTS)
     more = _candidates(y, fitting, _FITTING_VARIANTS)
     chosen += [lead for lead in more if all(_move(y, lead, other) > _OTHER for other in chosen)]
@@ -157,13 +159,14 @@ def fitting_maps_steps(x: MapDomain, y: MapDomain) -> Steps[list[PointMaps]]:
 
 
 def _searched_steps(
-    x: MapDomain, y: MapDomain, search: _Search, sign: int
+    surfaces: tuple[MapDomain, MapDomain], wanted: tuple[_Search, int]
 ) -> Steps[tuple[list[MapLead], list[MapLead]]]:
     """Match some samples, and follow up the best matchings, and others that carry over to the whole surfaces best.
 
     Between bodies of other proportions the distances between ends of limbs agree in many wrong matchings as well as in
     the true one, which may be the hundredth of them; that it fits everywhere else tells it from most.
     """
+    (x, y), (search, sign) = surfaces, wanted
     relative, absolute = (LiftedMatchings(x, y, search.of_x, search.of_y, relative=r) for r in (True, False))
     offered = _matchings(x, y, search.of_x, search.of_y)
     yield Progress(0.0, "Comparing maps")

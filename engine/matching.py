@@ -3,29 +3,39 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .errors import MatchError
+from .helpers import call_helpers
 from .joined_match import matched_with_pieces_steps
 from .partial_match import has_border, part_matched_steps
+from .prepared_surface import prepared_steps
 from .progress import Progress, Steps, run, within
 from .settings import MatchSettings
 from .shape import Shape
 from .shape_matching import MatchTask, matched_steps
+from .sharing import MOST_SENT, here_steps, shared_steps
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from .mesh import TriangleMesh
+    from .prepared_surface import PreparedSurface
     from .result import MatchResult
+
+    _Unprepared = tuple[TriangleMesh, str, NDArray[np.bool_] | None]
 
 __all__ = ["match", "match_steps"]
 
 _FIRST, _FIRST_OF_CLOSED = 0.45, 0.95
 """Part of the work after which surfaces have been matched as they are, if one of them may be a part of the other, and
 if they are closed."""
+
+_SMALL = 8000
+"""Vertices up to which a mesh is prepared sooner than it is sent."""
 
 
 def match(
@@ -100,8 +110,8 @@ def match_steps(
     """
     settings = settings or MatchSettings()
     task = MatchTask(settings, landmarks)
-    x = yield from within(_shape_steps(source, "source", excluded[0]), 0.0, 0.03)
-    y = yield from within(_shape_steps(target, "target", excluded[1]), 0.03, 0.06)
+    call_helpers()
+    x, y = yield from within(_shapes_steps((source, target), excluded), 0.0, 0.06)
     if not settings.dense:
         result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
     else:
@@ -112,14 +122,25 @@ def match_steps(
     return result
 
 
-def _shape_steps(surface: TriangleMesh | Shape, name: str, excluded: ArrayLike | None) -> Steps[Shape]:
-    """Prepare a mesh, or return a shape as it is."""
-    if not isinstance(surface, Shape):
-        left_out = None if excluded is None else np.asarray(excluded, bool)
-        return (yield from Shape.steps(surface, name, excluded=left_out))
-    if excluded is not None:
-        raise MatchError(
-            f"No vertices can be left out of the {name} any more, because it was prepared before. "
-            "Give the mesh itself, or leave them out when you make the shape."
-        )
-    return surface
+def _shapes_steps(
+    surfaces: tuple[TriangleMesh | Shape, TriangleMesh | Shape], excluded: tuple[ArrayLike | None, ArrayLike | None]
+) -> Steps[list[Shape]]:
+    """Prepare meshes; shapes stay as they are."""
+    items: list[_Unprepared] = []
+    for surface, name, left_out in zip(surfaces, ("source", "target"), excluded, strict=True):
+        if not isinstance(surface, Shape):
+            items.append((surface, name, None if left_out is None else np.asarray(left_out, bool)))
+        elif left_out is not None:
+            raise MatchError(
+                f"No vertices can be left out of the {name} any more, because it was prepared before. "
+                "Give the mesh itself, or leave them out when you make the shape."
+            )
+    share = shared_steps if all(_SMALL < item[0].vertex_count <= MOST_SENT for item in items) else here_steps
+    prepared = iter((yield from share(_prepared_mesh_steps, None, items)))
+    return [s if isinstance(s, Shape) else Shape.of(replace(next(prepared), original=s)) for s in surfaces]
+
+
+def _prepared_mesh_steps(_: None, given: _Unprepared) -> Steps[PreparedSurface]:
+    """Prepare a mesh."""
+    mesh, name, excluded = given
+    return (yield from prepared_steps(mesh, name, excluded=excluded))

@@ -57,6 +57,10 @@ class TriangleMesh:
                 "Check its scale and whether its vertices all lie on one line or in one point."
             )
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what is computed of it when that is asked for."""
+        return {"vertices": self.vertices, "triangles": self.triangles}
+
     @property
     def vertex_count(self) -> int:
         """Number of vertices, n."""

@@ -14,6 +14,7 @@ from .lifting import lift_steps
 from .progress import within
 from .proxy import Proxy, proxy_steps
 from .registration import register_steps
+from .sharing import shared_steps
 from .surface import SurfacePoints
 from .ties import Ties
 
@@ -22,11 +23,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .landmarks import Landmarks
+    from .mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
     from .progress import Steps
     from .registration import Stage
 
-__all__ = ["FinerSurface", "Polish", "finer_surface_steps"]
+__all__ = ["FinerSurface", "Polish", "finer_surfaces_steps"]
 
 _VERTICES = 12_000
 """About how many vertices are registered of a dense mesh: enough for each finger to have its own.  With all of 80,000
@@ -60,16 +62,22 @@ class FinerSurface:
         return DeformableSurface(self.proxy.mesh, laplace_beltrami(self.proxy.mesh))
 
 
-def finer_surface_steps(prepared: PreparedSurface) -> Steps[FinerSurface]:
-    """Make the surface that is registered once more: at most some 19,000 vertices, see `proxy_steps`."""
-    main, coarse = prepared.cleaned.mesh, prepared.proxy
+def finer_surfaces_steps(x: PreparedSurface, y: PreparedSurface) -> Steps[tuple[FinerSurface, FinerSurface]]:
+    """Make the surfaces that are registered once more: at most some 19,000 vertices each, see `proxy_steps`."""
+    found = yield from shared_steps(_finer_proxy_steps, None, [(each.cleaned.mesh, each.proxy) for each in (x, y)])
+    return FinerSurface(x, *found[0]), FinerSurface(y, *found[1])
+
+
+def _finer_proxy_steps(_: None, given: tuple[TriangleMesh, Proxy]) -> Steps[tuple[Proxy, Proxy]]:
+    """Make the proxy of a mesh that is registered once more, and say what the coarse one is to that."""
+    main, coarse = given
     proxy = yield from proxy_steps(main, _VERTICES)
     if proxy.is_identity:
-        return FinerSurface(prepared, proxy, coarse)
+        return proxy, coarse
     starts = coarse.points.nearest_vertices[proxy.vertices]
     found = ClosestPoints(coarse.mesh).walk(proxy.mesh.vertices, starts)
     points = SurfacePoints.from_barycentric(coarse.mesh, found.triangles, found.barycentric)
-    return FinerSurface(prepared, proxy, Proxy(coarse.mesh, points, proxy.points.nearest_vertices[coarse.vertices]))
+    return proxy, Proxy(coarse.mesh, points, proxy.points.nearest_vertices[coarse.vertices])
 
 
 class Polish:

@@ -4,21 +4,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from .closest_points import ClosestPoints
 from .procrustes import nearest_rotations
-from .progress import Progress, Steps
+from .progress import Progress, Steps, within
+from .sharing import shared_steps
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
-    from .closest_points import ClosestPoints, FoundPoints
+    from .closest_points import FoundPoints
     from .deformable import DeformableSurface
     from .elastic import ElasticSurface
     from .ties import Ties
 
+    Find = Callable[[ClosestPoints, NDArray[np.float64]], FoundPoints]
     Guides = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 __all__ = [
@@ -169,6 +175,9 @@ fast."""
 class _Matcher:
     """Finds for each point of one surface the point of the other that is most like it, and the other way round."""
 
+    is_sent_once = True
+    """See `sharing.shared_steps`."""
+
     def __init__(
         self, source: DeformableSurface, target: DeformableSurface, stage: Stage, guides: Guides | None
     ) -> None:
@@ -186,7 +195,11 @@ class _Matcher:
         self.target_features = np.concatenate(
             [target.vertices, stage.normal_length * target.normals, target_features], axis=1
         )
-        self.target_search = target.search.moved(self.target_features)
+
+    @cached_property
+    def target_search(self) -> ClosestPoints:
+        """Search on the target by features."""
+        return self.target.search.moved(self.target_features)
 
     def source_search(self, positions: NDArray[np.float64]) -> tuple[ClosestPoints, NDArray[np.float64]]:
         """Search on the deformed source by features, and its normals (n_x, 3)."""
@@ -194,12 +207,29 @@ class _Matcher:
         features = np.concatenate([positions, self.stage.normal_length * normals, self._source_features], axis=1)
         return self.source.search.moved(features), normals
 
-    def matches(self, source: ClosestPoints, *, last: bool = False) -> tuple[FoundPoints, FoundPoints]:
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out the search, which is hardly ever used elsewhere."""
+        return {name: value for name, value in self.__dict__.items() if name != "target_search"}
+
+    def matches_steps(
+        self, positions: NDArray[np.float64], source: ClosestPoints, *, last: bool = False
+    ) -> Steps[tuple[FoundPoints, FoundPoints]]:
         """Match every vertex of either surface, by the features of the deformed source."""
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
         coarse = _are_coarse(self.source, self.target)
         find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
-        return find(self.target_search, source.vertices), find(source, self.target_features)
+        given: tuple[NDArray[np.float64] | ClosestPoints, ...] = positions, source
+        back, there = yield from shared_steps(_matched_steps, (self, find), given)
+        return there, back
+
+
+def _matched_steps(common: tuple[_Matcher, Find], given: ClosestPoints | NDArray[np.float64]) -> Steps[FoundPoints]:
+    """Match the vertices of the source, whose features are given, or, with its positions, those of the target."""
+    matcher, find = common
+    yield Progress(0.0, "Fitting the surfaces")
+    if isinstance(given, ClosestPoints):
+        return find(matcher.target_search, given.vertices)
+    return find(matcher.source_search(given)[0], matcher.target_features)
 
 
 def _are_coarse(source: DeformableSurface, target: DeformableSurface) -> bool:
@@ -324,7 +354,7 @@ def register_steps(
     Yields
     ------
     Progress
-        After each round.
+        After each round, and while points are matched.
 
     Returns
     -------
@@ -358,7 +388,7 @@ def register_steps(
         for weight in stage.weights:
             search, normals = matcher.source_search(positions)
             if matches is None:
-                matches = matcher.matches(search)
+                matches = yield from within(matcher.matches_steps(positions, search), done / total, done / total)
             solved = _solved(matcher, resisting, posed, normals, matches, weight=weight, ties=ties)
             step = (1 + stage.lead) * (solved - positions) + stage.momentum * step
             positions = posed = positions + step
@@ -366,7 +396,7 @@ def register_steps(
             done += 1
             yield Progress(done / total, "Fitting the surfaces")
     search, _ = matcher.source_search(positions)
-    on_target, on_source = matcher.matches(search, last=True)
+    on_target, on_source = yield from within(matcher.matches_steps(positions, search, last=True), 1.0, 1.0)
     rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
     squared = np.square(_at(on_target, target.triangles, target.vertices) - positions).sum(axis=1)
     squared_back = np.square(_at(on_source, source.triangles, positions) - target.vertices).sum(axis=1)

@@ -71,6 +71,8 @@ class Shape:
 
     surface: PreparedSurface
     joined: Shape | None
+    is_sent_once = False
+    """See `sharing.shared_steps`; true of `lean` ones, which do not change any more."""
 
     def __init__(
         self,
@@ -111,6 +113,7 @@ class Shape:
         self._paths: dict[int, NDArray[np.float32]] = {}
         self._spectrum: Spectrum | None = None
         self._views: dict[tuple[int, int | None], Shape] = {}
+        self._lean: tuple[tuple[object, ...], Shape] | None = None
 
     @cached_property
     def _sampler(self) -> FarthestPointSampler:
@@ -169,10 +172,8 @@ class Shape:
 
     def spectrum_steps(self, count: int) -> Steps[None]:
         """Compute the first `count` eigenpairs of the Laplace-Beltrami operator (as many as the mesh has, at most)."""
-        count = min(count, self.mesh.vertex_count)
-        # Not more either: a match must not depend on what was asked of the shape before.
-        if self._spectrum is None or len(self._spectrum) != count:
-            self._spectrum = yield from eigenpairs_steps(self.laplace, count)
+        if self.lacks_spectrum(count):
+            self._spectrum = yield from eigenpairs_steps(self.laplace, min(count, self.mesh.vertex_count))
 
     @cached_property
     def laplace(self) -> LaplaceBeltrami:
@@ -242,6 +243,50 @@ class Shape:
         shape._views = {}  # noqa: SLF001
         shape.__dict__.pop("directions", None)
         return shape
+
+    def bare(self) -> Shape:
+        """Return the shape without the mesh that its surface stands for, which may be large, to sample it elsewhere."""
+        shape = copy.copy(self)
+        for name in ("surface", "original", "vertices", "joined"):
+            shape.__dict__.pop(name, None)
+        shape._views, shape._lean = {}, None  # noqa: SLF001
+        return shape
+
+    def lean(self) -> Shape:
+        """Return the shape with the samples and the spectrum it has, which do not change any more, and bare.
+
+        That is what other processes are sent.
+        """
+        state = self.mesh, self._rows, self._spectrum
+        if self._lean is None or any(a is not b for a, b in zip(state, self._lean[0], strict=True)):
+            shape = self.bare()
+            shape.samples = self.samples
+            shape._paths = {}  # noqa: SLF001
+            shape.__dict__.pop("_sampler", None)
+            shape.is_sent_once = True
+            self._lean = shape._lean = state, shape  # noqa: SLF001
+        return self._lean[1]
+
+    def lacks(self, count: int, measured: int | None = None) -> bool:
+        """Say whether `sample_steps` would have anything to do."""
+        count = min(count, self.mesh.vertex_count)
+        measured = count if measured is None else min(measured, count)
+        return self.sample_count < measured or any(number not in self._paths for number in range(measured, count))
+
+    def take_samples_of(self, other: Shape) -> None:
+        """Take over the samples of the same shape from elsewhere."""
+        if len(other._rows) > len(self._rows):
+            self._forget_samples()
+        self._sampler, self._rows, self._paths = other._sampler, other._rows, other._paths
+
+    def lacks_spectrum(self, count: int) -> bool:
+        """Say whether `spectrum_steps` would have anything to do."""
+        # Not more either: a match must not depend on what was asked of the shape before.
+        return count > 0 and (self._spectrum is None or len(self._spectrum) != min(count, self.mesh.vertex_count))
+
+    def take_spectrum(self, spectrum: Spectrum) -> None:
+        """Take over the spectrum from elsewhere."""
+        self._spectrum = spectrum
 
     def _forget_samples(self) -> None:
         for name in ("samples", "cell_areas", "sample_distances", "directions", "curvatures"):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .dense_map import registered_pair_steps
+from .dense_map import EIGENPAIRS, registered_pair_steps
 from .dense_match import MEASURED, DenseMatch, dense_match_steps
 from .errors import MatchError
 from .handle_cutting import evened_steps
@@ -20,6 +20,7 @@ from .map_hypotheses import LandmarkStart
 from .pair import Pair
 from .progress import within
 from .result import CoarseMatch, MatchResult
+from .shape_preparation import Wanted, prepared_shapes_steps
 from .solvers import Answer, at_samples, moved, solve_steps
 from .surface import SurfacePoints
 from .surface_distances import SurfaceDistances, to_all_vertices_steps
@@ -100,19 +101,14 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     measured = max(settings.points, MEASURED) if settings.dense else None
     sparse_end = 0.5 if settings.dense else 1.0
     sampled = 0.2 if settings.dense else 0.6
-    yield from within(x.sample_steps(samples, measured), 0.0, sampled / 2)
-    yield from within(y.sample_steps(samples, measured), sampled / 2, sampled)
+    eigenpairs = settings.eigenpairs if Pair.needs_spectrum(settings) else EIGENPAIRS if settings.dense else 0
+    wanted = Wanted(samples, measured, eigenpairs)
+    yield from within(prepared_shapes_steps(x, y, wanted), 0.0, sampled)
     clock.lap("geodesics")
-    begin = sampled
-    if Pair.needs_spectrum(settings):
-        yield from within(x.spectrum_steps(settings.eigenpairs), begin, begin + 0.05)
-        yield from within(y.spectrum_steps(settings.eigenpairs), begin + 0.05, begin + 0.1)
-        begin += 0.1
-        clock.lap("eigenpairs")
     limited = x.limited(samples, measured), y.limited(samples, measured)
     pair = Pair(*limited, settings, 0 if known is None else len(known))
     clock.lap("descriptors")
-    answers = yield from within(solve_steps(pair, clock.lap), begin, sparse_end)
+    answers = yield from within(solve_steps(pair, clock.lap), sampled, sparse_end)
     notes = tuple(note for shape in (x, y) for note in shape.surface.cleaned.notes)
     if not settings.dense:
         results = []

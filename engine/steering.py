@@ -136,7 +136,7 @@ def _completed_steps(
         return judged
     more: list[MapHypothesis] = []
     for number, start in enumerate(starts):
-        steps = map_hypotheses_steps(x, y, [start], search=False)
+        steps = map_hypotheses_steps(x, y, [start], search=False, domains=judged[0].domains)
         more += yield from within(steps, number / len(starts), (number + 1) / len(starts))
     return sorted(judged + _judged(x, y, landmarks, more), key=lambda h: h.score)
 

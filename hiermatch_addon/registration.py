@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import bpy
 
+from ..engine.helpers import close_helpers
 from .command_line import register_command, unregister_command
 from .freshness import start_watching, stop_watching
 from .hover import HIERMATCH_GGT_hover, HIERMATCH_GT_hover
@@ -143,6 +144,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Undo `register`."""
+    close_helpers()
     stop_overlay()
     unregister_command()
     stop_watching()

@@ -122,7 +122,7 @@ def _start(task: Task, jobs: int) -> _Child:
     command, environment = _blender()
     if jobs > 1:  # else each child would take all cores for itself
         threads = str(max(1, (os.cpu_count() or 1) // jobs))
-        for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "HIERMATCH_PROCESSES"):
             environment.setdefault(name, threads)
     own_group: dict[str, Any] = {} if os.name == "nt" else {"start_new_session": True}
     task.log.parent.mkdir(parents=True, exist_ok=True)

@@ -9,6 +9,7 @@ make some 80,000, 320,000 and 1,280,000 vertices of 5,000; the surface stays the
 
     seconds   from two meshes to both maps, in a process of its own
     peak      the largest resident memory of that process, and before the match, in megabytes
+    helper    the same of the process that took over parts of its work
     direct    mean error of source_to_target rounded to the vertices of the shape as it was read (see `known_shapes`);
               the images are first carried back to it, so that every level is measured alike
     inside    the same, not rounded
@@ -30,13 +31,23 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from engine import MatchSettings, match
+from engine.helpers import close_helpers, present_helpers, use_processes
 from tests.benchmarks.known_shapes import LISTED, KnownShapes, score
 from tests.benchmarks.variants import as_is, decimate, subdivide
 
 
-def peak():
-    """Largest resident memory of this process so far, in megabytes."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3)
+def peak(of=resource.RUSAGE_SELF):
+    """Largest resident memory of this process so far, or of children that have ended, in megabytes."""
+    return resource.getrusage(of).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3)
+
+
+def peak_of_helpers():
+    """End the helpers, and return the largest resident memory of any of them, in megabytes."""
+    helpers = list(present_helpers())
+    close_helpers()
+    while not all(helper.has_ended for helper in helpers):
+        time.sleep(0.01)
+    return peak(resource.RUSAGE_CHILDREN)
 
 
 def resolution(mesh, number):
@@ -51,6 +62,7 @@ def measure(task):
     shapes, names, numbers = task
     source, target = (shapes.read(name) for name in names)
     x, y = (resolution(shape.mesh, number) for shape, number in zip((source, target), numbers, strict=True))
+    use_processes(2)
     before = peak()
     start = time.perf_counter()
     result = match(x.mesh, y.mesh, MatchSettings(dense=True))
@@ -62,7 +74,7 @@ def measure(task):
     return {
         "counts": (x.mesh.vertex_count, y.mesh.vertex_count),
         "seconds": seconds,
-        "peak": (after, before),
+        "peak": (after, before, peak_of_helpers()),
         "found": found,
         "reverse": reverse,
         "stretch": (forth.rms_edge_stretch(x.mesh, y.mesh), back.rms_edge_stretch(y.mesh, x.mesh)),
@@ -85,8 +97,8 @@ def main():
         numbers += [(-options.coarse, fine), (fine, -options.coarse)]
     print(f"{' -> '.join(names)}; errors x 100 / sqrt(area)")
     print(
-        f"{'vertices':>21s} {'seconds':>8s} {'peak':>6s} {'before':>6s} {'direct':>7s} {'inside':>7s} {'ratio':>6s} "
-        f"{'reverse':>7s} {'ratio':>6s} {'stretch':>15s} {'flipped':>15s}"
+        f"{'vertices':>21s} {'seconds':>8s} {'peak':>6s} {'before':>6s} {'helper':>6s} {'direct':>7s} {'inside':>7s} "
+        f"{'ratio':>6s} {'reverse':>7s} {'ratio':>6s} {'stretch':>15s} {'flipped':>15s}"
     )
     first = None
     # A new process for each: its peak is of this match alone.
@@ -96,7 +108,8 @@ def main():
             first = first or (found.inside, reverse.inside)
             print(
                 f"{row['counts'][0]:>10d} {row['counts'][1]:>10d} {row['seconds']:8.1f} "
-                f"{row['peak'][0]:6.0f} {row['peak'][1]:6.0f} {found.direct:7.2f} {found.inside:7.2f} "
+                f"{row['peak'][0]:6.0f} {row['peak'][1]:6.0f} {row['peak'][2]:6.0f} "
+                f"{found.direct:7.2f} {found.inside:7.2f} "
                 f"{found.inside / first[0]:6.3f} {reverse.inside:7.2f} {reverse.inside / first[1]:6.3f} "
                 f"{row['stretch'][0]:7.3f} {row['stretch'][1]:7.3f} {row['flipped'][0]:7.2%} {row['flipped'][1]:7.2%}  "
                 f"{found.flip.upper()}",

@@ -163,8 +163,8 @@ def test_limbs_that_the_best_hypothesis_exchanges_are_put_right(bodies, monkeypa
     left = run(registered_pair_steps(x, y, [wrong], search=False))
     assert errors(left.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() > 0.15
 
-    def misled(x, y, starts=(), *, search=True, mirrored=True):
-        return map_hypotheses_steps(x, y, [wrong] if search else starts, search=False, mirrored=mirrored)
+    def misled(x, y, starts=(), *, search=True, **options):
+        return map_hypotheses_steps(x, y, [wrong] if search else starts, search=False, **options)
 
     monkeypatch.setattr(dense_map, "map_hypotheses_steps", misled)
     reports, pair = followed(registered_pair_steps(x, y))
@@ -189,8 +189,8 @@ def test_a_matching_as_it_is_takes_the_place_of_hypotheses_that_are_wrong(bodies
     x, y, rest_x, rest_y = bodies
     start = turned_start(*bodies)
 
-    def misled(x, y, starts=(), *, search=True, mirrored=True):
-        return map_hypotheses_steps(x, y, [start] if search else starts, search=False, mirrored=mirrored)
+    def misled(x, y, starts=(), *, search=True, **options):
+        return map_hypotheses_steps(x, y, [start] if search else starts, search=False, **options)
 
     monkeypatch.setattr(dense_map, "map_hypotheses_steps", misled)
     reports, pair = followed(registered_pair_steps(x, y))

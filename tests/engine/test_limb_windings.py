@@ -10,6 +10,7 @@ from engine.laplacian import laplace_beltrami
 from engine.limb_twists import Untwisted, Winding
 from engine.limb_windings import local_costs, wound_steps
 from engine.registration import FINE, Registration, register_steps
+from engine.sharing import here_steps
 from tests.shapes import icosphere
 
 FULL = 2 * np.pi
@@ -45,7 +46,10 @@ class Laid:
     def __init__(self, source, target):
         self.source, self.target, self.count = source, target, 0
 
-    def __call__(self, positions):
+    def __call__(self, starts):
+        return here_steps(lambda _, positions: self.steps(positions), None, starts)
+
+    def steps(self, positions):
         self.count += 1
         yield Progress(1.0, "Fitting the surfaces")
         on_target = self.target.search.moved(self.target.vertices).nearest(positions)
@@ -100,7 +104,7 @@ def test_nothing_is_registered_twice_where_nothing_else_might_be_meant(straight)
 
 def test_costs_of_all_vertices_are_energy_and_misfits_both_ways(straight):
     moved = straight.vertices * [1.02, 0.9, 1.1]
-    registration = run(Laid(straight, straight)(moved))
+    registration = run(Laid(straight, straight).steps(moved))
     laid = straight.search.moved(moved).vertex_normals
     here, there = (moved, laid, straight.curvatures), (straight.vertices, straight.normals, straight.curvatures)
     misfit = 0.0
@@ -122,7 +126,7 @@ def test_a_round_limb_costs_more_where_its_elbow_lies_on_the_wrong_side():
     mesh = TriangleMesh(np.stack([x, y + 0.02 * elbow, z], axis=1), triangles)
     arm = DeformableSurface(mesh, laplace_beltrami(mesh))
     turned = Laid(arm, arm)
-    wrong = run(turned(arm.vertices * [1, -1, -1]))
+    wrong = run(turned.steps(arm.vertices * [1, -1, -1]))
     costs = local_costs(arm, arm, wrong)
     distances = 320 * (wrong.misfit + arm.mass @ wrong.on_source.squared_distances)
     assert wrong.energy < 1e-9
@@ -131,7 +135,7 @@ def test_a_round_limb_costs_more_where_its_elbow_lies_on_the_wrong_side():
 
 
 def test_costs_are_where_the_surface_is_wound(straight):
-    costs = local_costs(straight, straight, run(Laid(straight, straight)(wound(straight, 1))))
+    costs = local_costs(straight, straight, run(Laid(straight, straight).steps(wound(straight, 1))))
     x = straight.vertices[:, 0]
     assert costs[x > 0].sum() > 0.99 * costs.sum() > 0
 
@@ -140,8 +144,8 @@ def test_winding_the_other_way_is_better_after_a_registration_too(straight):
     """The registration does not undo a full turn by itself: that is what the other way is tried for."""
     limb = end(straight, 1)
 
-    def register(positions):
-        return register_steps(straight, straight, positions, (FINE,))
+    def register(starts):
+        return here_steps(lambda _, start: register_steps(straight, straight, start, (FINE,)), None, starts)
 
     def error(found):
         return straight.mass @ np.linalg.norm(found.positions - straight.vertices, axis=1)

@@ -39,7 +39,7 @@ def mean_errors(result, bodies):
 
 def test_the_finer_surface_lies_between_the_mesh_and_what_was_matched(bodies):
     shape = shapes(bodies)[0]
-    finer = run(polishing.finer_surface_steps(shape.surface))
+    finer, _ = run(polishing.finer_surfaces_steps(shape.surface, shape.surface))
     mesh = finer.proxy.mesh
     assert shape.mesh.vertex_count < mesh.vertex_count < bodies[0][0].vertex_count / 2
     assert finer.coarse.mesh is shape.mesh
@@ -53,7 +53,7 @@ def test_the_finer_surface_lies_between_the_mesh_and_what_was_matched(bodies):
 def test_a_mesh_that_is_not_dense_is_registered_as_it_is(bodies, monkeypatch):
     monkeypatch.setattr(polishing, "_VERTICES", 10**6)
     shape = shapes(bodies)[0]
-    finer = run(polishing.finer_surface_steps(shape.surface))
+    finer, _ = run(polishing.finer_surfaces_steps(shape.surface, shape.surface))
     assert finer.proxy.is_identity
     assert finer.coarse is shape.surface.proxy
 

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Distances and eigenfunctions of two shapes, computed at the same time where there are helpers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from .eigenpairs import Spectrum, eigenpairs_steps
+from .laplacian import LaplaceBeltrami
+from .sharing import shared_steps
+
+if TYPE_CHECKING:
+    from .progress import Steps
+    from .shape import Shape
+
+__all__ = ["Wanted", "prepared_shapes_steps"]
+
+
+class Wanted(NamedTuple):
+    """What is wanted of shapes.
+
+    Attributes
+    ----------
+    samples : int
+        How many samples, see `Shape.sample_steps`.
+    measured : int or None
+        From how many of them distances are measured.
+    eigenpairs : int
+        How many eigenpairs; 0 for none.
+    """
+
+    samples: int
+    measured: int | None = None
+    eigenpairs: int = 0
+
+
+def prepared_shapes_steps(x: Shape, y: Shape, wanted: Wanted) -> Steps[None]:
+    """Do what `Shape.sample_steps` and `Shape.spectrum_steps` do, for two shapes.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The shapes, or one of them twice.
+    wanted : Wanted
+        What they shall have.
+    """
+    shapes = [x] if x is y else [x, y]
+    sampled = [shape for shape in shapes if shape.lacks(wanted.samples, wanted.measured)]
+    analysed = [shape for shape in shapes if shape.lacks_spectrum(wanted.eigenpairs)]
+    parts: list[Shape | LaplaceBeltrami] = [shape.bare() for shape in sampled]
+    parts += [shape.laplace for shape in analysed]
+    found = yield from shared_steps(_prepared_steps, wanted, parts)
+    for shape, result in zip([*sampled, *analysed], found, strict=True):
+        if isinstance(result, Spectrum):
+            shape.take_spectrum(result)
+        else:
+            shape.take_samples_of(result)
+
+
+def _prepared_steps(wanted: Wanted, part: Shape | LaplaceBeltrami) -> Steps[Shape | Spectrum]:
+    """Sample a shape, or compute the eigenpairs of an operator."""
+    if isinstance(part, LaplaceBeltrami):
+        return (yield from eigenpairs_steps(part, min(wanted.eigenpairs, part.vertex_count)))
+    yield from part.sample_steps(wanted.samples, wanted.measured)
+    return part

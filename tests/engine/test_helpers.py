@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engine import MatchError, TriangleMesh, helpers, match, run
+from engine.helpers import call_helpers, close_helpers, present_helpers, use_processes
+from engine.sharing import here_steps, shared_steps
+from tests import shared_work
+from tests.shapes import creature
+from tests.shared_work import Kept
+
+ROOT = Path(__file__).parents[2]
+PATIENCE = 60
+
+
+def wait_until(holds):
+    end = time.monotonic() + PATIENCE
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def helper():
+    use_processes(2)
+    call_helpers()
+    (found,) = present_helpers()
+    wait_until(lambda: found.is_ready)
+    yield found
+    close_helpers()
+    use_processes()
+
+
+@pytest.fixture
+def no_helpers():
+    close_helpers()
+    use_processes(2)
+    yield
+    close_helpers()
+    use_processes()
+
+
+def is_gone(pid):
+    """Whether a process has ended."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    status = Path(f"/proc/{pid}/stat")
+    return status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+@pytest.mark.usefixtures("helper")
+def test_results_are_in_the_order_of_the_items():
+    assert run(shared_steps(shared_work.squared, 1, range(12))) == [item**2 + 1 for item in range(12)]
+
+
+@pytest.mark.usefixtures("helper")
+def test_nothing_to_do_is_done_at_once():
+    assert run(shared_steps(shared_work.squared, 1, [])) == []
+
+
+@pytest.mark.usefixtures("helper")
+def test_progress_grows_to_the_end():
+    fractions = [progress.fraction for progress in shared_steps(shared_work.squared, 1, range(7))]
+    assert fractions == sorted(fractions)
+    assert 0 < fractions[0] < fractions[-1] <= 1
+
+
+def test_both_processes_work_and_what_they_print_is_no_reply(helper, capfd):
+    pids = run(shared_steps(shared_work.process_of, None, range(6)))
+    assert set(pids) == {os.getpid(), helper.pid}
+    assert capfd.readouterr().out.count("this is no reply") == pids.count(os.getpid())
+
+
+@pytest.mark.usefixtures("no_helpers")
+def test_without_helpers_all_is_done_here():
+    assert run(shared_steps(shared_work.process_of, None, range(3))) == [os.getpid()] * 3
+
+
+@pytest.mark.usefixtures("helper")
+def test_in_this_process_alone_no_helper_is_asked():
+    assert run(here_steps(shared_work.process_of, None, range(3))) == [os.getpid()] * 3
+
+
+@pytest.mark.usefixtures("helper")
+def test_what_is_kept_is_sent_once():
+    kept = Kept(2)
+    first = run(shared_steps(shared_work.value_of, kept, [1, 10, 100]))
+    assert [value for value, _ in first] == [2, 20, 200]
+    kept.value = 3  # against the rules, to see where it is not sent again
+    for value, pid in run(shared_steps(shared_work.value_of, kept, [1, 1, 1, 1])):
+        assert value == (3 if pid == os.getpid() else 2)
+
+
+def test_what_is_kept_may_refer_to_more_that_is(helper):
+    inner = Kept(np.arange(4))
+    outer = Kept(np.ones(4))
+    outer.inner, inner.outer = inner, None
+    for value, _ in run(shared_steps(shared_work.value_of, outer, [1, 2, 3])):
+        assert value[0] in (1, 2, 3)
+    assert helper.has(inner)
+    assert helper.has(outer)
+    assert not helper.has(Kept(1))
+
+
+@pytest.mark.usefixtures("helper")
+def test_what_is_wrong_with_an_item_is_said_here():
+    with pytest.raises(MatchError, match="Item 1 cannot"):
+        run(shared_steps(shared_work.refused, None, [0, 1]))
+
+
+@pytest.mark.parametrize("items", [[0, 5, 6, 7], [5, 6, 7], [0, 0, 0, 5, 6]])
+def test_of_several_errors_the_first_is_said(helper, items):
+    for processes in 2, 1:
+        use_processes(processes)
+        with pytest.raises(MatchError, match="Item 5 cannot"):
+            run(shared_steps(shared_work.refused, None, items))
+    assert helper.is_over
+
+
+def test_after_an_error_nothing_more_is_begun():
+    close_helpers()
+    begun = []
+
+    def work(_, item):
+        begun.append(item)
+        yield from shared_work.refused(_, item)
+
+    with pytest.raises(MatchError, match="Item 5 cannot"):
+        run(shared_steps(work, None, [0, 5, 6]))
+    assert begun == [0, 5]
+
+
+def test_what_fails_elsewhere_is_done_here(helper):
+    assert run(shared_steps(shared_work.failing_elsewhere, os.getpid(), range(4))) == [0, 1, 2, 3]
+    assert present_helpers() == [helper]
+
+
+@pytest.mark.usefixtures("helper")
+def test_what_a_dying_helper_leaves_is_done_here():
+    assert run(shared_steps(shared_work.dying_elsewhere, os.getpid(), range(4))) == [0, 1, 2, 3]
+    assert present_helpers() == []
+    call_helpers()
+    assert len(present_helpers()) == 1
+
+
+def test_whoever_stops_asking_ends_what_helpers_do(helper):
+    steps = shared_steps(shared_work.long_elsewhere, os.getpid(), range(2))
+    for _ in range(10):
+        next(steps)
+    pid = helper.pid
+    assert not is_gone(pid)
+    steps.close()
+    assert present_helpers() == []
+    wait_until(lambda: is_gone(pid))
+
+
+@pytest.mark.usefixtures("helper")
+def test_an_error_here_ends_what_helpers_do():
+    with pytest.raises(TypeError):
+        run(shared_steps(shared_work.squared, None, ["x", "y", "z"]))
+    assert present_helpers() == [] or present_helpers()[0].is_ready
+    assert run(shared_steps(shared_work.squared, 0, [2, 3])) == [4, 9]
+
+
+@pytest.mark.usefixtures("no_helpers")
+def test_idle_helpers_end(monkeypatch):
+    monkeypatch.setattr(helpers, "_IDLE", 0.1)
+    call_helpers()
+    (found,) = present_helpers()
+    wait_until(lambda: found.is_over)
+    wait_until(lambda: found.has_ended)
+    assert run(shared_steps(shared_work.squared, 0, [2, 3])) == [4, 9]
+
+
+@pytest.mark.parametrize("name", ["/nowhere/python", "/usr/bin/blender", "", None])
+@pytest.mark.usefixtures("no_helpers")
+def test_where_no_interpreter_can_be_started_all_is_done_here(monkeypatch, name):
+    monkeypatch.setattr(sys, "executable", name)
+    call_helpers()
+    assert run(shared_steps(shared_work.process_of, None, range(2))) == [os.getpid()] * 2
+    wait_until(lambda: not present_helpers())
+
+
+@pytest.mark.usefixtures("no_helpers")
+def test_the_number_of_processes_is_limited(monkeypatch):
+    use_processes(3)
+    call_helpers()
+    call_helpers()
+    assert len(present_helpers()) == 2
+    use_processes(2)
+    assert len(present_helpers()) == 1
+    use_processes(1)
+    call_helpers()
+    assert present_helpers() == []
+    monkeypatch.setenv("HIERMATCH_PROCESSES", "3")
+    use_processes()
+    call_helpers()
+    assert len(present_helpers()) == 2
+
+
+@pytest.mark.usefixtures("no_helpers")
+def test_by_default_two_cores_are_used(monkeypatch):
+    monkeypatch.delenv("HIERMATCH_PROCESSES", raising=False)
+    for cores, processes in (1, 1), (2, 2), (64, 2):
+        monkeypatch.setattr(os, "sched_getaffinity", lambda _, n=cores: set(range(n)), raising=False)
+        use_processes()
+        call_helpers()
+        assert len(present_helpers()) == processes - 1
+    monkeypatch.setattr(helpers.multiprocessing, "parent_process", object)
+    use_processes()
+    assert present_helpers() == []
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+def test_a_forked_process_has_helpers_of_its_own(helper):
+    pid = os.fork()
+    if pid == 0:
+        os._exit(0 if not present_helpers() and run(shared_steps(shared_work.squared, 0, [3, 4])) == [9, 16] else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0
+    assert present_helpers() == [helper]
+
+
+def python(script, **environment):
+    found = subprocess.run(
+        [sys.executable, "-c", script],
+        env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=True,
+    )
+    return found.stdout.split()
+
+
+@pytest.mark.skipif(not Path("/proc").exists(), reason="processes are looked up in /proc")
+def test_helpers_end_with_the_process_that_called_them():
+    script = """
+import time
+from engine import helpers
+helpers.use_processes(2); helpers.call_helpers(); (helper,) = helpers.present_helpers()
+while not helper.is_ready: time.sleep(0.01)
+print(helper.pid)
+"""
+    (pid,) = python(script)
+    wait_until(lambda: is_gone(int(pid)))
+
+
+def test_helpers_find_an_engine_inside_of_another_package(tmp_path):
+    """As Blender has it: bl_ext.user_default.hiermatch.engine."""
+    package = tmp_path / "outer" / "inner"
+    package.mkdir(parents=True)
+    for folder in (package.parent, package):
+        (folder / "__init__.py").write_text("raise_if_twice = 1")
+    (package / "engine").symlink_to(ROOT / "engine")
+    script = """
+import time
+from outer.inner.engine import TriangleMesh, Shape, helpers, run
+from outer.inner.engine.helper_main import unpack
+from outer.inner.engine.sharing import shared_steps
+from outer.inner.engine.shape_preparation import Wanted, _prepared_steps
+from tests.shapes import creature
+helpers.use_processes(2); helpers.call_helpers(); (helper,) = helpers.present_helpers()
+while not helper.is_ready: time.sleep(0.01)
+shapes = [Shape(TriangleMesh(*creature()[:2])).bare() for _ in range(2)]
+tasks = []
+start = helper.start
+helper.start = lambda *order: tasks.append(start(*order)) or tasks[-1]
+first, second = run(shared_steps(_prepared_steps, Wanted(40), shapes))
+print(len(tasks), unpack(tasks[0].reply).done, (first.sample_rows == second.sample_rows).all())
+"""
+    assert python(script, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])) == ["1", "True", "True"]
+
+
+@pytest.mark.slow
+def test_a_match_is_the_same_to_the_last_bit_with_helpers(helper):
+    meshes = [TriangleMesh(*creature(pose)[:2]) for pose in (0.0, 0.5)]
+    orders = []
+    start = helper.start
+    helper.start = lambda *order: orders.append(order) or start(*order)
+    shared = match(*meshes)
+    assert len(orders) > 20
+    assert present_helpers() == [helper]
+    use_processes(1)
+    alone = match(*meshes)
+    for name in "source_to_target", "target_to_source":
+        first, second = getattr(shared, name), getattr(alone, name)
+        np.testing.assert_array_equal(first.triangles, second.triangles)
+        np.testing.assert_array_equal(first.barycentric, second.barycentric)
+        np.testing.assert_array_equal(first.confidence, second.confidence)
+    np.testing.assert_array_equal(shared.target_points.positions, alone.target_points.positions)
+    assert shared.quality == alone.quality

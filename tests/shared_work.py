@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work that tests share with helpers: it has to be found by them, in a module of its own."""
+
+import os
+import sys
+import time
+
+from engine import MatchError, Progress
+
+
+class Kept:
+    """What is sent only once to a helper."""
+
+    is_sent_once = True
+
+    def __init__(self, value):
+        self.value = value
+
+
+def squared(offset, item):
+    """Square an item, slowly enough for helpers to have their turn."""
+    for step in range(4):
+        time.sleep(0.005)
+        yield Progress((step + 1) / 4, "Squaring")
+    return item**2 + offset
+
+
+def process_of(_, __):
+    """Say by which process it is done, and print something."""
+    sys.stdout.write("this is no reply\n")
+    sys.stdout.flush()
+    yield from squared(0, 0)
+    return os.getpid()
+
+
+def value_of(kept, factor):
+    """Return what is kept, and by which process."""
+    yield from squared(0, 0)
+    return kept.value * factor, os.getpid()
+
+
+def refused(_, item):
+    """Refuse all items but the first."""
+    yield from squared(0, 0)
+    if item:
+        raise MatchError(f"Item {item} cannot be used.")
+    return item
+
+
+def failing_elsewhere(home, item):
+    """Work in one process alone."""
+    yield from squared(0, 0)
+    if os.getpid() != home:
+        raise OSError
+    return item
+
+
+def dying_elsewhere(home, item):
+    """End any process but one."""
+    yield from squared(0, 0)
+    if os.getpid() != home:
+        os._exit(1)
+    return item
+
+
+def long_elsewhere(home, item):
+    """Take hours in any process but one."""
+    yield from squared(0, 0)
+    if os.getpid() != home:
+        time.sleep(10_000)
+    return item
