@@ -76,6 +76,10 @@ _OVERHANGING = 20.0
 _CONTESTED = 3.0
 """Difference of scores up to which another piece may be the true one."""
 
+_BETTER = 0.7
+"""By how much the score of a piece must be better than that of all of the whole: of true parts it is by more than one,
+where nothing is missing by nothing."""
+
 
 @dataclass(frozen=True, eq=False)
 class CoveredPart:
@@ -143,29 +147,34 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     Returns
     -------
     list of CoveredPart
-        The most credible piece, and others that are nearly as credible; empty if there is none.
+        The most credible piece, and others that are nearly as credible; empty if there is none that fits better than
+        all of the whole.
     """
     coarse = yield from within(Shape.steps(whole.mesh, proxy_vertices=_VERTICES), 0.0, 0.05)
     other = yield from within(Shape.steps(part.mesh, proxy_vertices=_VERTICES), 0.05, 0.1)
     yield from within(coarse.sample_steps(_SAMPLES, _MEASURED), 0.1, 0.13)
     yield from within(other.sample_steps(_SAMPLES, _MEASURED), 0.13, 0.16)
     yield from within(other.spectrum_steps(EIGENPAIRS), 0.16, 0.2)
-    fitter = _Fitter(coarse.limited(_SAMPLES, _MEASURED), other.limited(_SAMPLES, _MEASURED))
     there, back = first
-    kept = there.confidence[whole.vertices[coarse.vertices]] > 0
     places = back.positions[part.vertices[other.vertices[other.samples]]]
-    starts = [(kept, fitter.nearest_samples(places))]
+    fitter = _Fitter(coarse.limited(_SAMPLES, _MEASURED), other.limited(_SAMPLES, _MEASURED))
+    first_images = fitter.nearest_samples(places)
+    kept = there.confidence[whole.vertices[coarse.vertices]] > 0
+    starts = [(kept, first_images)]
     searching = part_placements_steps(fitter.whole, fitter.part, _PLACEMENTS)
     placements = yield from within(searching, 0.2, 0.25)
     starts += [(fitter.roughly_covered(placement.images), placement.images) for placement in placements]
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
     scores, taken = np.array([fit.score for fit in fits]), np.array([fit.places for fit in fits]) / whole.scale
     best = best_and_rivals(scores, taken, _REFINED, _HOPEFUL[1])
-    followed = shared_steps(_refined_steps, fitter, [fits[way] for way in best])
-    refined = list(chain.from_iterable((yield from within(followed, 0.75, 1.0))))
+    starting = [(*fitter.start(fits[way]), _ROUNDS) for way in best]
+    everything = np.ones(coarse.mesh.vertex_count, bool), first_images, 1
+    followed = shared_steps(_refined_steps, fitter, [*starting, everything])
+    *refined, unchanged = yield from within(followed, 0.75, 1.0)
+    least = min((fit.score for fit in unchanged), default=np.inf) - _BETTER
     found: list[tuple[NDArray[np.bool_], float]] = []
-    for fit in sorted([*fits, *refined], key=lambda fit: fit.score):
-        if found and fit.score >= found[0][1] + _CONTESTED:
+    for fit in sorted([*fits, *chain.from_iterable(refined)], key=lambda fit: fit.score):
+        if fit.score > least or (found and fit.score >= found[0][1] + _CONTESTED):
             break
         covered = fitter.covered(fit) | fitter.grown(fit)
         if all(fitter.common_part(covered, piece) < _SAME for piece, _ in found):
@@ -262,19 +271,17 @@ def _fitted_steps(fitter: _Fitter, proposal: _Proposal) -> Steps[_Fit]:
     return (yield from fitter.fit_steps(proposal))
 
 
-def _refined_steps(fitter: _Fitter, fit: _Fit) -> Steps[list[_Fit]]:
-    """Cut a piece out anew by what a registration covers, and register it, again and again."""
+def _refined_steps(fitter: _Fitter, start: tuple[NDArray[np.bool_], NDArray[np.int64], int]) -> Steps[list[_Fit]]:
+    """Register a piece where it is known to lie, then again, so many times, what that covers."""
     refined: list[_Fit] = []
-    last = fit
-    for again in range(_ROUNDS):
-        begin, end = ((again + i) / _ROUNDS for i in (0, 1))
-        covered = fitter.covered(last) | fitter.grown(last)
-        images = fitter.nearest_samples(last.places[fitter.part.samples])
+    covered, images, rounds = start
+    for again in range(rounds):
+        begin, end = ((again + i) / rounds for i in (0, 1))
         proposal = yield from within(fitter.proposal_steps(covered, images, known=True), begin, (begin + end) / 2)
         if proposal is None:
             break
-        last = yield from within(fitter.fit_steps(proposal), (begin + end) / 2, end)
-        refined.append(last)
+        refined.append((yield from within(fitter.fit_steps(proposal), (begin + end) / 2, end)))
+        covered, images = fitter.start(refined[-1])
     return refined
 
 
@@ -304,6 +311,10 @@ class _Fitter:
     def grown(self, fit: _Fit) -> NDArray[np.bool_]:
         """Tell where the whole (n,) goes on beyond a piece, see `continued`."""
         return continued(self.whole, self.part, fit.places, fit.overhanging, fit.unit)
+
+    def start(self, fit: _Fit) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+        """Tell what of the whole a registration covers, (n,), and its samples that those of the part go to."""
+        return self.covered(fit) | self.grown(fit), self.nearest_samples(fit.places[self.part.samples])
 
     def nearest_samples(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
         """Find the samples of the whole that are nearest to places (k, 3)."""

@@ -10,18 +10,18 @@ result to the last bit: helpers are given the same environment, so that sums are
 from __future__ import annotations
 
 import atexit
-import multiprocessing
 import os
 import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Any
 
-from .helper_main import pack, receive, send
-from .sent_objects import SentObjects
+import numpy as np
+import scipy
+
+from .pipes import has_more, receive, send
+from .sent_objects import SentObjects, unpack
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,59 +36,73 @@ _VARIABLE = "HIERMATCH_PROCESSES"
 _MOST = 2
 """Processes by default, if there are as many cores: most work can be parted in two, and not in more."""
 
-_IDLE = 60.0
-"""Seconds after which a helper that nothing is asked of ends: it holds some hundred megabytes."""
-
-_START = """\
-import importlib.util, os, pickle, sys, types
-paths, name, folder = pickle.load(sys.stdin.buffer)
-sys.path[:] = paths
-replies = os.fdopen(os.dup(1), "wb")
-os.dup2(2, 1)  # what is printed is no reply
-parents = name.split(".")[:-1]
-for count in range(len(parents)):
-    parent = ".".join(parents[: count + 1])
-    sys.modules[parent] = types.ModuleType(parent)
-    sys.modules[parent].__path__ = []
-start = os.path.join(folder, "__init__.py")
-spec = importlib.util.spec_from_file_location(name, start, submodule_search_locations=[folder])
-sys.modules[name] = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(sys.modules[name])
-importlib.import_module(name + ".helper_main").serve(sys.stdin.buffer, replies)
-"""
+_NAME = "engine"
+"""What the engine is called in a helper, whatever it is called here."""
 
 
 class Task:
-    """An order that a helper carries out."""
+    """An order that a helper carries out.
 
-    def __init__(self) -> None:
-        self.over = Event()
-        self.reply: bytes | None = None
-
-
-class Helper:
-    """One process, and a thread that waits for what it replies.
-
-    What is sent is not: the thread would wait for this one, which goes on with its own part of the work.
+    Attributes
+    ----------
+    is_over : bool
+        Whether nothing more comes of it.
+    done : bool
+        Whether it was carried out.
+    value : object
+        The result then, or the error if the input is at fault.
     """
 
     def __init__(self) -> None:
-        self._tasks: SimpleQueue[Task | None] = SimpleQueue()
-        self._process: subprocess.Popen[bytes] | None = None
+        self.is_over = self.done = False
+        self.value: Any = None
+
+
+class Helper:
+    """A process that carries out one order at a time.
+
+    Raises
+    ------
+    OSError
+        If it cannot be started.
+    """
+
+    def __init__(self) -> None:
+        hidden = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # Windows would open a console
+        self._process = subprocess.Popen(  # noqa: S603 - this interpreter
+            [sys.executable, "-c", f"from {_NAME}.helper_main import serve; serve()"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            bufsize=0,
+            env=_environment(),
+            creationflags=hidden,
+            start_new_session=os.name != "nt",  # an interrupt from the keyboard is not meant for it
+        )
+        if self._process.stdin is None or self._process.stdout is None:
+            raise OSError
+        self._orders, self._replies = self._process.stdin.fileno(), self._process.stdout.fileno()
         self._sent = SentObjects()
-        self._lock = Lock()
-        self.is_ready = self.is_over = False
-        Thread(target=self._attend, name="HierMatch helper", daemon=True).start()
+        self._task: Task | None = None
+        self._begun = False
+        with suppress(OSError):
+            send(self._orders, str(__package__).encode())
 
     @property
-    def pid(self) -> int | None:
-        """Number of the process, once it is started."""
-        return None if self._process is None else self._process.pid
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
 
     @property
-    def has_ended(self) -> bool:
-        """Whether the process was started, and is no more."""
-        return self._process is not None and self._process.returncode is not None
+    def is_over(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.poll() is not None
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether it can be given an order."""
+        self.look()
+        return self._begun and self._task is None and not self.is_over
 
     def has(self, value: object) -> bool:
         """Say whether something is kept there, that is sent only once."""
@@ -96,70 +110,50 @@ class Helper:
 
     def start(self, work: Callable[[Any, Any], Steps[Any]], common: object, item: object) -> Task:
         """Begin with an item, without waiting; only if `is_ready`."""
-        task = Task()
+        task = self._task = Task()
         messages = self._sent.messages((work, common, item))
-        with self._lock:
-            if not self.is_over and self._process is not None and self._process.stdin is not None:
-                self.is_ready = False
-                with suppress(OSError):  # it is gone
-                    for message in messages:
-                        send(self._process.stdin, message)
-                    self._tasks.put(task)
-                    return task
-        task.over.set()
+        try:
+            for message in messages:
+                send(self._orders, message)
+        except OSError:  # it is gone
+            self.end()
         return task
+
+    def look(self, seconds: float = 0.0) -> None:
+        """Wait for so long at most until there is a reply, and take it."""
+        if self._begun and self._task is None:
+            return
+        try:
+            if not has_more(self._replies, seconds):
+                return
+            message = receive(self._replies)
+        except (OSError, EOFError, ValueError):  # it is gone
+            self.end()
+            return
+        if not self._begun:
+            self._begun = True
+        elif self._task is not None:
+            self._task.done, self._task.value = unpack(message, _NAME)
+            self._task.is_over, self._task = True, None
 
     def end(self) -> None:
         """End the process, whatever it does."""
-        with self._lock:
-            self.is_ready, self.is_over = False, True
-            self._tasks.put(None)
-            if self._process is not None:
-                self._process.kill()
-
-    def _attend(self) -> None:
-        # It cannot be started, it is gone, or nothing was asked of it for long.
-        with suppress(OSError, EOFError, Empty):
-            self._serve(_started())
-        self.end()
-        while (task := self._tasks.get()) is not None:
-            task.over.set()
-
-    def _serve(self, process: subprocess.Popen[bytes]) -> None:
-        """Take replies until nothing is asked any more."""
-        self._process = process
-        with process:
-            orders, replies = process.stdin, process.stdout
-            try:
-                if orders is None or replies is None:
-                    return
-                orders.write(pack((sys.path, __package__, str(Path(__file__).resolve().parent))))
-                orders.flush()
-                receive(replies)
-                self.is_ready = not self.is_over
-                while (task := self._tasks.get(timeout=_IDLE)) is not None:
-                    try:
-                        task.reply = receive(replies)
-                        self.is_ready = not self.is_over
-                    finally:
-                        task.over.set()
-            finally:
-                process.kill()
+        self._process.kill()
+        self._process.wait()
+        for stream in self._process.stdin, self._process.stdout:
+            if stream is not None:
+                with suppress(OSError):
+                    stream.close()
+        if self._task is not None:
+            self._task.is_over, self._task = True, None
+        self._begun = True
 
 
-def _started() -> subprocess.Popen[bytes]:
-    """Start an interpreter that waits to be told what to import."""
-    environment = os.environ | {_VARIABLE: "1"}
-    hidden = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # Windows would open a console
-    return subprocess.Popen(  # noqa: S603 - this interpreter
-        [sys.executable, "-c", _START],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env=environment,
-        creationflags=hidden,
-        start_new_session=os.name != "nt",  # an interrupt from the keyboard is not meant for it
-    )
+def _environment() -> dict[str, str]:
+    """Tell a helper where the engine is, and what that needs."""
+    files = __file__, np.__file__, scipy.__file__
+    paths = [str(Path(str(file)).parent.parent.resolve()) for file in files] + [os.environ.get("PYTHONPATH", "")]
+    return os.environ | {_VARIABLE: "1", "PYTHONPATH": os.pathsep.join(path for path in paths if path)}
 
 
 class _Crew:
@@ -172,6 +166,9 @@ class _Crew:
 
     def present(self) -> list[Helper]:
         """Return the helpers that are not over."""
+        for helper in self.helpers:
+            if helper.is_over:
+                helper.end()
         self.helpers = [helper for helper in self.helpers if not helper.is_over]
         return self.helpers
 
@@ -181,8 +178,6 @@ def _default_processes() -> int:
     wanted = os.environ.get(_VARIABLE, "")
     if wanted.isdecimal():
         return max(int(wanted), 1)
-    if multiprocessing.parent_process() is not None:  # one of several that share the cores as they are
-        return 1
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return min(cores, _MOST)
 
@@ -207,8 +202,7 @@ def use_processes(count: int | None = None) -> None:
     ----------
     count : int, optional
         How many, this one counted; with 1 nothing else is started.  By default what the environment variable
-        ``HIERMATCH_PROCESSES`` says, or two if there are two cores; one in a process that was started by
-        `multiprocessing`.
+        ``HIERMATCH_PROCESSES`` says, or two if there are two cores.
     """
     crew = _own_crew()
     crew.most = _default_processes() if count is None else max(count, 1)
@@ -222,7 +216,8 @@ def call_helpers() -> None:
     missing = crew.most - 1 - len(crew.present())
     # Where the interpreter is part of another program, that would be started.
     if missing > 0 and Path(sys.executable or "").stem.lower().startswith("python"):
-        crew.helpers += [Helper() for _ in range(missing)]
+        with suppress(OSError):
+            crew.helpers += [Helper() for _ in range(missing)]
 
 
 def close_helpers() -> None:

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Messages to another process, in which what it knows already is named by a number."""
+"""Values as messages to another process, in which what it knows already is named by a number."""
 
 from __future__ import annotations
 
 import io
 import pickle
 import weakref
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from .helper_main import pack
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
-__all__ = ["SentObjects"]
+__all__ = ["SentObjects", "pack", "unpack"]
 
 
 class SentObjects:
@@ -49,15 +50,53 @@ class SentObjects:
         return stream.getvalue()
 
 
-class _Packer(pickle.Pickler):
-    """Writes values, and numbers for those among them that a helper keeps."""
+def pack(value: object) -> bytes:
+    """Make a message of a value, whatever it refers to."""
+    return pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
 
-    def __init__(self, stream: IO[bytes], known: SentObjects, written: object) -> None:
+
+def unpack(message: bytes, package: str, known: Mapping[int, Any] | None = None) -> Any:  # noqa: ANN401
+    """Make a value of a message.
+
+    Parameters
+    ----------
+    message : bytes
+        The message, of a process of our own.
+    package : str
+        What the engine is called where it was packed: another program may have it inside of a package.
+    known : mapping of int to object, optional
+        What is named by numbers.
+    """
+    return _Unpacker(message, package, known or {}).load()
+
+
+class _Packer(pickle.Pickler):
+    """Writes values, and numbers for those among them that another process keeps."""
+
+    def __init__(self, stream: IO[bytes], sent: SentObjects, written: object) -> None:
         super().__init__(stream, pickle.HIGHEST_PROTOCOL)
-        self._known, self._written = known, written
+        self._sent, self._written = sent, written
 
     def persistent_id(self, obj: Any) -> int | None:  # noqa: ANN401
         """Return the number of what is kept; None for all else, which is written."""
         if obj is self._written or isinstance(obj, type) or not getattr(obj, "is_sent_once", False):
             return None
-        return self._known.number(obj)
+        return self._sent.number(obj)
+
+
+class _Unpacker(pickle.Unpickler):
+    """Reads values, some of which are numbers of what is known, from where the engine may have another name."""
+
+    def __init__(self, message: bytes, package: str, known: Mapping[int, Any]) -> None:
+        super().__init__(io.BytesIO(message))
+        self._package, self._known = package, known
+
+    def find_class(self, module: str, name: str) -> Any:  # noqa: ANN401
+        """Find a class or function of the engine by what that is called here."""
+        if module == self._package or module.startswith(f"{self._package}."):
+            module = f"{__package__}{module[len(self._package) :]}"
+        return super().find_class(module, name)
+
+    def persistent_load(self, pid: int) -> Any:  # noqa: ANN401
+        """Return what is known by a number."""
+        return self._known[pid]

@@ -7,7 +7,6 @@ from collections import deque
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from .errors import HierMatchError
-from .helper_main import Reply, unpack
 from .helpers import present_helpers
 from .progress import Progress, within
 
@@ -114,8 +113,9 @@ class _Sharing(Generic[Common, Item, Result]):
 
     def look(self, keep: int = 0) -> bool:
         """Take what helpers have done, and give them more, all but so many that wait; say whether anything is left."""
-        for number, (_, task) in list(self.running.items()):
-            if task.over.is_set():
+        for number, (helper, task) in list(self.running.items()):
+            helper.look()
+            if task.is_over:
                 del self.running[number]
                 self._take(number, task)
         for helper in present_helpers() if len(self.waiting) > keep else ():
@@ -125,13 +125,12 @@ class _Sharing(Generic[Common, Item, Result]):
         return not all(number in self.results for number in range(self._wanted))
 
     def _take(self, number: int, task: Task) -> None:
-        reply = Reply(done=False) if task.reply is None else unpack(task.reply)
-        if not reply.done:  # then here
+        if not task.done:  # then here
             self.waiting.appendleft(number)
-        elif isinstance(reply.value, HierMatchError):
-            self.fail(number, reply.value)
+        elif isinstance(task.value, HierMatchError):
+            self.fail(number, task.value)
         else:
-            self.results[number] = reply.value
+            self.results[number] = task.value
 
     def fail(self, number: int, error: HierMatchError) -> None:
         """Note an error: what comes after it is not wanted any more, but what comes before it may have one, too."""
@@ -145,7 +144,7 @@ class _Sharing(Generic[Common, Item, Result]):
 
     def wait(self) -> None:
         """Wait a moment for a helper."""
-        next(iter(self.running.values()))[1].over.wait(_LOOK)
+        next(iter(self.running.values()))[0].look(_LOOK)
 
     def stop(self) -> None:
         """End the helpers that are still at work."""

@@ -15,6 +15,10 @@ BLENDER = {"bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "bpy_extras", "blf"
 OURS = {"engine", "hiermatch_addon", "hiermatch"}
 STANDARD = {"__future__", "collections", "contextlib", "copy", "dataclasses", "functools", "heapq", "itertools", "math"}
 ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time"}
+# What starts another process, sends it values and ends it, without any thread.
+PROCESSES = {ROOT / "engine" / f"{name}.py" for name in ("helpers", "helper_main", "pipes", "sent_objects")}
+PROCESSES_MAY = {"atexit", "ctypes", "io", "msvcrt", "os", "pathlib", "pickle", "select", "subprocess", "sys"}
+PROCESSES_MAY |= {"weakref"}
 
 
 def imported(path):
@@ -37,7 +41,7 @@ def test_there_are_files_to_look_at():
 
 @pytest.mark.parametrize("path", ENGINE, ids=name)
 def test_the_engine_knows_numpy_and_scipy_and_no_blender(path):
-    assert set(imported(path)) <= ENGINE_MAY
+    assert set(imported(path)) <= ENGINE_MAY | (PROCESSES_MAY if path in PROCESSES else set())
 
 
 @pytest.mark.parametrize("path", ENGINE, ids=name)
@@ -56,22 +60,29 @@ def test_what_is_ours_is_imported_relatively(path):
 def test_no_threads_no_print_and_no_search_path(path):
     tree = ast.parse(path.read_text(encoding="utf8"))
     forbidden = {"threading", "_thread", "concurrent", "multiprocessing", "asyncio", "sys"}
-    if path.parent.name == "command_line":
-        forbidden -= {"sys"}  # a command has arguments, streams and an interpreter to start again; see the next test
+    if path.parent.name == "command_line" or path in PROCESSES:
+        forbidden -= {"sys"}  # a command has arguments, streams and an interpreter to start again; see the next tests
     assert not forbidden & set(imported(path))
     called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
     assert not {"print", "eval", "exec", "open", "__import__"} & called
 
 
-@pytest.mark.parametrize("path", [path for path in ADDON if path.parent.name == "command_line"], ids=name)
-def test_the_command_line_leaves_the_interpreter_alone(path):
-    tree = ast.parse(path.read_text(encoding="utf8"))
-    used = {
+def used_of_sys(path):
+    return {
         node.attr
-        for node in ast.walk(tree)
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf8")))
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "sys"
     }
-    assert used <= {"argv", "executable", "stdout", "stderr"}
+
+
+@pytest.mark.parametrize("path", [path for path in ADDON if path.parent.name == "command_line"], ids=name)
+def test_the_command_line_leaves_the_interpreter_alone(path):
+    assert used_of_sys(path) <= {"argv", "executable", "stdout", "stderr"}
+
+
+@pytest.mark.parametrize("path", sorted(PROCESSES), ids=name)
+def test_other_processes_are_started_by_the_interpreter_which_is_left_alone(path):
+    assert used_of_sys(path) <= {"executable"}
 
 
 @pytest.mark.parametrize(

@@ -243,6 +243,8 @@ def changes(rows, base):
 def run(tasks, jobs, columns, csv_path):
     """Measure all, printing rows as they come; the rows."""
     rows = []
+    if jobs > 1:
+        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
     pool = multiprocessing.get_context("spawn").Pool(jobs) if jobs > 1 else None
     try:
         for row in pool.imap(measure, tasks) if pool else map(measure, tasks):

@@ -31,7 +31,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from engine import MatchSettings, match
-from engine.helpers import close_helpers, present_helpers, use_processes
+from engine.helpers import close_helpers
 from tests.benchmarks.known_shapes import LISTED, KnownShapes, score
 from tests.benchmarks.variants import as_is, decimate, subdivide
 
@@ -43,10 +43,7 @@ def peak(of=resource.RUSAGE_SELF):
 
 def peak_of_helpers():
     """End the helpers, and return the largest resident memory of any of them, in megabytes."""
-    helpers = list(present_helpers())
     close_helpers()
-    while not all(helper.has_ended for helper in helpers):
-        time.sleep(0.01)
     return peak(resource.RUSAGE_CHILDREN)
 
 
@@ -62,7 +59,6 @@ def measure(task):
     shapes, names, numbers = task
     source, target = (shapes.read(name) for name in names)
     x, y = (resolution(shape.mesh, number) for shape, number in zip((source, target), numbers, strict=True))
-    use_processes(2)
     before = peak()
     start = time.perf_counter()
     result = match(x.mesh, y.mesh, MatchSettings(dense=True))

@@ -187,6 +187,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="pairs matched at the same time (default 1)")
     options = parser.parse_args()
     archive = Archive(options.archive)
+    if options.jobs > 1:
+        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
         for title, pairs in drawn_pairs(archive, options.pairs, options.seed).items():
             print(f"{title:48s} {'':30s} margin conf. seconds")

@@ -198,6 +198,8 @@ def main():
     options = parser.parse_args()
     numbers = np.random.default_rng(options.seed).integers(2**31, size=(options.pairs, 2)).tolist()
     tasks = [(options.bodies, pair, options.vertices, options.split) for pair in numbers]
+    if options.jobs > 1:
+        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
         rows = []
         for line, wrong, row in pool.imap(measure, tasks):

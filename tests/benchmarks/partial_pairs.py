@@ -133,6 +133,8 @@ def main():
     tasks = [(shapes, pair, share, options.seed + i) for share in shares for i, pair in enumerate(pairs)]
     print(f"{'errors x 100 / sqrt(area)':44s}  to part  of part    lost   conf.  coverage  seconds")
     rows = []
+    if options.jobs > 1:
+        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
         for row in pool.imap(measure, tasks):
             rows.append(row)

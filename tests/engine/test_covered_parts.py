@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from engine import Shape, SurfaceMap, SurfacePoints, TriangleMesh
 from engine.covered_parts import best_and_rivals, continued, covered_parts_steps
@@ -39,6 +40,19 @@ def test_what_the_part_shows_is_found_without_a_hint(bodies):
     areas, true = whole.mesh.vertex_areas, rest[:, 0] > FRONT
     covered = found[0].covered
     assert areas @ (covered & true) > 0.85 * (areas @ (covered | true))
+
+
+def true_map(rest, image, image_rest):
+    """Map every vertex to the one that is nearest to it at rest."""
+    points = SurfacePoints.at_vertices(image.mesh, cKDTree(image_rest).query(rest)[1])
+    return SurfaceMap(points, np.ones(len(points)), image.mesh.vertex_count)
+
+
+def test_where_nothing_is_missing_no_piece_fits_better(bodies):
+    (whole, rest), _ = bodies
+    same, same_rest = part_of(*creature(0.8, 9, turn=0.7), lambda corners: corners[:, :, 0].min(axis=1) > -np.inf)
+    maps = true_map(rest, same, same_rest), true_map(same_rest, whole, rest)
+    assert run(covered_parts_steps(whole, same, maps)) == []
 
 
 def test_on_a_surface_too_small_to_tell_nothing_is_found():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -8,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine import MatchError, TriangleMesh, helpers, match, run
+from engine import MatchError, TriangleMesh, match, run
 from engine.helpers import call_helpers, close_helpers, present_helpers, use_processes
+from engine.pipes import receive, send
 from engine.sharing import here_steps, shared_steps
 from tests import shared_work
 from tests.shapes import creature
@@ -170,14 +172,22 @@ def test_an_error_here_ends_what_helpers_do():
     assert run(shared_steps(shared_work.squared, 0, [2, 3])) == [4, 9]
 
 
-@pytest.mark.usefixtures("no_helpers")
-def test_idle_helpers_end(monkeypatch):
-    monkeypatch.setattr(helpers, "_IDLE", 0.1)
-    call_helpers()
-    (found,) = present_helpers()
-    wait_until(lambda: found.is_over)
-    wait_until(lambda: found.has_ended)
+def test_idle_helpers_end():
+    script = "from engine.helper_main import serve; serve(0.1)"
+    streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, bufsize=0, **streams) as process:
+        send(process.stdin.fileno(), b"engine")
+        assert receive(process.stdout.fileno()) == b""
+        assert process.wait(PATIENCE) == 0
+
+
+def test_a_helper_that_has_ended_is_replaced(helper):
+    os.kill(helper.pid, signal.SIGKILL)
+    wait_until(lambda: present_helpers() == [])
     assert run(shared_steps(shared_work.squared, 0, [2, 3])) == [4, 9]
+    call_helpers()
+    (other,) = present_helpers()
+    assert other.pid != helper.pid
 
 
 @pytest.mark.parametrize("name", ["/nowhere/python", "/usr/bin/blender", "", None])
@@ -214,9 +224,6 @@ def test_by_default_two_cores_are_used(monkeypatch):
         use_processes()
         call_helpers()
         assert len(present_helpers()) == processes - 1
-    monkeypatch.setattr(helpers.multiprocessing, "parent_process", object)
-    use_processes()
-    assert present_helpers() == []
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
@@ -263,7 +270,6 @@ def test_helpers_find_an_engine_inside_of_another_package(tmp_path):
     script = """
 import time
 from outer.inner.engine import TriangleMesh, Shape, helpers, run
-from outer.inner.engine.helper_main import unpack
 from outer.inner.engine.sharing import shared_steps
 from outer.inner.engine.shape_preparation import Wanted, _prepared_steps
 from tests.shapes import creature
@@ -274,7 +280,7 @@ tasks = []
 start = helper.start
 helper.start = lambda *order: tasks.append(start(*order)) or tasks[-1]
 first, second = run(shared_steps(_prepared_steps, Wanted(40), shapes))
-print(len(tasks), unpack(tasks[0].reply).done, (first.sample_rows == second.sample_rows).all())
+print(len(tasks), tasks[0].done, (first.sample_rows == second.sample_rows).all())
 """
     assert python(script, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])) == ["1", "True", "True"]
 
