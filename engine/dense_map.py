@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from .landmarks import Landmarks
     from .map_hypotheses import LandmarkStart
+    from .map_search import RoughSearch
     from .registration import Registration
     from .shape import Shape
 
@@ -102,6 +103,7 @@ def registered_pair_steps(
     search: bool = True,
     as_they_are: bool = False,
     landmarks: Landmarks | None = None,
+    searched: RoughSearch | None = None,
 ) -> Steps[RegisteredPair]:
     """Find the map between two surfaces that keeps left on the left, and refine it.
 
@@ -117,6 +119,8 @@ def registered_pair_steps(
         Whether the starts are followed up without being refined by functional maps, too.
     landmarks : Landmarks, optional
         What is known to correspond, and is held together; the samples of the shapes begin with them.
+    searched : RoughSearch, optional
+        Matchings of extremities that keep the orientation, if they have been looked for; without landmarks only.
 
     Returns
     -------
@@ -128,7 +132,7 @@ def registered_pair_steps(
     mirrored = False
     if landmarks is None:
         # Mirrored maps serve only landmarks that ask for one.
-        proposals = map_hypotheses_steps(x, y, starts, search=search, mirrored=False)
+        proposals = map_hypotheses_steps(x, y, starts, search=search, mirrored=False, searched=searched)
         hypotheses = yield from within(proposals, 0.1, 0.4)
     else:
         steered = yield from within(steered_hypotheses_steps(x, y, starts, landmarks, search=search), 0.1, 0.4)

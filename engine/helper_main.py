@@ -7,6 +7,7 @@ import os
 import pickle
 from typing import Any
 
+from .blas_threads import one_thread
 from .errors import HierMatchError
 from .pipes import has_more, receive, send
 from .progress import run
@@ -48,7 +49,8 @@ def _reply(package: str, known: dict[int, Any], gone: list[int], new: dict[int, 
         for number, message in new.items():
             known[number] = unpack(message, package, known)
         work, common, item = unpack(order, package, known)
-        return pack((True, run(work(common, item))))
+        with one_thread():
+            return pack((True, run(work(common, item))))
     except HierMatchError as error:
         return pack((True, error))
     except Exception:  # noqa: BLE001 - what fails here is done again where it can be seen

@@ -4,7 +4,7 @@
 The engine's work is many short steps on small arrays.  Threads would wait for the interpreter at each of them;
 processes do not.  A helper is started while the first work is done, and kept for some time for what comes next.  Where
 there is none, because there is no second core or no interpreter that can be started, all is done here, with the same
-result to the last bit: helpers are given the same environment, so that sums are made in the same order.
+result to the last bit.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from .functional_maps import (
 )
 from .map_domain import MapDomain
 from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
-from .map_search import MapLead, distinct_leads, fitting_maps_steps, rough_maps_steps
+from .map_search import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
 from .progress import Progress, Steps, run, within
 from .sharing import shared_steps
 
@@ -38,6 +38,7 @@ __all__ = [
     "MapHypothesis",
     "assessed_everywhere",
     "hypothesis_of",
+    "map_domains",
     "map_hypotheses_steps",
     "refined_hypothesis_steps",
     "unrefined_hypotheses_steps",
@@ -143,6 +144,7 @@ def map_hypotheses_steps(
     search: bool = True,
     mirrored: bool = True,
     domains: tuple[MapDomain, MapDomain] | None = None,
+    searched: RoughSearch | None = None,
 ) -> Steps[list[MapHypothesis]]:
     """Propose dense maps between two surfaces, most credible first.
 
@@ -164,6 +166,8 @@ def map_hypotheses_steps(
         Whether matchings of extremities that mirror the surface are followed up even if there are others.
     domains : pair of MapDomain, optional
         Those of the surfaces, if earlier hypotheses have them.
+    searched : RoughSearch, optional
+        Matchings of extremities that keep the orientation, with its domains, if they have been looked for.
 
     Yields
     ------
@@ -183,18 +187,23 @@ def map_hypotheses_steps(
     """
     for start in starts:
         _check(start, x, y)
-    size = min(len(x.spectrum), len(y.spectrum))
-    a, b = domains = domains or (MapDomain(x, size), MapDomain(y, size))
+    a, b = domains = domains or (map_domains(x, y) if searched is None else searched.domains)
     yield Progress(0.05, "Comparing maps")
     leads: list[MapLead] = []
     if search:
-        steps = rough_maps_steps(a, b) if mirrored else _keeping_leads_steps(a, b)
+        steps = rough_maps_steps(a, b) if mirrored else _keeping_leads_steps(a, b, searched)
         leads = yield from within(steps, 0.05, 0.4)
     candidates = [(_between_fine(a, b, _smooth_maps(a, b, lead.points)), lead.origin) for lead in leads]
     candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
     refined = yield from within(shared_steps(_refined_lead_steps, domains, candidates), 0.4, 1.0)
     kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
     return [hypothesis_of(domains, lead) for lead in kept]
+
+
+def map_domains(x: Shape, y: Shape) -> tuple[MapDomain, MapDomain]:
+    """Prepare two shapes, with samples and spectra, for the search for maps."""
+    size = min(len(x.spectrum), len(y.spectrum))
+    return MapDomain(x, size), MapDomain(y, size)
 
 
 def unrefined_hypotheses_steps(domains: tuple[MapDomain, MapDomain]) -> Steps[list[MapHypothesis]]:
@@ -308,9 +317,9 @@ def hypothesis_of(
     return hypothesis
 
 
-def _keeping_leads_steps(x: MapDomain, y: MapDomain) -> Steps[list[MapLead]]:
+def _keeping_leads_steps(x: MapDomain, y: MapDomain, searched: RoughSearch | None) -> Steps[list[MapLead]]:
     """Propose maps between the coarse samples that keep the orientation, or any if there are none."""
-    leads = yield from within(rough_maps_steps(x, y, (1,)), 0.0, 0.9)
+    leads = yield from within(rough_maps_steps(x, y, (1,), searched), 0.0, 0.9)
     keeping = [lead for lead in leads if lead.orientation > 0]
     return keeping or (yield from within(rough_maps_steps(x, y), 0.9, 1.0))
 

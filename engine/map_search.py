@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_st
 from .lifted_matchings import LiftedMatchings
 from .map_scores import map_orientation, spectral_terms
 from .progress import Progress, Steps, within
-from .sharing import shared_steps
+from .sharing import beside_steps, shared_steps
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,13 +23,16 @@ if TYPE_CHECKING:
 
     from .map_domain import MapDomain
 
-__all__ = ["MapLead", "distinct_leads", "fitting_maps_steps", "rough_maps_steps"]
+__all__ = ["MapLead", "RoughSearch", "distinct_leads", "fitting_maps_steps", "rough_maps_steps"]
+
+Own = TypeVar("Own")
 
 # How many matchings are offered, by the distances between what is matched.
 _OFFERED = 400
 # How many farthest points of X and of Y are matched, and how many matchings are followed up with the orientation kept
 # (1) and with it mirrored (-1): of these the best only, as mirror images are matched as well as what they mirror.
-_FARTHEST = ((5, 9, {1: 20, -1: 8}), (6, 10, {1: 40, -1: 12}))
+# The largest first: then what is shared with helpers ends at about the same time.
+_FARTHEST = ((6, 10, {1: 40, -1: 12}), (5, 9, {1: 20, -1: 8}))
 # The same for tips of limbs: which points are the farthest depends on proportions, which limbs there are does not.
 _TIPS = (6, 9, {1: 20, -1: 8})
 _TIPS_APART = (0.4, 0.25)  # least distance of those of X, each of another limb, and of those offered of Y
@@ -88,7 +91,42 @@ class _Search(NamedTuple):
         return self._replace(of_x=self.of_x[self.of_x < count_x][: len(of_y)], of_y=of_y)
 
 
-def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1)) -> Steps[list[MapLead]]:
+@dataclass(frozen=True, eq=False)
+class RoughSearch:
+    """What `rough_maps_steps` begins with: several searches for matchings, which can be done earlier.
+
+    Attributes
+    ----------
+    domains : pair of MapDomain
+        The surfaces.
+    signs : tuple of int
+        Whether the orientation is kept (1), mirrored (-1), or each.
+    found : list or None
+        What the searches have found, once they are done.
+    """
+
+    domains: tuple[MapDomain, MapDomain]
+    signs: tuple[int, ...]
+    found: list[tuple[list[MapLead], list[MapLead]]] | None = None
+
+    def steps(self) -> Steps[RoughSearch]:
+        """Do the searches, unless they are done."""
+        if self.found is not None:
+            return self
+        return replace(self, found=(yield from shared_steps(_searched_steps, self.domains, self._searches())))
+
+    def beside_steps(self, own: Steps[Own]) -> Steps[tuple[Own, RoughSearch]]:
+        """Do them after something else, or beside it."""
+        result, found = yield from beside_steps(own, _searched_steps, self.domains, self._searches())
+        return result, replace(self, found=found)
+
+    def _searches(self) -> list[tuple[_Search, int]]:
+        return [(search, sign) for search in _searches(*self.domains) for sign in self.signs]
+
+
+def rough_maps_steps(
+    x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1), search: RoughSearch | None = None
+) -> Steps[list[MapLead]]:
     """Propose maps between the coarse samples of two surfaces.
 
     Parameters
@@ -97,6 +135,8 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
         The surfaces.
     signs : tuple of int
         Whether matchings are carried over with the orientation kept (1), with it mirrored (-1), or each both ways.
+    search : RoughSearch, optional
+        The searches for matchings of the same kind, if they have been done.
 
     Yields
     ------
@@ -108,15 +148,9 @@ def rough_maps_steps(x: MapDomain, y: MapDomain, signs: tuple[int, ...] = (1, -1
     list of MapLead
         A few of each of the most credible groups of like maps, of either orientation.
     """
-    usual: list[MapLead] = []
-    fitting: list[MapLead] = []
-    searches = [(search, sign) for search in _searches(x, y) for sign in signs]
-    # The longest first: then what is shared with helpers ends at about the same time.
-    order = sorted(range(len(searches)), key=lambda number: -searches[number][0].kept[searches[number][1]])
-    found = yield from shared_steps(_searched_steps, (x, y), [searches[number] for number in order])
-    for _, of_search in sorted(zip(order, found, strict=True), key=lambda pair: pair[0]):
-        usual += of_search[0]
-        fitting += of_search[1]
+    done = yield from (search or RoughSearch((x, y), signs)).steps()
+    usual = [lead for found in done.found or () for lead in found[0]]
+    fitting = [lead for found in done.found or () for lead in found[1]]
     chosen = _candidates(y, usual, _VARIANTS)
     more = _candidates(y, fitting, _FITTING_VARIANTS)
     chosen += [lead for lead in more if all(_move(y, lead, other) > _OTHER for other in chosen)]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .blas_threads import one_thread
 from .errors import MatchError
 from .helpers import call_helpers
 from .joined_match import matched_with_pieces_steps
@@ -111,13 +112,14 @@ def match_steps(
     settings = settings or MatchSettings()
     task = MatchTask(settings, landmarks)
     call_helpers()
-    x, y = yield from within(_shapes_steps((source, target), excluded), 0.0, 0.06)
-    if not settings.dense:
-        result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
-    else:
-        end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
-        result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.06, end)
-        result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
+    with one_thread():
+        x, y = yield from within(_shapes_steps((source, target), excluded), 0.0, 0.06)
+        if not settings.dense:
+            result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
+        else:
+            end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
+            result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.06, end)
+            result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
     yield Progress(1.0, "Done")
     return result
 

@@ -16,7 +16,8 @@ from .errors import MatchError
 from .handle_cutting import evened_steps
 from .hierarchy import refine_steps
 from .landmarks import locate_landmarks, placed_at_vertices
-from .map_hypotheses import LandmarkStart
+from .map_hypotheses import LandmarkStart, map_domains
+from .map_search import RoughSearch
 from .pair import Pair
 from .progress import within
 from .result import CoarseMatch, MatchResult
@@ -108,7 +109,14 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     limited = x.limited(samples, measured), y.limited(samples, measured)
     pair = Pair(*limited, settings, 0 if known is None else len(known))
     clock.lap("descriptors")
-    answers = yield from within(solve_steps(pair, clock.lap), sampled, sparse_end)
+    searched: RoughSearch | None = None
+    steps = solve_steps(pair, clock.lap)
+    if settings.dense and known is None and eigenpairs == EIGENPAIRS:
+        # What the dense map needs first can be looked for beside the sparse answers.
+        search = RoughSearch(map_domains(*limited), (1,))
+        answers, searched = yield from within(search.beside_steps(steps), sampled, sparse_end)
+    else:
+        answers = yield from within(steps, sampled, sparse_end)
     notes = tuple(note for shape in (x, y) for note in shape.surface.cleaned.notes)
     if not settings.dense:
         results = []
@@ -116,7 +124,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
             rows = yield from _distance_rows_steps(answer)
             results.append(_result(answer, known, notes, clock.laps, rows))
         return replace(results[0], mirrored=results[1] if len(results) > 1 else None)
-    direct, mirrored, dense = yield from within(_dense_steps(answers, known, clock), sparse_end, 1.0)
+    direct, mirrored, dense = yield from within(_dense_steps(answers, known, searched, clock), sparse_end, 1.0)
     result = _result(direct, known, notes, clock.laps)
     return replace(
         result,
@@ -128,7 +136,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
 
 
 def _dense_steps(
-    answers: list[Answer], landmarks: Landmarks | None, clock: Clock
+    answers: list[Answer], landmarks: Landmarks | None, searched: RoughSearch | None, clock: Clock
 ) -> Steps[tuple[Answer, Answer | None, DenseMatch]]:
     """Find the dense map, and the sparse answers that agree with it: the true and the mirrored one."""
     pair = answers[0].coarse.pair
@@ -139,7 +147,9 @@ def _dense_steps(
     for answer in followed:
         places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
         starts.append(LandmarkStart(x.sample_rows[: len(places)], y.sample_rows[places], "hierarchy"))
-    registered = yield from within(registered_pair_steps(x, y, starts, landmarks=landmarks), 0.0, 0.75)
+    registered = yield from within(
+        registered_pair_steps(x, y, starts, landmarks=landmarks, searched=searched), 0.0, 0.75
+    )
     clock.lap("registration")
     dense = yield from within(dense_match_steps(registered), 0.75, 0.9)
     clock.lap("lift")

@@ -6,21 +6,24 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from .blas_threads import one_thread
 from .errors import HierMatchError
 from .helpers import present_helpers
 from .progress import Progress, within
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from typing import Self
 
     from .helpers import Helper, Task
     from .progress import Steps
 
-__all__ = ["MOST_SENT", "here_steps", "shared_steps"]
+__all__ = ["MOST_SENT", "beside_steps", "here_steps", "shared_steps"]
 
 Common = TypeVar("Common")
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+Own = TypeVar("Own")
 
 MOST_SENT = 200_000
 """Vertices of a mesh up to which it is sent to other processes: beyond, copies would need too much memory."""
@@ -60,33 +63,30 @@ def shared_steps(
     HierMatchError
         What the first of them raises.
     """
-    sharing = _Sharing(work, common, items)
-    label = ""
-    try:
-        while sharing.look(keep=1):
-            if sharing.waiting:
-                number = sharing.waiting.popleft()
-                steps = work(common, items[number])
-                try:
-                    while True:
-                        progress = next(steps)
-                        label = progress.label
-                        sharing.look()
-                        yield Progress(sharing.fraction(progress.fraction), label)
-                except StopIteration as stop:
-                    sharing.results[number] = stop.value
-                except HierMatchError as error:
-                    sharing.fail(number, error)
-                finally:
-                    steps.close()
-            elif sharing.running:
-                sharing.wait()
-                yield Progress(sharing.fraction(), label)
-    finally:
-        sharing.stop()
-    if sharing.error is not None:
-        raise sharing.error
-    return [sharing.results[number] for number in range(len(items))]
+    with one_thread(), _Sharing(work, common, items) as sharing:
+        return (yield from sharing.steps())
+
+
+def beside_steps(
+    own: Steps[Own], work: Callable[[Common, Item], Steps[Result]], common: Common, items: Sequence[Item]
+) -> Steps[tuple[Own, list[Result]]]:
+    """Do one thing in this process while others begin with several items; then go on with these, see `shared_steps`.
+
+    Parameters
+    ----------
+    own : generator
+        What is done here.
+    work, common, items
+        As in `shared_steps`.
+
+    Returns
+    -------
+    pair
+        The result of the former, and the list of results of the latter.
+    """
+    with one_thread(), _Sharing(work, common, items) as sharing:
+        result = yield from within(sharing.meanwhile_steps(own), 0.0, 0.5)
+        return result, (yield from within(sharing.steps(), 0.5, 1.0))
 
 
 def here_steps(
@@ -105,48 +105,79 @@ class _Sharing(Generic[Common, Item, Result]):
 
     def __init__(self, work: Callable[[Common, Item], Steps[Result]], common: Common, items: Sequence[Item]) -> None:
         self._work, self._common, self._items = work, common, items
-        self.results: dict[int, Result] = {}
-        self.waiting = deque(range(len(items)))
-        self.running: dict[int, tuple[Helper, Task]] = {}
-        self.error: HierMatchError | None = None
+        self._results: dict[int, Result] = {}
+        self._waiting = deque(range(len(items)))
+        self._running: dict[int, tuple[Helper, Task]] = {}
+        self._error: HierMatchError | None = None
         self._wanted = len(items)
+        self._label = ""
 
-    def look(self, keep: int = 0) -> bool:
+    def steps(self) -> Steps[list[Result]]:
+        """Do all items; see `shared_steps`."""
+        while self._look(keep=1):
+            if self._waiting:
+                number = self._waiting.popleft()
+                try:
+                    work = self.meanwhile_steps(self._work(self._common, self._items[number]), is_item=True)
+                    self._results[number] = yield from work
+                except HierMatchError as error:
+                    self._fail(number, error)
+            elif self._running:
+                next(iter(self._running.values()))[0].look(_LOOK)
+                yield Progress(self._fraction(), self._label)
+        if self._error is not None:
+            raise self._error
+        return [self._results[number] for number in range(len(self._items))]
+
+    def meanwhile_steps(self, own: Steps[Own], *, is_item: bool = False) -> Steps[Own]:
+        """Do something here, and look after the helpers at each step."""
+        try:
+            while True:
+                try:
+                    progress = next(own)
+                except StopIteration as stop:
+                    return stop.value
+                self._look()
+                self._label = progress.label
+                yield Progress(self._fraction(progress.fraction), self._label) if is_item else progress
+        finally:
+            own.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *of_error: object) -> None:
+        # What helpers are still doing is not wanted any more.
+        for helper, _ in self._running.values():
+            helper.end()
+
+    def _look(self, keep: int = 0) -> bool:
         """Take what helpers have done, and give them more, all but so many that wait; say whether anything is left."""
-        for number, (helper, task) in list(self.running.items()):
+        for number, (helper, task) in list(self._running.items()):
             helper.look()
             if task.is_over:
-                del self.running[number]
+                del self._running[number]
                 self._take(number, task)
-        for helper in present_helpers() if len(self.waiting) > keep else ():
-            if helper.is_ready and len(self.waiting) > keep:
-                number = self.waiting.popleft()
-                self.running[number] = helper, helper.start(self._work, self._common, self._items[number])
-        return not all(number in self.results for number in range(self._wanted))
+        for helper in present_helpers() if len(self._waiting) > keep else ():
+            if helper.is_ready and len(self._waiting) > keep:
+                number = self._waiting.popleft()
+                self._running[number] = helper, helper.start(self._work, self._common, self._items[number])
+        return not all(number in self._results for number in range(self._wanted))
 
     def _take(self, number: int, task: Task) -> None:
         if not task.done:  # then here
-            self.waiting.appendleft(number)
+            self._waiting.appendleft(number)
         elif isinstance(task.value, HierMatchError):
-            self.fail(number, task.value)
+            self._fail(number, task.value)
         else:
-            self.results[number] = task.value
+            self._results[number] = task.value
 
-    def fail(self, number: int, error: HierMatchError) -> None:
+    def _fail(self, number: int, error: HierMatchError) -> None:
         """Note an error: what comes after it is not wanted any more, but what comes before it may have one, too."""
         if number < self._wanted:
-            self._wanted, self.error = number, error
-            self.waiting = deque(other for other in self.waiting if other < number)
+            self._wanted, self._error = number, error
+            self._waiting = deque(other for other in self._waiting if other < number)
 
-    def fraction(self, own: float = 0.0) -> float:
+    def _fraction(self, own: float = 0.0) -> float:
         """Part of the work that is done, with what is done of an item here."""
-        return (len(self.results) + own) / len(self._items)
-
-    def wait(self) -> None:
-        """Wait a moment for a helper."""
-        next(iter(self.running.values()))[0].look(_LOOK)
-
-    def stop(self) -> None:
-        """End the helpers that are still at work."""
-        for helper, _ in self.running.values():
-            helper.end()
+        return (len(self._results) + own) / len(self._items)

@@ -15,8 +15,10 @@ BLENDER = {"bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "bpy_extras", "blf"
 OURS = {"engine", "hiermatch_addon", "hiermatch"}
 STANDARD = {"__future__", "collections", "contextlib", "copy", "dataclasses", "functools", "heapq", "itertools", "math"}
 ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time"}
-# What starts another process, sends it values and ends it, without any thread.
-PROCESSES = {ROOT / "engine" / f"{name}.py" for name in ("helpers", "helper_main", "pipes", "sent_objects")}
+# What starts another process, sends it values and ends it, without any thread, also of libraries.
+PROCESSES = {
+    ROOT / "engine" / f"{name}.py" for name in ("helpers", "helper_main", "pipes", "sent_objects", "blas_threads")
+}
 PROCESSES_MAY = {"atexit", "ctypes", "io", "msvcrt", "os", "pathlib", "pickle", "select", "subprocess", "sys"}
 PROCESSES_MAY |= {"weakref"}
 

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keeps OpenBLAS, which NumPy and SciPy carry, to the thread that calls it."""
+
+from __future__ import annotations
+
+import ctypes
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import scipy
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+__all__ = ["Library", "libraries", "one_thread", "thread_counts"]
+
+_FOLDERS = "{}.libs", "{}/.dylibs"
+"""Where wheels of a package have libraries of others: on Linux and Windows, and on macOS."""
+
+_PREFIXES, _SUFFIXES = ("scipy_openblas", "openblas"), ("64_", "")
+"""What the names of its functions begin and end with, as it was built."""
+
+
+class Library(NamedTuple):
+    """Says how many threads a copy of OpenBLAS may use, and how many it may from now on."""
+
+    threads: Callable[[], int]
+    limit: Callable[[int], None]
+
+
+@cache
+def libraries() -> tuple[Library, ...]:
+    """Find the copies of OpenBLAS that are in use; none where these packages were built without."""
+    found = []
+    for package in np, scipy:
+        folder = Path(str(package.__file__)).parent
+        for path in (p for name in _FOLDERS for p in folder.parent.glob(name.format(folder.name) + "/*openblas*")):
+            try:
+                library = ctypes.CDLL(str(path))  # which is loaded already
+            except OSError:
+                continue
+            names = [(f"{p}_get_num_threads{s}", f"{p}_set_num_threads{s}") for p in _PREFIXES for s in _SUFFIXES]
+            has = [(get, put) for get, put in names if hasattr(library, get) and hasattr(library, put)]
+            found += [Library(getattr(library, get), getattr(library, put)) for get, put in has[:1]]
+    return tuple(found)
+
+
+def thread_counts() -> list[int]:
+    """Return how many threads each copy of OpenBLAS may use."""
+    return [library.threads() for library in libraries()]
+
+
+class _State:
+    """How often one thread is wanted at the moment, and how many there were before."""
+
+    depth = 0
+    before: tuple[int, ...] = ()
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let products and factorisations be computed by this thread alone, as long as the context lasts.
+
+    The engine's are small: more threads spin while they wait for the next one, at the cost of other processes, and
+    hardly make it faster.  And as the order of sums depends on their number, two processes would not come to the same
+    result to the last bit, nor two machines.
+    """
+    if _State.depth == 0:
+        _State.before = tuple(thread_counts())
+        for library in libraries():
+            library.limit(1)
+    _State.depth += 1
+    try:
+        yield
+    finally:
+        _State.depth -= 1
+        if _State.depth == 0:
+            for library, count in zip(libraries(), _State.before, strict=True):
+                library.limit(count)
