@@ -10,11 +10,13 @@ from scipy.sparse import csr_array
 
 from .descriptors import squared_differences
 from .progress import Progress, Steps, run
+from .sharing import shared_steps
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from .geodesics import GeodesicSolver
     from .mesh import TriangleMesh
     from .shape import Shape
 
@@ -28,6 +30,7 @@ __all__ = [
 ]
 
 _MEMORY = 256_000_000  # bytes of rows that are kept
+_PARTED = 32  # sources from which on distances are computed in two parts, one of them by a helper if there is one
 
 
 class PointDistances(Protocol):
@@ -103,11 +106,13 @@ class SurfaceDistances:
         if len(self._rows) + len(missing) > self._capacity:
             wanted = set(needed.tolist())
             self._rows = {vertex: row for vertex, row in self._rows.items() if vertex in wanted}
-        for first, block in shape.solver.distances_in_blocks(missing):
-            last = first + len(block)
-            rows = (block / shape.scale).astype(np.float32)
-            self._rows.update(zip(missing[first:last].tolist(), rows, strict=True))
-            yield Progress(last / len(missing), "Measuring distances")
+        if not len(missing):
+            return
+        parts = np.array_split(missing, 2 if len(missing) >= _PARTED else 1)
+        found = yield from shared_steps(_measured_steps, shape.solver, parts)
+        for part, distances in zip(parts, found, strict=True):
+            rows = (distances / shape.scale).astype(np.float32)
+            self._rows.update(zip(part.tolist(), rows, strict=True))
 
     def prepare(self, points: SurfacePoints) -> None:
         """Compute the rows that distances from some points need, if they are not there yet."""
@@ -269,3 +274,12 @@ def _weights(points: SurfacePoints) -> tuple[NDArray[np.int64], csr_array]:
     corners, column = np.unique(points.corners[counts], return_inverse=True)
     ends = np.append(0, np.cumsum(counts.sum(axis=1)))
     return corners, csr_array((points.barycentric[counts], column, ends), shape=(len(points), len(corners)))
+
+
+def _measured_steps(solver: GeodesicSolver, sources: NDArray[np.int64]) -> Steps[NDArray[np.float64]]:
+    """Compute the distances (s, n) from some sources (s,) to all vertices."""
+    rows = []
+    for first, block in solver.distances_in_blocks(sources):
+        rows.append(block)
+        yield Progress((first + len(block)) / len(sources), "Measuring distances")
+    return np.concatenate(rows)
