@@ -13,7 +13,10 @@ from .pipes import has_more, receive, send
 from .progress import run
 from .sent_objects import pack, unpack
 
-__all__ = ["serve"]
+__all__ = ["READY", "serve"]
+
+READY = b"A helper of HierMatch is ready.\n"
+"""What is written before the first reply."""
 
 _IDLE = 60.0
 """Seconds after which a helper that nothing is asked of ends: it holds some hundred megabytes."""
@@ -25,13 +28,13 @@ def serve(idle: float = _IDLE) -> None:
     An order is a message with two lists of numbers, what to forget and what comes new; one message for each of the
     latter; and one with a function, what all items have in common, and an item.  The reply to it says whether it was
     carried out, and with what result or error.  The first message of all names the package that is called ``engine``
-    here; the reply to that, which is empty, says that all is ready.
+    here; when all is ready, that is said by `READY`.
     """
     orders, replies = 0, os.dup(1)
     os.dup2(2, 1)  # what is printed is no reply
     try:
         package = receive(orders).decode()
-        send(replies, b"")
+        os.write(replies, READY)
         known: dict[int, Any] = {}
         while has_more(orders, idle):
             gone, new = pickle.loads(receive(orders))  # noqa: S301 - of the process that started this one

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy
 
+from .helper_main import READY
 from .pipes import has_more, receive, send
 from .sent_objects import SentObjects, unpack
 
@@ -35,6 +36,9 @@ _VARIABLE = "HIERMATCH_PROCESSES"
 
 _MOST = 2
 """Processes by default, if there are as many cores: most work can be parted in two, and not in more."""
+
+_AT_ONCE = 4096
+"""Bytes that are read at a time of what an interpreter says before it is ready."""
 
 _NAME = "engine"
 """What the engine is called in a helper, whatever it is called here."""
@@ -84,7 +88,7 @@ class Helper:
         self._orders, self._replies = self._process.stdin.fileno(), self._process.stdout.fileno()
         self._sent = SentObjects()
         self._task: Task | None = None
-        self._begun = False
+        self._begun, self._heard = False, b""
         with suppress(OSError):
             send(self._orders, str(__package__).encode())
 
@@ -126,15 +130,21 @@ class Helper:
         try:
             if not has_more(self._replies, seconds):
                 return
-            message = receive(self._replies)
-        except (OSError, EOFError, ValueError):  # it is gone
+            if self._task is not None:
+                self._task.done, self._task.value = unpack(receive(self._replies), _NAME)
+                self._task.is_over, self._task = True, None
+            else:
+                self._listen()
+        except (OSError, EOFError):  # it is gone
             self.end()
-            return
-        if not self._begun:
-            self._begun = True
-        elif self._task is not None:
-            self._task.done, self._task.value = unpack(message, _NAME)
-            self._task.is_over, self._task = True, None
+
+    def _listen(self) -> None:
+        """Hear whether it is ready, whatever it says before: an interpreter may greet its users."""
+        heard = os.read(self._replies, _AT_ONCE)
+        if not heard:
+            raise EOFError
+        self._heard = (self._heard + heard)[-len(READY) :]
+        self._begun = self._heard == READY
 
     def end(self) -> None:
         """End the process, whatever it does."""

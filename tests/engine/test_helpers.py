@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from engine import MatchError, TriangleMesh, match, run
+from engine.helper_main import READY
 from engine.helpers import call_helpers, close_helpers, present_helpers, use_processes
-from engine.pipes import receive, send
+from engine.pipes import send
 from engine.sharing import here_steps, shared_steps
 from tests import shared_work
 from tests.shapes import creature
@@ -177,7 +178,7 @@ def test_idle_helpers_end():
     streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, bufsize=0, **streams) as process:
         send(process.stdin.fileno(), b"engine")
-        assert receive(process.stdout.fileno()) == b""
+        assert process.stdout.read(len(READY)) == READY
         assert process.wait(PATIENCE) == 0
 
 
@@ -197,6 +198,32 @@ def test_where_no_interpreter_can_be_started_all_is_done_here(monkeypatch, name)
     call_helpers()
     assert run(shared_steps(shared_work.process_of, None, range(2))) == [os.getpid()] * 2
     wait_until(lambda: not present_helpers())
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs a script that can be started")
+@pytest.mark.parametrize("line", ["exit 1", "echo this is no Python", "cat"])
+@pytest.mark.usefixtures("no_helpers")
+def test_what_is_no_interpreter_does_no_harm(monkeypatch, tmp_path, line):
+    script = tmp_path / "python"
+    script.write_text(f"#!/bin/sh\n{line}\n")
+    script.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(script))
+    call_helpers()
+    for _ in range(3):
+        assert run(shared_steps(shared_work.process_of, None, range(2))) == [os.getpid()] * 2
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs a script that can be started")
+@pytest.mark.usefixtures("no_helpers")
+def test_an_interpreter_may_say_something_first(monkeypatch, tmp_path):
+    script = tmp_path / "python"
+    script.write_text(f'#!/bin/sh\necho hi\nexec {sys.executable} "$@"\n')
+    script.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(script))
+    call_helpers()
+    (helper,) = present_helpers()
+    wait_until(lambda: helper.is_ready)
+    assert len(set(run(shared_steps(shared_work.process_of, None, range(4))))) == 2
 
 
 @pytest.mark.usefixtures("no_helpers")
