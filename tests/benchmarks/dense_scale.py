@@ -9,7 +9,7 @@ make some 80,000, 320,000 and 1,280,000 vertices of 5,000; the surface stays the
 
     seconds   from two meshes to both maps, in a process of its own
     peak      the largest resident memory of that process, and before the match, in megabytes
-    helper    the same of the process that took over parts of its work
+    helper    the same of the process that took over parts of its work, or `before` if that is more: it starts as a copy
     direct    mean error of source_to_target rounded to the vertices of the shape as it was read (see `known_shapes`);
               the images are first carried back to it, so that every level is measured alike
     inside    the same, not rounded
