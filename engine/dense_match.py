@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .functional_maps import nearest_both_ways
 from .handle_cutting import evened_steps
+from .helpers import call_helpers
 from .joined_surface import with_limbs_steps
 from .landmarks import placed_at_vertices
 from .lifting import lift_steps
@@ -116,6 +117,7 @@ def densify_steps(
     MatchError
         If a point does not lie on the main part of its mesh.
     """
+    call_helpers()
     covered = _piece_of(source, maps[0], source_points), _piece_of(target, maps[1], target_points)
     x = yield from within(_shape_steps(source, "source", covered[0], source_points), 0.0, 0.1)
     y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine import MatchError, TriangleMesh, match, run
+from engine import MatchError, Progress, TriangleMesh, match, run
 from engine.helper_main import READY
 from engine.helpers import call_helpers, close_helpers, present_helpers, use_processes
 from engine.pipes import send
-from engine.sharing import here_steps, shared_steps
+from engine.sharing import beside_steps, here_steps, shared_steps
 from tests import shared_work
 from tests.shapes import creature
 from tests.shared_work import Kept
@@ -251,6 +251,29 @@ def test_by_default_two_cores_are_used(monkeypatch):
         use_processes()
         call_helpers()
         assert len(present_helpers()) == processes - 1
+
+
+def test_helpers_begin_while_something_else_is_done_here(helper):
+    def own():
+        for _ in range(20):
+            time.sleep(0.01)
+            yield Progress(0.5, "Something else")
+        return "done"
+
+    result, pids = run(beside_steps(own(), shared_work.process_of, None, range(3)))
+    assert result == "done"
+    assert helper.pid in pids
+
+
+def test_if_that_cannot_be_done_what_helpers_do_is_ended(helper):
+    def own():
+        yield Progress(0.0, "Something else")
+        yield Progress(0.5, "Something else")
+        raise MatchError("It cannot be done.")
+
+    with pytest.raises(MatchError, match="It cannot be done"):
+        run(beside_steps(own(), shared_work.long_elsewhere, os.getpid(), range(3)))
+    assert helper.is_over
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from engine.functional_maps import PointMaps
-from engine.map_search import MapLead, distinct_leads, fitting_maps_steps, rough_maps_steps
-from engine.progress import run
+from engine.map_search import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
+from engine.progress import Progress, run
 from tests.bodies import octopus
 from tests.domains import domain
 from tests.shapes import creature, rotation
@@ -27,6 +27,28 @@ def test_the_truth_is_among_the_rough_maps_and_first_of_its_orientation(pair):
     keeping = [lead for lead in leads if lead.orientation > 0]
     assert error(*pair, keeping[0].points) < 0.15
     assert keeping[0].score == min(lead.score for lead in keeping)
+
+
+def test_matchings_may_be_looked_for_beside_something_else(pair):
+    def own():
+        yield Progress(0.5, "Something else")
+        return "done"
+
+    reports = []
+    steps = RoughSearch(pair, (1,)).beside_steps(own())
+    try:
+        while True:
+            reports.append(next(steps))
+    except StopIteration as stop:
+        result, search = stop.value
+    assert result == "done"
+    fractions = [report.fraction for report in reports]
+    assert fractions == sorted(fractions)
+    assert reports[0].label == "Something else"
+    later, alone = run(rough_maps_steps(*pair, (1,), search)), run(rough_maps_steps(*pair, (1,)))
+    assert [lead.score for lead in later] == [lead.score for lead in alone]
+    for first, second in zip(later, alone, strict=True):
+        np.testing.assert_array_equal(first.points.on_y, second.points.on_y)
 
 
 def test_maps_that_mirror_are_proposed_too(pair):

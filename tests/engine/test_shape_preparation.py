@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Two shapes prepared at once, and what other processes are sent of shapes."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from engine import Shape, TriangleMesh
+from engine.blas_threads import one_thread
+from engine.map_domain import MapDomain
+from engine.progress import run
+from engine.shape_preparation import Wanted, prepared_shapes_steps
+from tests.shapes import creature, icosphere, irregular
+
+WANTED = Wanted(40, 12, 20)
+
+
+def meshes():
+    return TriangleMesh(*creature(0.5, 9)[:2]), TriangleMesh(*irregular(*icosphere(7), seed=2))
+
+
+def one_after_the_other(mesh, wanted=WANTED):
+    shape = Shape(mesh)
+    run(shape.sample_steps(wanted.samples, wanted.measured))
+    with one_thread():
+        run(shape.spectrum_steps(wanted.eigenpairs))
+    return shape
+
+
+def assert_same(first, second, wanted=WANTED):
+    first, second = (shape.limited(wanted.samples, wanted.measured) for shape in (first, second))
+    np.testing.assert_array_equal(first.samples, second.samples)
+    np.testing.assert_array_equal(first.sample_rows, second.sample_rows)
+    np.testing.assert_array_equal(first.spectrum.functions, second.spectrum.functions)
+
+
+def test_both_have_what_they_would_have_one_after_the_other():
+    shapes = [Shape(mesh) for mesh in meshes()]
+    run(prepared_shapes_steps(*shapes, WANTED))
+    for shape, mesh in zip(shapes, meshes(), strict=True):
+        assert_same(shape, one_after_the_other(mesh))
+
+
+def test_what_they_have_is_not_computed_again():
+    shapes = [Shape(mesh) for mesh in meshes()]
+    run(prepared_shapes_steps(*shapes, WANTED))
+    spectra = [shape.spectrum for shape in shapes]
+    assert list(prepared_shapes_steps(*shapes, WANTED)) == []
+    assert [shape.spectrum for shape in shapes] == spectra
+    more = Wanted(50, 20, 20)
+    run(prepared_shapes_steps(*shapes, more))
+    for shape, mesh in zip(shapes, meshes(), strict=True):
+        assert_same(shape, one_after_the_other(mesh, more), more)
+
+
+def test_eigenpairs_may_not_be_wanted():
+    shapes = [Shape(mesh) for mesh in meshes()]
+    run(prepared_shapes_steps(*shapes, Wanted(30)))
+    assert [shape.sample_count for shape in shapes] == [30, 30]
+    with pytest.raises(RuntimeError, match="spectrum"):
+        shapes[0].spectrum  # noqa: B018
+
+
+def test_one_shape_may_be_both():
+    shape = Shape(meshes()[0])
+    run(prepared_shapes_steps(shape, shape, WANTED))
+    assert_same(shape, one_after_the_other(meshes()[0]))
+
+
+def test_what_is_sent_is_the_same_as_long_as_nothing_changes():
+    shape = one_after_the_other(meshes()[0])
+    sent = shape.lean()
+    assert sent.is_sent_once
+    assert not shape.is_sent_once
+    assert shape.lean() is sent
+    assert sent.lean() is sent
+    run(shape.sample_steps(60, 30))
+    more = shape.lean()
+    assert more is not sent
+    assert (len(sent.sample_rows), len(more.sample_rows)) == (12, 30)
+    run(shape.spectrum_steps(25))
+    assert shape.lean() is not more
+
+
+def test_what_arrives_elsewhere_says_the_same_of_the_surface():
+    shape = one_after_the_other(meshes()[0]).limited(40, 12)
+    sent = MapDomain(shape, 20)
+    arrived = pickle.loads(pickle.dumps(sent))  # noqa: S301 - our own
+    assert not hasattr(arrived.shape, "original")
+    for name in "functions", "vertices", "signatures", "patches", "curvature", "gradients", "places":
+        np.testing.assert_array_equal(getattr(arrived, name), getattr(sent, name))
+    np.testing.assert_array_equal(arrived.shape.sample_distances, sent.shape.sample_distances)
