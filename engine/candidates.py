@@ -15,7 +15,7 @@ from .limb_twists import rolled_back, untwisted
 from .limb_windings import wound_steps
 from .map_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
 from .map_search import MapLead
-from .progress import Steps, within
+from .progress import Progress, Steps, within
 from .registration import (
     AGAIN,
     CLOSE,
@@ -24,6 +24,7 @@ from .registration import (
     LAST,
     SOFT,
     Registration,
+    points_at,
     register_steps,
     restarted_steps,
     smooth_start,
@@ -64,6 +65,13 @@ _POSED, _BUILT = 0.38, 0.48
 """Mean difference of wave kernel signatures up to which only poses differ, and from which on bodies are unlike."""
 
 _STAGES = AGAIN, CLOSE, LAST
+
+_DISAGREE = 0.0045, 0.008, 0.012
+"""Mean length of the way there and back, in sqrt(area), from which on both sides are registered once more, twice, and
+three times: in turn each corrects what the other strains, and none comes to rest at once."""
+
+_NEARER = 0.95
+"""Part of its length before from which on the way there and back has not become shorter."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,15 +229,52 @@ class Follower:
             first = yield from within(wound_steps(register_all_steps, source, target, way), 0.0, 0.2)
         else:  # what landmarks hold stays the way round it is
             (first,) = yield from within(register_all_steps([positions]), 0.0, 0.2)
-        matches = first.on_source, first.on_target
-        restart = partial(restarted_steps, stages=_STAGES, isometry=isometry)
-        steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back)
-        reverse = yield from within(steps, 0.2, 0.6)
-        matches = reverse.on_source, reverse.on_target
-        steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties)
-        final = yield from within(steps, 0.6, 1.0)
+        reverse, final = yield from within(self.again_steps(candidate, first), 0.2, 1.0)
         score = (candidate.score + self._assessed(candidate.hypothesis, final)[0]) / 2
         return CloseFit(candidate, final, reverse, score)
+
+    def settled_steps(self, fit: CloseFit) -> Steps[CloseFit]:
+        """Go on from either side in turn, while the two disagree and come nearer to each other by that."""
+        trip = self._trip(fit)
+        for number, agreed in enumerate(_DISAGREE):
+            if trip <= agreed:
+                break
+            steps = self.again_steps(fit.candidate, fit.registration)
+            begin, end = ((number + i) / len(_DISAGREE) for i in (0, 1))
+            reverse, final = yield from within(steps, begin, end)
+            again = replace(fit, registration=final, reverse=reverse)
+            before, trip = trip, self._trip(again)
+            if trip >= before:
+                break
+            fit = again
+            if trip > _NEARER * before:
+                break
+        yield Progress(1.0, "Fitting the surfaces")
+        return fit
+
+    def again_steps(self, candidate: Candidate, found: Registration) -> Steps[tuple[Registration, Registration]]:
+        """Register the target from where the source lies on it, then the source from where the target does."""
+        source, target = self.source, self.target
+        restart = partial(restarted_steps, stages=_STAGES, isometry=candidate.isometry)
+        matches = found.on_source, found.on_target
+        steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back)
+        reverse = yield from within(steps, 0.0, 0.5)
+        matches = reverse.on_source, reverse.on_target
+        steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties)
+        return reverse, (yield from within(steps, 0.5, 1.0))
+
+    def _trip(self, fit: CloseFit) -> float:
+        """Mean distance, in sqrt(area), between points and where the two maps bring them, there and back.
+
+        From the surface from which it is shorter: what only the other one has, leads elsewhere anyhow.
+        """
+        ways = (self.source, self.target, fit.registration), (self.target, self.source, fit.reverse)
+        trips = []
+        for (start, end, there), (_, _, back) in zip(ways, ways[::-1], strict=True):
+            images = points_at(back.on_target, start.triangles, start.vertices)
+            returned = points_at(there.on_target, end.triangles, images)
+            trips.append(float(start.mass @ np.linalg.norm(returned - start.vertices, axis=1) / start.mass.sum()))
+        return min(trips)
 
     def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:
         """Score what a hypothesis has led to; and the terms of the score, without the gaps that are left."""

@@ -166,8 +166,9 @@ def registered_pair_steps(
             hypotheses = [h for h in hypotheses if h is not candidates[0].hypothesis]
             candidates[0] = repaired
         candidates = yield from within(_rolled_back_steps(follow, candidates), 0.69, 0.7)
-    fits = yield from within(_contest_steps(follow, candidates), 0.7, 1.0)
-    closest, best = fits[0], fits[0].candidate
+    fits = yield from within(_contest_steps(follow, candidates), 0.7, 0.9)
+    closest = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
+    best = closest.candidate
     others = [candidate for candidate in candidates if candidate is not best]
     if any(best.hypothesis is h for h in rough):
         # Others are compared with what functional maps make of it, not with the rough map.

@@ -37,6 +37,7 @@ __all__ = [
     "SOFT",
     "Registration",
     "Stage",
+    "points_at",
     "register_steps",
     "restarted_steps",
     "smooth_start",
@@ -111,10 +112,18 @@ enough for the hands and feet of a body that crouches."""
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
-AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
+AGAIN = Stage((80, 160, 640), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
 """The same from a map that is nearly right, and says where a pose strains the surface."""
 
-CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=(0.5, 0.75))
+CLOSE = Stage(
+    (640,) * 4 + (1280,) * 3 + (2560,),
+    normal_length=0.05,
+    curvature_length=0.0,
+    matched="around",
+    lead=0.5,
+    momentum=0.9,
+    softened=(0.5, 0.75),
+)
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
 LAST = Stage((2560,), 0.05, 0.0)
@@ -301,7 +310,7 @@ def restarted_steps(
     stages, isometry, ties
         As in `register_steps`.
     """
-    places = _at(matches[0], target.triangles, target.vertices)
+    places = points_at(matches[0], target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
     posed = (start + places) / 2
     steps = register_steps(source, target, start, stages, matches, posed=posed, isometry=isometry, ties=ties)
@@ -398,14 +407,14 @@ def register_steps(
     search, _ = matcher.source_search(positions)
     on_target, on_source = yield from within(matcher.matches_steps(positions, search, last=True), 1.0, 1.0)
     rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
-    squared = np.square(_at(on_target, target.triangles, target.vertices) - positions).sum(axis=1)
-    squared_back = np.square(_at(on_source, source.triangles, positions) - target.vertices).sum(axis=1)
+    squared = np.square(points_at(on_target, target.triangles, target.vertices) - positions).sum(axis=1)
+    squared_back = np.square(points_at(on_source, source.triangles, positions) - target.vertices).sum(axis=1)
     gaps = float(source.mass @ np.sqrt(squared)), float(target.mass @ np.sqrt(squared_back))
     energy = source.elastic.energy(positions, rotations)
     return Registration(positions, on_target, on_source, energy, float(source.mass @ squared), gaps)
 
 
-def _at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+def points_at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Values (n, d) of vertices, interpolated at points (k, d)."""
     return np.einsum("kc,kcd->kd", points.barycentric, values[triangles[points.triangles]])
 
@@ -423,12 +432,12 @@ def _solved(
     """Positions of least energy for given matches, with rotations first fitted to the positions `posed`."""
     on_target, on_source = matches
     source, target = matcher.source, matcher.target
-    wanted = _at(on_target, target.triangles, target.vertices)
-    seen = _at(on_target, target.triangles, target.normals)
+    wanted = points_at(on_target, target.triangles, target.vertices)
+    seen = points_at(on_target, target.triangles, target.normals)
     own = weight * source.mass * _agreement(normals, seen)
     beyond = np.flatnonzero(_beyond(source, on_target, target))
     own[beyond] = 0
-    theirs = weight * target.mass * _agreement(_at(on_source, source.triangles, normals), target.normals)
+    theirs = weight * target.mass * _agreement(points_at(on_source, source.triangles, normals), target.normals)
     theirs[_beyond(target, on_source, source)] = 0
     equations = source.equations
     solve = equations.solver(own, on_source, theirs, stiffness=elastic.stiffness)

@@ -256,8 +256,63 @@ def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, bot
     follow = Follower(x, y, pair.source, pair.target)
     fits = [run(follow.close_steps(candidate)) for candidate in pair.candidates]
     assert pair.margin == pytest.approx(fits[1].score - fits[0].score)
-    np.testing.assert_array_equal(fits[0].registration.positions, pair.registration.positions)
-    np.testing.assert_array_equal(fits[0].reverse.positions, pair.reverse.positions)
+    settled = run(follow.settled_steps(fits[0]))
+    np.testing.assert_array_equal(settled.registration.positions, pair.registration.positions)
+    np.testing.assert_array_equal(settled.reverse.positions, pair.reverse.positions)
+
+
+def way_there_and_back(follow, fit):
+    """Mean distance of the target's vertices from where both maps bring them."""
+    there, back = fit.reverse.on_target, fit.registration.on_target
+    images = SurfacePoints.from_barycentric(follow.y.mesh, back.triangles, back.barycentric).positions
+    corners = follow.x.mesh.triangles[there.triangles]
+    returned_to = np.einsum("kc,kcd->kd", there.barycentric, images[corners])
+    return np.linalg.norm(returned_to - follow.y.mesh.vertices, axis=1) @ follow.y.mesh.vertex_areas
+
+
+@pytest.fixture
+def disagreeing(bodies, starts):
+    """A candidate that was registered from either side, but hardly."""
+    x, y = bodies[:2]
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    follow = Follower(x, y, pair.source, pair.target)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("engine.candidates._STAGES", (replace(SOFT, weights=(40.0,)),))
+        return follow, run(follow.close_steps(pair.candidates[0]))
+
+
+@pytest.mark.parametrize(("agreed", "more"), [((np.inf,), 0), ((0.0,), 1), ((0.0, 0.0), 2), ((0.0, np.inf), 1)])
+def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monkeypatch):
+    follow, fit = disagreeing
+    monkeypatch.setattr("engine.candidates._DISAGREE", agreed)
+    lengths = [way_there_and_back(follow, fit)]
+    own = Follower.again_steps
+    starts = []
+    monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: starts.append(found) or own(self, c, found))
+    settled = run(follow.settled_steps(fit))
+    assert len(starts) == more
+    assert (settled is fit) == (more == 0)
+    assert settled.candidate is fit.candidate
+    assert settled.score == fit.score
+    lengths.append(way_there_and_back(follow, settled))
+    assert lengths[1] <= (0.8 if more else 1) * lengths[0]
+
+
+def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monkeypatch):
+    follow, fit = disagreeing
+    monkeypatch.setattr("engine.candidates._DISAGREE", (0.0,) * 3)
+    own = Follower.again_steps
+    tried = []
+    monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: tried.append(found) or own(self, c, found))
+    monkeypatch.setattr("engine.candidates._NEARER", 0.0)
+    assert run(follow.settled_steps(fit)) is not fit
+    assert len(tried) == 1
+    # Farther from each other, they are not taken.
+    matches = fit.registration.on_target
+    exchanged = replace(matches, triangles=matches.triangles[::-1])
+    worse = replace(fit.registration, on_target=exchanged)
+    monkeypatch.setattr(Follower, "again_steps", lambda *_: returned((fit.reverse, worse)))
+    assert run(follow.settled_steps(fit)) is fit
 
 
 @pytest.mark.parametrize(("few", "expected"), [(0, [0.375, 0.625] * 2), (10**9, [0.5] * 2)], ids=["fine", "coarse"])
