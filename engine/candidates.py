@@ -15,7 +15,7 @@ from .limb_twists import rolled_back, untwisted
 from .limb_windings import wound_steps
 from .map_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
 from .map_search import MapLead
-from .progress import Progress, Steps, within
+from .progress import Steps, within
 from .registration import (
     AGAIN,
     CLOSE,
@@ -66,7 +66,7 @@ _POSED, _BUILT = 0.38, 0.48
 
 _STAGES = AGAIN, CLOSE, LAST
 
-_DISAGREE = 0.0045, 0.008, 0.012
+_DISAGREE = 0.0055, 0.008, 0.012
 """Mean length of the way there and back, in sqrt(area), from which on both sides are registered once more, twice, and
 three times: in turn each corrects what the other strains, and none comes to rest at once."""
 
@@ -234,13 +234,16 @@ class Follower:
         return CloseFit(candidate, final, reverse, score)
 
     def settled_steps(self, fit: CloseFit) -> Steps[CloseFit]:
-        """Go on from either side in turn, while the two disagree and come nearer to each other by that."""
+        """Go on from either side in turn, while the two disagree and come nearer to each other by that.
+
+        At last the target follows where the source has come to lie since.
+        """
         trip = self._trip(fit)
         for number, agreed in enumerate(_DISAGREE):
             if trip <= agreed:
                 break
             steps = self.again_steps(fit.candidate, fit.registration)
-            begin, end = ((number + i) / len(_DISAGREE) for i in (0, 1))
+            begin, end = ((number + i) / (len(_DISAGREE) + 1) for i in (0, 1))
             reverse, final = yield from within(steps, begin, end)
             again = replace(fit, registration=final, reverse=reverse)
             before, trip = trip, self._trip(again)
@@ -249,8 +252,13 @@ class Follower:
             fit = again
             if trip > _NEARER * before:
                 break
-        yield Progress(1.0, "Fitting the surfaces")
-        return fit
+        matches = fit.registration.on_source, fit.registration.on_target
+        start, isometry = fit.reverse.positions, fit.candidate.isometry
+        steps = register_steps(
+            self.target, self.source, start, (LAST,), matches, isometry=isometry, ties=self.ties_back
+        )
+        reverse = yield from within(steps, len(_DISAGREE) / (len(_DISAGREE) + 1), 1.0)
+        return replace(fit, reverse=reverse)
 
     def again_steps(self, candidate: Candidate, found: Registration) -> Steps[tuple[Registration, Registration]]:
         """Register the target from where the source lies on it, then the source from where the target does."""

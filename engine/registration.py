@@ -115,15 +115,7 @@ FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 AGAIN = Stage((80, 160, 640), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
 """The same from a map that is nearly right, and says where a pose strains the surface."""
 
-CLOSE = Stage(
-    (640,) * 4 + (1280,) * 3 + (2560,),
-    normal_length=0.05,
-    curvature_length=0.0,
-    matched="around",
-    lead=0.5,
-    momentum=0.9,
-    softened=(0.5, 0.75),
-)
+CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=(0.5, 0.75))
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
 LAST = Stage((2560,), 0.05, 0.0)

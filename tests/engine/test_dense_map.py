@@ -291,11 +291,12 @@ def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monk
     monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: starts.append(found) or own(self, c, found))
     settled = run(follow.settled_steps(fit))
     assert len(starts) == more
-    assert (settled is fit) == (more == 0)
+    assert (settled.registration is fit.registration) == (more == 0)
     assert settled.candidate is fit.candidate
     assert settled.score == fit.score
     lengths.append(way_there_and_back(follow, settled))
-    assert lengths[1] <= (0.8 if more else 1) * lengths[0]
+    # Even if nothing is registered again, the target follows the source.
+    assert lengths[1] < 0.8 * lengths[0]
 
 
 def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monkeypatch):
@@ -305,14 +306,14 @@ def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monke
     tried = []
     monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: tried.append(found) or own(self, c, found))
     monkeypatch.setattr("engine.candidates._NEARER", 0.0)
-    assert run(follow.settled_steps(fit)) is not fit
+    assert run(follow.settled_steps(fit)).registration is not fit.registration
     assert len(tried) == 1
     # Farther from each other, they are not taken.
     matches = fit.registration.on_target
     exchanged = replace(matches, triangles=matches.triangles[::-1])
     worse = replace(fit.registration, on_target=exchanged)
     monkeypatch.setattr(Follower, "again_steps", lambda *_: returned((fit.reverse, worse)))
-    assert run(follow.settled_steps(fit)) is fit
+    assert run(follow.settled_steps(fit)).registration is fit.registration
 
 
 @pytest.mark.parametrize(("few", "expected"), [(0, [0.375, 0.625] * 2), (10**9, [0.5] * 2)], ids=["fine", "coarse"])
