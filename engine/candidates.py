@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .ties import Ties
 
     _Common = tuple["Follower", MapDomain, MapDomain]
+    Trips = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 __all__ = ["Candidate", "CloseFit", "Follower"]
 
@@ -233,32 +234,49 @@ class Follower:
         score = (candidate.score + self._assessed(candidate.hypothesis, final)[0]) / 2
         return CloseFit(candidate, final, reverse, score)
 
-    def settled_steps(self, fit: CloseFit) -> Steps[CloseFit]:
+    def settled_steps(self, fit: CloseFit) -> Steps[tuple[CloseFit, Trips]]:
         """Go on from either side in turn, while the two disagree and come nearer to each other by that.
 
-        At last the target follows where the source has come to lie since.
+        At last the target follows where the source has come to lie since.  How far they were apart before that tells
+        where they may err, see `trips`.
         """
-        trip = self._trip(fit)
+        trips = self.trips(fit)
         for number, agreed in enumerate(_DISAGREE):
-            if trip <= agreed:
+            length = self._length(trips)
+            if length <= agreed:
                 break
-            steps = self.again_steps(fit.candidate, fit.registration)
+            again = self.again_steps(fit.candidate, fit.registration)
             begin, end = ((number + i) / (len(_DISAGREE) + 1) for i in (0, 1))
-            reverse, final = yield from within(steps, begin, end)
-            again = replace(fit, registration=final, reverse=reverse)
-            before, trip = trip, self._trip(again)
-            if trip >= before:
+            reverse, registration = yield from within(again, begin, end)
+            other = replace(fit, registration=registration, reverse=reverse)
+            apart = self.trips(other)
+            if self._length(apart) >= length:
                 break
-            fit = again
-            if trip > _NEARER * before:
+            fit, trips = other, apart
+            if self._length(apart) > _NEARER * length:
                 break
         matches = fit.registration.on_source, fit.registration.on_target
         start, isometry = fit.reverse.positions, fit.candidate.isometry
-        steps = register_steps(
+        following = register_steps(
             self.target, self.source, start, (LAST,), matches, isometry=isometry, ties=self.ties_back
         )
-        reverse = yield from within(steps, len(_DISAGREE) / (len(_DISAGREE) + 1), 1.0)
-        return replace(fit, reverse=reverse)
+        follower = yield from within(following, len(_DISAGREE) / (len(_DISAGREE) + 1), 1.0)
+        return replace(fit, reverse=follower), trips
+
+    def trips(self, fit: CloseFit) -> Trips:
+        """Distances, in sqrt(area), between vertices and where the two maps bring them, there and back."""
+        ways = (self.source, self.target, fit.registration), (self.target, self.source, fit.reverse)
+        trips = []
+        for (start, end, there), (_, _, back) in zip(ways, ways[::-1], strict=True):
+            images = points_at(back.on_target, start.triangles, start.vertices)
+            returned = points_at(there.on_target, end.triangles, images)
+            trips.append(np.linalg.norm(returned - start.vertices, axis=1))
+        return trips[0], trips[1]
+
+    def _length(self, trips: Trips) -> float:
+        """Mean length from where it is shorter: what only one of the surfaces has leads elsewhere anyhow."""
+        masses = self.source.mass, self.target.mass
+        return min(float(np.average(trip, weights=mass)) for trip, mass in zip(trips, masses, strict=True))
 
     def again_steps(self, candidate: Candidate, found: Registration) -> Steps[tuple[Registration, Registration]]:
         """Register the target from where the source lies on it, then the source from where the target does."""
@@ -270,19 +288,6 @@ class Follower:
         matches = reverse.on_source, reverse.on_target
         steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties)
         return reverse, (yield from within(steps, 0.5, 1.0))
-
-    def _trip(self, fit: CloseFit) -> float:
-        """Mean distance, in sqrt(area), between points and where the two maps bring them, there and back.
-
-        From the surface from which it is shorter: what only the other one has, leads elsewhere anyhow.
-        """
-        ways = (self.source, self.target, fit.registration), (self.target, self.source, fit.reverse)
-        trips = []
-        for (start, end, there), (_, _, back) in zip(ways, ways[::-1], strict=True):
-            images = points_at(back.on_target, start.triangles, start.vertices)
-            returned = points_at(there.on_target, end.triangles, images)
-            trips.append(float(start.mass @ np.linalg.norm(returned - start.vertices, axis=1) / start.mass.sum()))
-        return min(trips)
 
     def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:
         """Score what a hypothesis has led to; and the terms of the score, without the gaps that are left."""

@@ -76,6 +76,9 @@ class RegisteredPair:
         What the registration was held at.
     mirrored : bool
         Whether `x` is the reflection of the shape that was given, because that is what the landmarks ask for.
+    trips : pair of (n_x,) and (n_y,) arrays of float, optional
+        How far, in sqrt(area), vertices were from where both registrations brought them, there and back, before the
+        target followed the source at last: where that is much they may err.
     """
 
     x: Shape
@@ -88,6 +91,7 @@ class RegisteredPair:
     margin: float | None
     landmarks: Landmarks | None = None
     mirrored: bool = False
+    trips: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
 
     @property
     def likeness(self) -> float | None:
@@ -167,7 +171,7 @@ def registered_pair_steps(
             candidates[0] = repaired
         candidates = yield from within(_rolled_back_steps(follow, candidates), 0.69, 0.7)
     fits = yield from within(_contest_steps(follow, candidates), 0.7, 0.9)
-    closest = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
+    closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
     best = closest.candidate
     others = [candidate for candidate in candidates if candidate is not best]
     if any(best.hypothesis is h for h in rough):
@@ -175,7 +179,7 @@ def registered_pair_steps(
         best = yield from within(follow.refined_steps(best), 1.0, 1.0)
     margin = _margin(best, others, fits, () if as_they_are else hypotheses, source.mass)
     registered = closest.registration, closest.reverse, (best, *others)
-    return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored)
+    return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips)
 
 
 def _unrefined_steps(

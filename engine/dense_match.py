@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .functional_maps import nearest_both_ways
 from .handle_cutting import evened_steps
@@ -29,7 +31,6 @@ from .surface_map import SurfaceMap
 from .whole_maps import whole_maps_steps
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from .deformable import DeformableSurface
@@ -216,9 +217,10 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
         there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
         back = pinned(main_y, main_x, back, partners, here, search=x.dense_search)
     yield Progress(0.8, "Judging the map")
-    quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness)
+    doubts = _doubts(pair)
+    quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness, doubt=doubts[0])
     yield Progress(0.85, "Mapping every vertex")
-    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, likeness=pair.likeness)
+    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, likeness=pair.likeness, doubts=doubts)
     whole = yield from within(steps, 0.85, 1.0)
     forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)
     alone = max(whole.there.alone, whole.back.alone)
@@ -230,6 +232,18 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     if pair.mirrored:
         backward = _seen_directly(backward, reflected_mesh(x.original))
     return DenseMatch(forward, backward, quality)
+
+
+def _doubts(pair: RegisteredPair) -> tuple[NDArray[np.float64] | float, NDArray[np.float64] | float]:
+    """Say how far images of vertices of the main parts may err, (n,) and (n',), beside their ways there and back."""
+    if pair.trips is None:
+        return 0.0, 0.0
+    places = pair.x.surface.proxy.points, pair.y.surface.proxy.points
+    there, back = (
+        np.einsum("nc,nc->n", points.barycentric, trips[points.corners])
+        for points, trips in zip(places, pair.trips, strict=True)
+    )
+    return there, back
 
 
 @dataclass(frozen=True, eq=False)

@@ -74,8 +74,8 @@ class MatchQuality:
     coverage : float
         Part of the target's area that has a partner on the source, see `with_partner`.
     disagreement : float
-        Mean distance between a point of the source and where the two maps bring it, there and back, in units of the
-        square root of the area.
+        Mean distance between a point of the source and where the two maps bring it, there and back, or brought it
+        before one of them was made to follow the other, in units of the square root of the area.
     margin : float or None
         By how much the best other candidate, such as the map turned by 180 degrees, was less credible; None if there
         was no other.  Below one the choice was not clear.
@@ -111,6 +111,7 @@ def map_confidence(
     back: SurfacePoints,
     *,
     likeness: float | None = None,
+    doubt: NDArray[np.float64] | float = 0.0,
 ) -> NDArray[np.float64]:
     """Judge each vertex's image by whether the way back leads home, and by how much the surface is stretched there.
 
@@ -122,6 +123,9 @@ def map_confidence(
         A point of the target for each vertex of the source, and the other way round.
     likeness : float, optional
         How credible the map is as a whole: of shapes that differ, less can be told.
+    doubt : (n,) array of float, optional
+        Distances, in sqrt(area), by which it is known otherwise that images may err: the longer of these and of the
+        ways there and back count.
 
     Returns
     -------
@@ -130,7 +134,8 @@ def map_confidence(
         hundredths of sqrt(area) from the true ones.  Zero for what has no partner on the target.
     """
     known = with_partner(source, target, there, back)
-    return _confidence(source, target, there, back, known) * closeness(likeness)
+    trips = _trips(source, there, back, doubt)
+    return _confidence(source, target, there, known, trips) * closeness(likeness)
 
 
 def trip_confidence(distances: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -143,14 +148,21 @@ def _confidence(
     source: TriangleMesh,
     target: TriangleMesh,
     there: SurfacePoints,
-    back: SurfacePoints,
     known: NDArray[np.bool_],
+    trips: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Judge each vertex's image, (n,), by where it is known to have a partner, (n,)."""
-    distances = round_trips(source, there, back) / np.sqrt(source.area)
+    """Judge images, (n,), by where vertices are known to have a partner, (n,), and how far they may err, (n,)."""
     stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
-    confidence = trip_confidence(distances) / (1 + np.square(stretch / _TRUSTED_STRETCH))
+    confidence = trip_confidence(trips) / (1 + np.square(stretch / _TRUSTED_STRETCH))
     return np.clip(neighbour_means(source, confidence), 0, 1) * known
+
+
+def _trips(
+    source: TriangleMesh, there: SurfacePoints, back: SurfacePoints, doubt: NDArray[np.float64] | float
+) -> NDArray[np.float64]:
+    """Say how far images may err, (n,), in sqrt(area): by ways there and back, or more."""
+    longer: NDArray[np.float64] = np.maximum(round_trips(source, there, back) / np.sqrt(source.area), doubt)
+    return longer
 
 
 def assess_maps(
@@ -161,6 +173,7 @@ def assess_maps(
     margin: float | None,
     *,
     likeness: float | None = None,
+    doubt: NDArray[np.float64] | float = 0.0,
 ) -> MatchQuality:
     """Measure a pair of maps between two surfaces.
 
@@ -174,6 +187,8 @@ def assess_maps(
         How clear the choice of the map was.
     likeness : float, optional
         How credible the map was.
+    doubt : (n,) array of float, optional
+        How far images may err, see `map_confidence`.
     """
     orientation = SurfaceMap.from_points(target, there).orientation(source, target)
     lengths = np.square(source.edge_lengths)
@@ -181,9 +196,9 @@ def assess_maps(
     coverage = float(np.average(with_partner(target, source, back, there), weights=target.vertex_areas))
     known = with_partner(source, target, there, back)
     source_coverage = float(np.average(known, weights=source.vertex_areas))
-    trips = round_trips(source, there, back) / np.sqrt(source.area)
+    trips = _trips(source, there, back, doubt)
     disagreement = float(np.average(trips, weights=source.vertex_areas))
-    confidence = float(np.average(_confidence(source, target, there, back, known), weights=source.vertex_areas))
+    confidence = float(np.average(_confidence(source, target, there, known, trips), weights=source.vertex_areas))
     confidence *= max(orientation, 0.0)
     if margin is not None:
         confidence *= 1 - 0.5 * float(np.exp(-margin / _CLEAR_MARGIN))

@@ -53,7 +53,13 @@ class WholeMaps(NamedTuple):
 
 
 def whole_maps_steps(
-    x: CleanSurface, y: CleanSurface, there: SurfacePoints, back: SurfacePoints, *, likeness: float | None = None
+    x: CleanSurface,
+    y: CleanSurface,
+    there: SurfacePoints,
+    back: SurfacePoints,
+    *,
+    likeness: float | None = None,
+    doubts: tuple[NDArray[np.float64] | float, NDArray[np.float64] | float] = (0.0, 0.0),
 ) -> Steps[WholeMaps]:
     """Extend maps of the main parts to all vertices of the meshes.
 
@@ -65,6 +71,8 @@ def whole_maps_steps(
         For each vertex of ``x.mesh`` a point of ``y.mesh``, and the other way round.
     likeness : float, optional
         How credible the maps are as a whole, see `map_confidence`.
+    doubts : pair of arrays of float, optional
+        How far the images of the vertices of ``x.mesh`` and of ``y.mesh`` may err, see `map_confidence`.
 
     Returns
     -------
@@ -77,9 +85,9 @@ def whole_maps_steps(
     anyhow, or onto the wrong one: it is trusted as far as the way there and back leads home.  What follows its
     surroundings is trusted as far as these are, and as it is near to them.
     """
-    main_there = map_confidence(x.mesh, y.mesh, there, back, likeness=likeness)
+    main_there = map_confidence(x.mesh, y.mesh, there, back, likeness=likeness, doubt=doubts[0])
     yield Progress(0.1, "Mapping every vertex")
-    main_back = map_confidence(y.mesh, x.mesh, back, there, likeness=likeness)
+    main_back = map_confidence(y.mesh, x.mesh, back, there, likeness=likeness, doubt=doubts[1])
     yield Progress(0.2, "Mapping every vertex")
     forward = yield from within(follow_steps(x, y, there), 0.2, 0.6)
     yield Progress(0.6, "Mapping every vertex")

@@ -9,6 +9,7 @@ import pytest
 from engine import Shape, SurfacePoints, TriangleMesh, dense_map, map_hypotheses, run
 from engine.candidates import Follower
 from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
+from engine.dense_match import dense_match_steps
 from engine.elastic import ElasticSurface
 from engine.functional_maps import PointMaps
 from engine.landmarks import LandmarkPlaces, Landmarks
@@ -256,18 +257,20 @@ def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, bot
     follow = Follower(x, y, pair.source, pair.target)
     fits = [run(follow.close_steps(candidate)) for candidate in pair.candidates]
     assert pair.margin == pytest.approx(fits[1].score - fits[0].score)
-    settled = run(follow.settled_steps(fits[0]))
+    settled, trips = run(follow.settled_steps(fits[0]))
     np.testing.assert_array_equal(settled.registration.positions, pair.registration.positions)
     np.testing.assert_array_equal(settled.reverse.positions, pair.reverse.positions)
+    for own, of_pair in zip(trips, pair.trips, strict=True):
+        np.testing.assert_array_equal(own, of_pair)
 
 
-def way_there_and_back(follow, fit):
-    """Mean distance of the target's vertices from where both maps bring them."""
+def ways_there_and_back(follow, fit):
+    """Distances of the target's vertices from where both maps bring them, over the square root of the area."""
     there, back = fit.reverse.on_target, fit.registration.on_target
     images = SurfacePoints.from_barycentric(follow.y.mesh, back.triangles, back.barycentric).positions
     corners = follow.x.mesh.triangles[there.triangles]
-    returned_to = np.einsum("kc,kcd->kd", there.barycentric, images[corners])
-    return np.linalg.norm(returned_to - follow.y.mesh.vertices, axis=1) @ follow.y.mesh.vertex_areas
+    home = np.einsum("kc,kcd->kd", there.barycentric, images[corners])
+    return np.linalg.norm(home - follow.y.mesh.vertices, axis=1) / np.sqrt(follow.y.mesh.area)
 
 
 @pytest.fixture
@@ -285,18 +288,21 @@ def disagreeing(bodies, starts):
 def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monkeypatch):
     follow, fit = disagreeing
     monkeypatch.setattr("engine.candidates._DISAGREE", agreed)
-    lengths = [way_there_and_back(follow, fit)]
+    lengths = [ways_there_and_back(follow, fit)]
     own = Follower.again_steps
     starts = []
     monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: starts.append(found) or own(self, c, found))
-    settled = run(follow.settled_steps(fit))
+    settled, trips = run(follow.settled_steps(fit))
     assert len(starts) == more
     assert (settled.registration is fit.registration) == (more == 0)
     assert settled.candidate is fit.candidate
     assert settled.score == fit.score
-    lengths.append(way_there_and_back(follow, settled))
-    # Even if nothing is registered again, the target follows the source.
-    assert lengths[1] < 0.8 * lengths[0]
+    lengths.append(ways_there_and_back(follow, settled))
+    # Even if nothing is registered again, the target follows the source; how far they were apart is kept.
+    assert lengths[1].mean() < 0.8 * lengths[0].mean()
+    assert trips[1].mean() > 1.1 * lengths[1].mean()
+    if not more:
+        np.testing.assert_allclose(trips[1], lengths[0])
 
 
 def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monkeypatch):
@@ -306,14 +312,29 @@ def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monke
     tried = []
     monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: tried.append(found) or own(self, c, found))
     monkeypatch.setattr("engine.candidates._NEARER", 0.0)
-    assert run(follow.settled_steps(fit)).registration is not fit.registration
+    assert run(follow.settled_steps(fit))[0].registration is not fit.registration
     assert len(tried) == 1
     # Farther from each other, they are not taken.
     matches = fit.registration.on_target
     exchanged = replace(matches, triangles=matches.triangles[::-1])
     worse = replace(fit.registration, on_target=exchanged)
     monkeypatch.setattr(Follower, "again_steps", lambda *_: returned((fit.reverse, worse)))
-    assert run(follow.settled_steps(fit)).registration is fit.registration
+    assert run(follow.settled_steps(fit))[0].registration is fit.registration
+
+
+def test_confidence_is_lower_where_the_maps_were_apart(bodies, starts):
+    x, y = bodies[:2]
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    along = x.mesh.vertices[:, 0] / np.sqrt(x.mesh.area)
+    far = np.where(along > 0, 0.1, 0.0), np.zeros(y.mesh.vertex_count)
+    sure, doubted = (run(dense_match_steps(replace(pair, trips=trips))) for trips in (None, far))
+    np.testing.assert_array_equal(doubted.source_to_target.positions, sure.source_to_target.positions)
+    own, before = doubted.source_to_target.confidence, sure.source_to_target.confidence
+    assert own[along > 0.2].max() < 0.1
+    np.testing.assert_allclose(own[along < -0.2], before[along < -0.2])
+    np.testing.assert_allclose(doubted.target_to_source.confidence, sure.target_to_source.confidence)
+    assert doubted.quality.confidence < 0.8 * sure.quality.confidence
+    assert doubted.quality.disagreement > sure.quality.disagreement + 0.03
 
 
 @pytest.mark.parametrize(("few", "expected"), [(0, [0.375, 0.625] * 2), (10**9, [0.5] * 2)], ids=["fine", "coarse"])

@@ -198,6 +198,21 @@ def test_edges_and_faces_without_size_do_no_harm():
     assert np.isfinite(map_confidence(mesh, mesh, at(mesh), at(mesh))).all()
 
 
+def test_what_is_doubted_otherwise_counts_if_it_is_more(ball):
+    doubt = np.where(ball.vertices[:, 2] > 0, 0.02, 0.0)  # the length at which confidence is a half
+    confidence = map_confidence(ball, ball, at(ball), at(ball), doubt=doubt)
+    far = np.abs(ball.vertices[:, 2]) > 0.5
+    np.testing.assert_allclose(confidence[far], np.where(doubt, 0.5, 1)[far])
+    quality = assess_maps(ball, ball, at(ball), at(ball), None, doubt=doubt)
+    assert quality.disagreement == pytest.approx(0.01, rel=0.1)
+    assert quality.confidence == pytest.approx(0.75, abs=0.03)
+    there = at(ball, np.roll(np.arange(ball.vertex_count), 1))
+    for doubt in (0.0, 1e-9):
+        assert assess_maps(ball, ball, there, at(ball), None, doubt=doubt).disagreement == pytest.approx(
+            assess_maps(ball, ball, there, at(ball), None).disagreement
+        )
+
+
 def test_what_the_target_lacks_is_told(square):
     """A whole square and half of one: both ways are said, and nothing is trusted where something is missing."""
     half = cut_square(square)
