@@ -112,7 +112,7 @@ enough for the hands and feet of a body that crouches."""
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
-AGAIN = Stage((80, 160, 640), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
+AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
 """The same from a map that is nearly right, and says where a pose strains the surface."""
 
 CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=(0.5, 0.75))
