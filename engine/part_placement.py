@@ -16,7 +16,7 @@ from .laplacian import laplace_beltrami
 from .mesh import TriangleMesh
 from .procrustes import nearest_rotations
 from .progress import Steps, within
-from .registration import FINE, LAST, POLISH, Stage, register_steps
+from .registration import FINE, LAST, Stage, register_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,6 +49,9 @@ _DEFORMED = 40, 10_000
 
 _BENDING = Stage((5, 10, 20, 40, 80, 160), 0.1, 0.05)
 """A tail or a sleeve may be bent otherwise as a whole."""
+
+_CARRIED = Stage((80, 160, 320, 1280, 2560), 0.05, 0.0, matched="around")
+"""What its surroundings carry there is nearly where it belongs, but bent as they are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +121,7 @@ def laid_onto_steps(
     sizes = part.vertex_count, partner.vertex_count
     if thoroughly and fewest <= min(sizes) and max(sizes) <= most and handed > 0:
         if cost < _CLEARLY * best.cost:
-            return (yield from _deformed_steps(part, partner, pair, [carried], (POLISH, LAST)))
+            return (yield from _deformed_steps(part, partner, pair, [carried], (_CARRIED, LAST)))
         starts = [placed, _placed(part, pair, pair.rotations[-1], pair.centres[1])]
         starts += [carried] if cost < best.cost else []
         return (yield from _deformed_steps(part, partner, pair, starts, (_BENDING, FINE, LAST)))

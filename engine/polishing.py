@@ -13,7 +13,7 @@ from .laplacian import laplace_beltrami
 from .lifting import lift_steps
 from .progress import within
 from .proxy import Proxy, proxy_steps
-from .registration import register_steps
+from .registration import LAST, register_steps
 from .sharing import shared_steps
 from .surface import SurfacePoints
 from .ties import Ties
@@ -126,7 +126,7 @@ class Polish:
         start = target.in_unit_size(points.positions)
         # The bodies stay as unlike as the coarse surfaces found them.
         elastic = source.elastic.strained(start, _STRAINED)
-        steps = register_steps(source, target, start, (self._stage,), elastic=elastic, ties=self._ties(here))
+        steps = register_steps(source, target, start, (self._stage, LAST), elastic=elastic, ties=self._ties(here))
         fine = yield from within(steps, 0.2, 0.7)
         lift = lift_steps(
             x.prepared.cleaned.mesh,
