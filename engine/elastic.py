@@ -12,6 +12,8 @@ from .procrustes import nearest_rotations
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from .laplacian import LaplaceBeltrami
@@ -29,6 +31,8 @@ _DOUBTED, _MOST_STRETCHED = 0.1, float(np.log(2))
 
 _PLANE = 1e-3
 """Part of the covariance of edges that is given to all directions, also those in which a flat surface has no edge."""
+
+_TINY = float(np.finfo(float).tiny)
 
 _LEAST_RATIO = 0.1
 """Least ratio of squared lengths that is believed: surfaces that collapse or explode locally are not followed there."""
@@ -51,8 +55,8 @@ class ElasticSurface:
         Rest positions v.
     laplace : LaplaceBeltrami
         The operator of the surface.
-    factors : (n,) array of float, optional
-        What the energy around each vertex is multiplied by, see `softened`.  The rotations are the same for all.
+    factors : (e,) array of float, optional
+        What the energy of each edge is multiplied by, see `softened`.  The rotations are the same for all.
     edges : (e, 3) array of float, optional
         The edges at rest, if not those between the vertices, see `strained`.
 
@@ -85,7 +89,7 @@ class ElasticSurface:
         # Sums over the edges around each vertex: of what does not, and of what does change sign with the direction.
         self._around = csr_array((np.ones(2 * count), ends), shape=(n, count))
         divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
-        self._resisting = self._weights if factors is None else self._weights * (self._around.T @ factors) / 2
+        self._resisting = self._weights if factors is None else self._weights * factors
         self.stiffness = csr_array(divergence @ diags_array(self._resisting) @ divergence.T)
         self._covariance = self._covariances(n, self._weights)
         self._pull = csr_array(self._covariances(n, self._resisting).T) / 2
@@ -128,29 +132,41 @@ class ElasticSurface:
         """Measure by what factor the deformation lengthens edges, averaged over a radius around each vertex, (n,)."""
         now = np.square(positions[self._tails] - positions[self._heads]).sum(axis=1)
         before = self._around @ (self._weights * np.square(self._edges).sum(axis=1))
-        ratio = (self._around @ (self._weights * now)) / np.maximum(before, np.finfo(float).tiny)
+        ratio = (self._around @ (self._weights * now)) / np.maximum(before, _TINY)
         logarithms = np.log(np.clip(ratio, _LEAST_RATIO, 1 / _LEAST_RATIO)) / 2
         return np.exp(self._averaged(logarithms, radius))
 
     def softened(
-        self, positions: NDArray[np.float64], radius: float, power: float = 0.5, constant: float = 1.0
+        self,
+        positions: NDArray[np.float64],
+        radius: float,
+        power: float = 0.5,
+        constant: float = 1.0,
+        *,
+        directed: float = 0.0,
     ) -> ElasticSurface:
-        r"""Take the surface as softer where a deformation strains it more.
+        r"""Take the surface as softer where a deformation strains it more, and the way it does.
 
         Poses stretch skin where it bends, and bodies differ more in some parts than in others: elsewhere little is to
-        be strained.  With s the squared strain around a vertex and m its mean over the surface, the energy there is
+        be strained.  With s the squared strain of an edge and m its mean over the surface, the energy of the edge is
         multiplied by :math:`(c + s / m)^{-p}`, which is a step of iteratively reweighted least squares [1]_ for the
         robust energy :math:`\sum (c + s / m)^{1 - p}`; then so that the mean stays one.  Rotations are fitted as
         before.
+
+        Skin that a joint stretches along a limb is as stiff around it as ever.  So to the part `directed`, s is
+        :math:`|(S - 1) e|^2 / |e|^2` for the edge e and the stretch S around it, see `strained`; for the rest, what
+        the edges around its ends are strained by on average, whatever their directions.
 
         Parameters
         ----------
         positions : (n, 3) array of float
             Deformed positions.
         radius : float
-            Over what distance, in units of the rest positions, rotations and strains are averaged.
+            Over what distance, in units of the rest positions, strains are averaged.
         power, constant : float
             p and c: the more the strain is expected to be in few places, the larger is p, below 1, and the smaller c.
+        directed : float
+            From 0 to 1, how far it counts which way the surface is strained.
 
         Returns
         -------
@@ -162,14 +178,24 @@ class ElasticSurface:
         .. [1] P. W. Holland, R. E. Welsch, "Robust regression using iteratively reweighted least-squares",
            Communications in Statistics 6(9), 1977.
         """
-        misfit = self._misfit(positions, self.rotations(positions, radius))
-        lengths = self._around @ (self._weights * np.square(self._edges).sum(axis=1))
-        strains = (self._around @ (self._weights * misfit)) / np.maximum(lengths, np.finfo(float).tiny)
-        strains = self._averaged(strains, radius)
-        mass = self._laplace.mass
-        relative = strains / max(np.average(strains, weights=mass), np.finfo(float).tiny)
-        factors = (constant + relative) ** -power
-        return ElasticSurface(self._vertices, self._laplace, factors / np.average(factors, weights=mass), self._edges)
+        lengths = self._weights * np.square(self._edges).sum(axis=1)
+        factors = (constant + self._relative_strains(positions, radius, directed, lengths)) ** -power
+        factors /= np.average(factors, weights=lengths)
+        return ElasticSurface(self._vertices, self._laplace, factors, self._edges)
+
+    def _relative_strains(
+        self, positions: NDArray[np.float64], radius: float, directed: float, lengths: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Squared strains of the edges, in units of their mean by weighted squared lengths, (e,); see `softened`."""
+        misfits = self._weights * self._misfit(positions, self.rotations(positions, radius))
+        around = self._averaged(self._around @ misfits / np.maximum(self._around @ lengths, _TINY), radius)
+        apart = self._at_edges(self._stretches(positions, lambda values: self._averaged(values, radius)) - np.eye(3))
+        along = self._weights * np.square(apart).sum(axis=1) / np.maximum(lengths, _TINY)
+        parts = (1 - directed, self._around.T @ around / 2), (directed, along)
+        return sum(
+            (part * strains / max(np.average(strains, weights=lengths), _TINY) for part, strains in parts),
+            np.zeros(len(lengths)),
+        )
 
     def strained(self, positions: NDArray[np.float64], radius: float) -> ElasticSurface:
         r"""Take the surface as at rest when strained as it is on average over a neighbourhood.
@@ -191,22 +217,38 @@ class ElasticSurface:
         ElasticSurface
             The surface with other edges at rest.
         """
-        now = positions[self._tails] - positions[self._heads]
-        weighted = self._weights[:, None, None] * self._edges[:, None, :]
-        products = [ends[:, :, None] * weighted for ends in (now, self._edges)]
-        area = np.trace(products[1].sum(axis=0)) / 2  # the operator may be that of a surface of another size
+        # The operator may be that of a surface of another size.
+        area = self._weights @ np.square(self._edges).sum(axis=1) / 2
         mass = area / self._laplace.area * self._laplace.mass
         factor = symmetric_factor(diags_array(mass) + radius**2 / 2 * self._laplace.stiffness)
-        moved, rest = (factor.solve(self._around @ each.reshape(-1, 9)).reshape(-1, 3, 3) for each in products)
-        least = np.maximum(_PLANE * np.einsum("nii->n", rest), np.finfo(float).tiny)[:, None, None]
-        linear = (moved + least * nearest_rotations(moved)) @ np.linalg.inv(rest + least * np.eye(3))
-        stretch = nearest_rotations(linear).transpose(0, 2, 1) @ linear
-        values, vectors = np.linalg.eigh((stretch + stretch.transpose(0, 2, 1)) / 2)
+        values, vectors = np.linalg.eigh(self._stretches(positions, factor.solve))
         logarithms = np.log(np.maximum(values, np.exp(-_MOST_STRETCHED)))
         accepted = np.clip(np.abs(logarithms), _DOUBTED, _MOST_STRETCHED) - _DOUBTED
         stretch = np.einsum("nab,nb,ncb->nac", vectors, np.exp(np.sign(logarithms) * accepted), vectors)
-        edges = np.einsum("eab,eb->ea", (stretch[self._tails] + stretch[self._heads]) / 2, self._edges)
-        return ElasticSurface(self._vertices, self._laplace, edges=edges)
+        return ElasticSurface(self._vertices, self._laplace, edges=self._at_edges(stretch))
+
+    def _stretches(
+        self, positions: NDArray[np.float64], averaged: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    ) -> NDArray[np.float64]:
+        """Fit a linear map to the deformation around each vertex: the symmetric part of its polar decomposition.
+
+        Sums over edges (n, 9) are averaged by the function that is given.
+        """
+        now = positions[self._tails] - positions[self._heads]
+        weighted = self._weights[:, None, None] * self._edges[:, None, :]
+        products = (ends[:, :, None] * weighted for ends in (now, self._edges))
+        moved, rest = (averaged(self._around @ each.reshape(-1, 9)).reshape(-1, 3, 3) for each in products)
+        least = np.maximum(_PLANE * np.einsum("nii->n", rest), _TINY)[:, None, None]
+        linear = (moved + least * nearest_rotations(moved)) @ np.linalg.inv(rest + least * np.eye(3))
+        stretch = nearest_rotations(linear).transpose(0, 2, 1) @ linear
+        return (stretch + stretch.transpose(0, 2, 1)) / 2
+
+    def _at_edges(self, linear: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Map each edge at rest by the mean of the linear maps (n, 3, 3) of its ends, (e, 3)."""
+        mapped: NDArray[np.float64] = np.einsum(
+            "eab,eb->ea", (linear[self._tails] + linear[self._heads]) / 2, self._edges
+        )
+        return mapped
 
     def pull(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum of the rotated edges at each vertex, (n, 3): the right-hand side of the equilibrium."""
@@ -232,10 +274,5 @@ class ElasticSurface:
 
     def _misfit(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Squared distance of each edge from what it would be by the rotations alone, (e,)."""
-        apart = positions[self._tails] - positions[self._heads] - self._rotated(rotations)
+        apart = positions[self._tails] - positions[self._heads] - self._at_edges(rotations)
         return np.square(apart).sum(axis=1)
-
-    def _rotated(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Rest edges turned by the mean of the rotations at their ends, (e, 3)."""
-        mean = (rotations[self._tails] + rotations[self._heads]) / 2
-        return np.einsum("eab,eb->ea", mean, self._edges)

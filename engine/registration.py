@@ -84,6 +84,9 @@ class Stage:
     softened : pair of float
         How much softer the surface is where it is strained to begin with, if bodies are unlike and if it is one body in
         two poses: the power in `ElasticSurface.softened`.
+    further : int
+        How many rounds more go on like the last one, but not on surfaces of few vertices: these do not slide any nearer
+        to where they belong.
 
     References
     ----------
@@ -100,6 +103,7 @@ class Stage:
     guide_length: float = 0.0
     momentum: float = 0.0
     softened: tuple[float, float] = (0.0, 0.0)
+    further: int = 0
 
 
 GUIDED = Stage((5, 5, 10, 10, 20, 20, 40, 40), 0.2, 0.2, matched="vertices", guide_length=0.05)
@@ -115,7 +119,16 @@ FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
 """The same from a map that is nearly right, and says where a pose strains the surface."""
 
-CLOSE = Stage((1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=(0.5, 0.75))
+CLOSE = Stage(
+    (1280,) * 3 + (2560,) * 5,
+    0.05,
+    0.0,
+    matched="around",
+    lead=0.5,
+    momentum=0.9,
+    softened=(0.5, 0.75),
+    further=5,
+)
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
 LAST = Stage((2560,), 0.05, 0.0)
@@ -163,6 +176,9 @@ _MATCHED = ("vertices", "around", "anywhere")
 
 _SPARSE = 0.3
 """Part of the mean strain up to which strain hardly softens the surface, where it is in few places; else the mean."""
+
+_NARROWER = 0.7
+"""Over what part of the distance of rotations strains are averaged: they say where skin is stretched, and which way."""
 
 _EVENER = 0.04
 """What is added to the radius that rotations are averaged over between bodies of unlike build: these bend at joints, as
@@ -370,23 +386,26 @@ def register_steps(
     positions = start
     if posed is None:
         posed = start
-    sparse = isometry
-    if _are_coarse(source, target):
+    sparse, coarse = isometry, _are_coarse(source, target)
+    if coarse:
         # The few vertices around a limb could not tell which way round it is, nor those of a joint how it is strained.
         posed, sparse = start, 0.0
-    total = sum(len(stage.weights) for stage in stages)
+    rounds = [stage.weights + stage.weights[-1:] * (0 if coarse else stage.further) for stage in stages]
+    total = sum(map(len, rounds))
     done = 0
     matches = first
     further = _EVENER * (1 - isometry)
-    for stage in [replace(stage, rotation_radius=stage.rotation_radius + further) for stage in stages]:
+    evened = [replace(stage, rotation_radius=stage.rotation_radius + further) for stage in stages]
+    for stage, weights in zip(evened, rounds, strict=True):
         matcher = _Matcher(source, target, stage, guides)
         resisting = source.elastic if elastic is None else elastic
         spread, few = stage.softened
         power = spread + (few - spread) * sparse
         if power > 0:
-            resisting = resisting.softened(positions, stage.rotation_radius, power, 1 - (1 - _SPARSE) * sparse)
+            radius = _NARROWER * stage.rotation_radius
+            resisting = resisting.softened(positions, radius, power, 1 - (1 - _SPARSE) * sparse, directed=sparse)
         step = np.zeros_like(positions)
-        for weight in stage.weights:
+        for weight in weights:
             search, normals = matcher.source_search(positions)
             if matches is None:
                 matches = yield from within(matcher.matches_steps(positions, search), done / total, done / total)

@@ -337,17 +337,26 @@ def test_confidence_is_lower_where_the_maps_were_apart(bodies, starts):
     assert doubted.quality.disagreement > sure.quality.disagreement + 0.03
 
 
-@pytest.mark.parametrize(("few", "expected"), [(0, [0.375, 0.625] * 2), (10**9, [0.5] * 2)], ids=["fine", "coarse"])
-def test_strain_is_taken_for_as_sparse_as_bodies_are_alike(few, expected, bodies, starts, monkeypatch):
+@pytest.mark.parametrize(
+    ("few", "expected"), [(0, ([0.375, 0.625] * 2, 0.5)), (10**9, ([0.5] * 2, 0.0))], ids=["fine", "coarse"]
+)
+def test_strain_is_taken_for_as_sparse_and_directed_as_bodies_are_alike(few, expected, bodies, starts, monkeypatch):
     monkeypatch.setattr("engine.registration._COARSE", few)
     x, y = bodies[:2]
     pair = run(registered_pair_steps(x, y, starts[:1], search=False))
     follow, candidate = Follower(x, y, pair.source, pair.target), pair.candidates[0]
-    powers = []
+    powers, directions = [], []
     own = ElasticSurface.softened
-    monkeypatch.setattr(ElasticSurface, "softened", lambda *given: powers.append(given[3]) or own(*given))
+
+    def recorded(surface, positions, radius, power, constant, *, directed):
+        powers.append(power)
+        directions.append(directed)
+        return own(surface, positions, radius, power, constant, directed=directed)
+
+    monkeypatch.setattr(ElasticSurface, "softened", recorded)
     run(follow.close_steps(replace(candidate, isometry=0.5)))
-    assert powers == pytest.approx(expected)  # there and back
+    assert powers == pytest.approx(expected[0])  # there and back
+    assert directions == [expected[1]] * len(powers)
 
 
 def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_starts, monkeypatch):

@@ -173,21 +173,83 @@ def test_the_strained_half_of_a_plane_is_softer_by_what_the_robust_energy_says(p
     np.testing.assert_allclose(ratio[strained], factors[1], rtol=0.03)
 
 
-def test_a_softened_surface_has_its_own_equilibrium_and_the_same_rotations(body):
+def test_a_surface_strained_alike_everywhere_and_every_way_is_as_stiff_as_before(ball):
+    """But for what is given to the normals, in which there are hardly any edges."""
+    vertices, triangles = plane(12, jitter=0.2)
+    flat = elastic_of(vertices, triangles)
+    turned = vertices @ rotation([1, 2, 3], 1.0).T
+    for elastic, positions in ((flat, 1.3 * turned), (ball[2], 1.3 * ball[0])):
+        softened = elastic.softened(positions, NEAR, directed=1.0)
+        assert abs(softened.stiffness - elastic.stiffness).max() < 1e-4 * abs(elastic.stiffness).max()
+
+
+def edges_softened(softened, elastic):
+    """Edges (first, second) of the surface, and by what the stiffness of each was multiplied."""
+    entries = elastic.stiffness.tocoo()
+    first, second = entries.row[entries.row < entries.col], entries.col[entries.row < entries.col]
+    return first, second, softened.stiffness[first, second] / elastic.stiffness[first, second]
+
+
+@pytest.mark.parametrize(("power", "constant"), [(0.5, 1), (0.75, 0.3), (0.0, 0.3)])
+def test_the_strained_half_of_a_plane_is_softer_along_the_strain_by_what_the_robust_energy_says(power, constant):
+    """One half is strained, one way: there the squared strain is four times its mean over all edges of both ways."""
+    vertices, triangles = plane(40)
+    size = np.ptp(vertices[:, 0])
+    middle = vertices[:, 0].min() + size / 2
+    beyond = np.maximum(vertices[:, 0] - middle, 0)
+    elastic = elastic_of(vertices, triangles)
+    stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
+    softened = elastic.softened(stretched, 0.02 * size, power, constant, directed=1.0)
+    first, second, ratio = edges_softened(softened, elastic)
+    along = np.abs(vertices[first] - vertices[second])
+    places = (vertices[first, 0] + vertices[second, 0]) / 2
+    still, strained = places < middle - 0.2 * size, places > middle + 0.2 * size
+    lengthened, across = along[:, 1] < 1e-9, along[:, 0] < 1e-9
+    factors = (constant + np.array([0.0, 4.0])) ** -power
+    factors /= 0.75 * factors[0] + 0.25 * factors[1]
+    np.testing.assert_allclose(ratio[still], factors[0], rtol=0.03)
+    np.testing.assert_allclose(ratio[strained & across], factors[0], rtol=0.03)
+    np.testing.assert_allclose(ratio[strained & lengthened], factors[1], rtol=0.03)
+
+
+def test_a_bent_plane_is_softer_where_and_along_which_it_bends():
+    """A strip bent to a right angle over a narrow fold, without any stretch."""
+    vertices, triangles = plane(40)
+    size = np.ptp(vertices[:, 0])
+    radius = 0.05 * size
+    along = vertices[:, 0] - vertices[:, 0].mean()
+    angle = np.clip(along / radius, -np.pi / 4, np.pi / 4)
+    rest = along - angle * radius
+    bent = np.stack([radius * np.sin(angle) + rest * np.cos(angle), vertices[:, 1]], axis=1)
+    bent = np.column_stack([bent, radius * (1 - np.cos(angle)) + rest * np.sin(angle)])
+    elastic = elastic_of(vertices, triangles)
+    softened = elastic.softened(bent, 0.03 * size, directed=1.0)
+    first, second, ratio = edges_softened(softened, elastic)
+    offsets = np.abs(vertices[first] - vertices[second])
+    fold = np.maximum(np.abs(along[first]), np.abs(along[second])) < 0.5 * radius
+    far = np.minimum(np.abs(along[first]), np.abs(along[second])) > 6 * radius
+    towards, across = offsets[:, 1] < 1e-9, offsets[:, 0] < 1e-9
+    assert ratio[fold & towards].max() < 0.5 * ratio[fold & across].min()
+    np.testing.assert_allclose(ratio[far], ratio[fold & across].mean(), rtol=0.03)
+
+
+@pytest.mark.parametrize("directed", [0.0, 1.0])
+def test_a_softened_surface_has_its_own_equilibrium_and_the_same_rotations(directed, body):
     vertices, _, elastic = body
     bent, other = creature(0.7, 9)[0], creature(0.3, 9)[0]
-    softened = elastic.softened(bent, NEAR)
+    softened = elastic.softened(bent, NEAR, directed=directed)
     rotations = softened.rotations(other, NEAR)
     np.testing.assert_array_equal(rotations, elastic.rotations(other, NEAR))
     assert_equilibrium(softened, vertices, rotations)
     assert softened.energy(other, rotations) != pytest.approx(elastic.energy(other, rotations), rel=0.01)
 
 
-def test_size_does_not_decide_what_is_softer(body):
+@pytest.mark.parametrize("directed", [0.0, 0.6, 1.0])
+def test_size_does_not_decide_what_is_softer(directed, body):
     vertices, triangles, elastic = body
     bent = creature(0.5, 9)[0]
-    large = elastic_of(50 * vertices, triangles).softened(50 * bent, 50 * NEAR)
-    assert abs(large.stiffness - elastic.softened(bent, NEAR).stiffness).max() < 1e-9
+    large = elastic_of(50 * vertices, triangles).softened(50 * bent, 50 * NEAR, directed=directed)
+    assert abs(large.stiffness - elastic.softened(bent, NEAR, directed=directed).stiffness).max() < 1e-9
 
 
 def test_a_surface_that_is_stretched_as_a_whole_is_at_rest_so_but_for_a_tenth(ball):
