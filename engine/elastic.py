@@ -179,23 +179,27 @@ class ElasticSurface:
            Communications in Statistics 6(9), 1977.
         """
         lengths = self._weights * np.square(self._edges).sum(axis=1)
-        factors = (constant + self._relative_strains(positions, radius, directed, lengths)) ** -power
+        relative = [
+            strains / max(np.average(strains, weights=lengths), _TINY)
+            for strains in (self._strains_around(positions, radius, lengths), self._strains_along(positions, radius))
+        ]
+        factors = (constant + (1 - directed) * relative[0] + directed * relative[1]) ** -power
         factors /= np.average(factors, weights=lengths)
         return ElasticSurface(self._vertices, self._laplace, factors, self._edges)
 
-    def _relative_strains(
-        self, positions: NDArray[np.float64], radius: float, directed: float, lengths: NDArray[np.float64]
+    def _strains_around(
+        self, positions: NDArray[np.float64], radius: float, lengths: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Squared strains of the edges, in units of their mean by weighted squared lengths, (e,); see `softened`."""
+        """Squared strain around the ends of each edge, whichever way, (e,); the weighted squared lengths are given."""
         misfits = self._weights * self._misfit(positions, self.rotations(positions, radius))
-        around = self._averaged(self._around @ misfits / np.maximum(self._around @ lengths, _TINY), radius)
+        strains = self._averaged(self._around @ misfits / np.maximum(self._around @ lengths, _TINY), radius)
+        means: NDArray[np.float64] = self._around.T @ strains / 2
+        return means
+
+    def _strains_along(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+        """Squared strain of each edge by the stretch around its ends, (e,)."""
         apart = self._at_edges(self._stretches(positions, lambda values: self._averaged(values, radius)) - np.eye(3))
-        along = self._weights * np.square(apart).sum(axis=1) / np.maximum(lengths, _TINY)
-        parts = (1 - directed, self._around.T @ around / 2), (directed, along)
-        return sum(
-            (part * strains / max(np.average(strains, weights=lengths), _TINY) for part, strains in parts),
-            np.zeros(len(lengths)),
-        )
+        return np.square(apart).sum(axis=1) / np.maximum(np.square(self._edges).sum(axis=1), _TINY)
 
     def strained(self, positions: NDArray[np.float64], radius: float) -> ElasticSurface:
         r"""Take the surface as at rest when strained as it is on average over a neighbourhood.

@@ -155,18 +155,22 @@ def test_a_surface_strained_alike_everywhere_is_as_stiff_as_before(ball):
     assert abs(softened.stiffness - elastic.stiffness).max() < 1e-9
 
 
+def half_stretched():
+    """A plane around the origin, how far its vertices lie beyond x = 0, its size, and its half beyond stretched."""
+    vertices, triangles = plane(40)
+    vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    beyond = np.maximum(vertices[:, 0], 0)
+    stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
+    return vertices, beyond, np.ptp(vertices[:, 0]), elastic_of(vertices, triangles), stretched
+
+
 @pytest.mark.parametrize(("power", "constant"), [(0.5, 1), (0.75, 0.3), (0.0, 0.3)])
 def test_the_strained_half_of_a_plane_is_softer_by_what_the_robust_energy_says(power, constant):
     """One half strained and one not: the strain is twice its mean there, and the factors have the mean one."""
-    vertices, triangles = plane(40)
-    size = np.ptp(vertices[:, 0])
-    middle = vertices[:, 0].min() + size / 2
-    beyond = np.maximum(vertices[:, 0] - middle, 0)
-    elastic = elastic_of(vertices, triangles)
-    stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
+    vertices, beyond, size, elastic, stretched = half_stretched()
     softened = elastic.softened(stretched, 0.02 * size, power, constant)
     ratio = softened.stiffness.diagonal() / elastic.stiffness.diagonal()
-    still, strained = vertices[:, 0] < middle - 0.2 * size, beyond > 0.2 * size
+    still, strained = vertices[:, 0] < -0.2 * size, beyond > 0.2 * size
     factors = (constant + np.array([0.0, 2.0])) ** -power
     factors /= factors.mean()
     np.testing.assert_allclose(ratio[still], factors[0], rtol=0.03)
@@ -193,17 +197,12 @@ def edges_softened(softened, elastic):
 @pytest.mark.parametrize(("power", "constant"), [(0.5, 1), (0.75, 0.3), (0.0, 0.3)])
 def test_the_strained_half_of_a_plane_is_softer_along_the_strain_by_what_the_robust_energy_says(power, constant):
     """One half is strained, one way: there the squared strain is four times its mean over all edges of both ways."""
-    vertices, triangles = plane(40)
-    size = np.ptp(vertices[:, 0])
-    middle = vertices[:, 0].min() + size / 2
-    beyond = np.maximum(vertices[:, 0] - middle, 0)
-    elastic = elastic_of(vertices, triangles)
-    stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
+    vertices, _, size, elastic, stretched = half_stretched()
     softened = elastic.softened(stretched, 0.02 * size, power, constant, directed=1.0)
     first, second, ratio = edges_softened(softened, elastic)
     along = np.abs(vertices[first] - vertices[second])
     places = (vertices[first, 0] + vertices[second, 0]) / 2
-    still, strained = places < middle - 0.2 * size, places > middle + 0.2 * size
+    still, strained = places < -0.2 * size, places > 0.2 * size
     lengthened, across = along[:, 1] < 1e-9, along[:, 0] < 1e-9
     factors = (constant + np.array([0.0, 4.0])) ** -power
     factors /= 0.75 * factors[0] + 0.25 * factors[1]
@@ -278,11 +277,7 @@ def test_what_is_strained_by_less_than_a_tenth_is_at_rest_as_before(body):
 
 
 def test_only_one_half_of_a_plane_is_at_rest_otherwise_if_only_that_is_stretched():
-    vertices, triangles = plane(40)
-    size = np.ptp(vertices[:, 0])
-    beyond = np.maximum(vertices[:, 0] - vertices[:, 0].min() - size / 2, 0)
-    elastic = elastic_of(vertices, triangles)
-    stretched = vertices + 0.4 * beyond[:, None] * [1, 0, 0]
+    vertices, beyond, size, elastic, stretched = half_stretched()
     strained = elastic.strained(stretched, 0.05 * size)
     at_rest = vertices + (1.4 * np.exp(-0.1) - 1) * beyond[:, None] * [1, 0, 0]
     costs = [strained.energy(each, strained.rotations(each, 0.05 * size)) for each in (vertices, at_rest)]
