@@ -398,12 +398,7 @@ def register_steps(
     evened = [replace(stage, rotation_radius=stage.rotation_radius + further) for stage in stages]
     for stage, weights in zip(evened, rounds, strict=True):
         matcher = _Matcher(source, target, stage, guides)
-        resisting = source.elastic if elastic is None else elastic
-        spread, few = stage.softened
-        power = spread + (few - spread) * sparse
-        if power > 0:
-            radius = _NARROWER * stage.rotation_radius
-            resisting = resisting.softened(positions, radius, power, 1 - (1 - _SPARSE) * sparse, directed=sparse)
+        resisting = _softened(source.elastic if elastic is None else elastic, positions, stage, sparse)
         step = np.zeros_like(positions)
         for weight in weights:
             search, normals = matcher.source_search(positions)
@@ -423,6 +418,16 @@ def register_steps(
     gaps = float(source.mass @ np.sqrt(squared)), float(target.mass @ np.sqrt(squared_back))
     energy = source.elastic.energy(positions, rotations)
     return Registration(positions, on_target, on_source, energy, float(source.mass @ squared), gaps)
+
+
+def _softened(elastic: ElasticSurface, positions: NDArray[np.float64], stage: Stage, sparse: float) -> ElasticSurface:
+    """Take the surface as softer as a stage has it, from 0, strained everywhere, to 1, sparsely and one way."""
+    spread, few = stage.softened
+    power = spread + (few - spread) * sparse
+    if power <= 0:
+        return elastic
+    radius = _NARROWER * stage.rotation_radius
+    return elastic.softened(positions, radius, power, 1 - (1 - _SPARSE) * sparse, directed=sparse)
 
 
 def points_at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
