@@ -43,6 +43,15 @@ _AT_ONCE = 4096
 _NAME = "engine"
 """What the engine is called in a helper, whatever it is called here."""
 
+_BEGIN = f"""
+import sys, types
+sys.modules["{_NAME}"] = package = types.ModuleType("{_NAME}")
+package.__path__ = sys.argv[1:]
+from {_NAME}.helper_main import serve
+serve()
+"""
+"""What a helper runs.  To import all of the package would take half a second, so each module waits until it is used."""
+
 
 class Task:
     """An order that a helper carries out.
@@ -74,7 +83,7 @@ class Helper:
     def __init__(self) -> None:
         hidden = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # Windows would open a console
         self._process = subprocess.Popen(  # noqa: S603 - this interpreter
-            [sys.executable, "-c", f"from {_NAME}.helper_main import serve; serve()"],
+            [sys.executable, "-c", _BEGIN, str(Path(__file__).resolve().parent)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -160,10 +169,11 @@ class Helper:
 
 
 def _environment() -> dict[str, str]:
-    """Tell a helper where the engine is, and what that needs."""
+    """Tell a helper where the engine is, and what that needs, and not to look for it in the working directory."""
     files = __file__, np.__file__, scipy.__file__
     paths = [str(Path(str(file)).parent.parent.resolve()) for file in files] + [os.environ.get("PYTHONPATH", "")]
-    return os.environ | {_VARIABLE: "1", "PYTHONPATH": os.pathsep.join(path for path in paths if path)}
+    found = os.pathsep.join(path for path in paths if path)
+    return os.environ | {_VARIABLE: "1", "PYTHONPATH": found, "PYTHONSAFEPATH": "1"}
 
 
 class _Crew:

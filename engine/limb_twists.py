@@ -212,13 +212,17 @@ def _turned_back(
     tree = cKDTree(np.concatenate([target.vertices, _NORMAL_LENGTH * target.normals], axis=1))
     for limb in limbs:
         centres, axes = _axis(positions, limb.rings)
-        costs, rotations = [], []
-        for ring, radius, centre, axis in zip(limb.rings, limb.radii, centres, axes, strict=True):
+        asked, costs, rotations = [], [], []
+        for ring, centre, axis in zip(limb.rings, centres, axes, strict=True):
             places, seen = positions[ring.vertices] - centre, normals[ring.vertices]
-            asked = np.concatenate([_turned(places, axis) + centre, _NORMAL_LENGTH * _turned(seen, axis)], axis=2)
-            images = target.vertices[tree.query(asked.reshape(-1, 6))[1]].reshape(_TRIED, -1, 3)
+            features = [_turned(places, axis) + centre, _NORMAL_LENGTH * _turned(seen, axis)]
+            asked.append(np.concatenate(features, axis=2).reshape(-1, 6))
+        # So many points are looked up by all processors.
+        nearest = tree.query(np.concatenate(asked), workers=-1)[1]
+        met = np.split(target.vertices[nearest], np.cumsum([len(each) for each in asked[:-1]]))
+        for ring, radius, images in zip(limb.rings, limb.radii, met, strict=True):
             rest = source.vertices[ring.vertices]
-            misfits, _ = _rigid_misfits(rest, images, ring.weights)
+            misfits, _ = _rigid_misfits(rest, images.reshape(_TRIED, -1, 3), ring.weights)
             costs.append(ring.area / radius**2 * misfits)
             rotations.append(_rigid_misfits(rest, positions[ring.vertices][None], ring.weights)[1][0])
         # Between the angles that were tried, costs change as waves do.

@@ -4,28 +4,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from .closest_points import ClosestPoints
 from .procrustes import nearest_rotations
 from .progress import Progress, Steps, within
-from .sharing import shared_steps
+from .sharing import beside_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from .closest_points import FoundPoints
+    from .closest_points import ClosestPoints, FoundPoints
     from .deformable import DeformableSurface
     from .elastic import ElasticSurface
     from .ties import Ties
 
     Find = Callable[[ClosestPoints, NDArray[np.float64]], FoundPoints]
     Guides = tuple[NDArray[np.float64], NDArray[np.float64]]
+    Matches = tuple[FoundPoints, FoundPoints]
 
 __all__ = [
     "AGAIN",
@@ -228,25 +228,37 @@ class _Matcher:
         """Leave out the search, which is hardly ever used elsewhere."""
         return {name: value for name, value in self.__dict__.items() if name != "target_search"}
 
-    def matches_steps(
-        self, positions: NDArray[np.float64], source: ClosestPoints, *, last: bool = False
-    ) -> Steps[tuple[FoundPoints, FoundPoints]]:
-        """Match every vertex of either surface, by the features of the deformed source."""
+    def fitted_steps(
+        self,
+        positions: NDArray[np.float64],
+        source: ClosestPoints,
+        rotate: Callable[[], NDArray[np.float64]],
+        *,
+        last: bool = False,
+    ) -> Steps[tuple[Matches, NDArray[np.float64]]]:
+        """Match every vertex of either surface, by the features of the deformed source, and find rotations meanwhile.
+
+        A helper matches the target, which takes longer.
+        """
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
         coarse = _are_coarse(self.source, self.target)
         find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
-        given: tuple[NDArray[np.float64] | ClosestPoints, ...] = positions, source
-        back, there = yield from shared_steps(_matched_steps, (self, find), given)
-        return there, back
+
+        def own_steps() -> Steps[tuple[FoundPoints, NDArray[np.float64]]]:
+            """Match the source, and find the rotations."""
+            yield Progress(0.0, "Fitting the surfaces")
+            return find(self.target_search, source.vertices), rotate()
+
+        found = yield from beside_steps(own_steps(), _matched_back_steps, (self, find), [positions])
+        (there, rotations), (back,) = found
+        return (there, back), rotations
 
 
-def _matched_steps(common: tuple[_Matcher, Find], given: ClosestPoints | NDArray[np.float64]) -> Steps[FoundPoints]:
-    """Match the vertices of the source, whose features are given, or, with its positions, those of the target."""
+def _matched_back_steps(common: tuple[_Matcher, Find], positions: NDArray[np.float64]) -> Steps[FoundPoints]:
+    """Match the vertices of the target, where the source has these positions."""
     matcher, find = common
     yield Progress(0.0, "Fitting the surfaces")
-    if isinstance(given, ClosestPoints):
-        return find(matcher.target_search, given.vertices)
-    return find(matcher.source_search(given)[0], matcher.target_features)
+    return find(matcher.source_search(positions)[0], matcher.target_features)
 
 
 def _are_coarse(source: DeformableSurface, target: DeformableSurface) -> bool:
@@ -296,7 +308,7 @@ def restarted_steps(
     source: DeformableSurface,
     target: DeformableSurface,
     functions: NDArray[np.float64],
-    matches: tuple[FoundPoints, FoundPoints],
+    matches: Matches,
     *,
     stages: tuple[Stage, ...],
     isometry: float = 1.0,
@@ -330,7 +342,7 @@ def register_steps(
     target: DeformableSurface,
     start: NDArray[np.float64],
     stages: tuple[Stage, ...] = (GUIDED, SOFT, FINE, CLOSE, LAST),
-    first: tuple[FoundPoints, FoundPoints] | None = None,
+    first: Matches | None = None,
     *,
     posed: NDArray[np.float64] | None = None,
     elastic: ElasticSurface | None = None,
@@ -402,17 +414,22 @@ def register_steps(
         step = np.zeros_like(positions)
         for weight in weights:
             search, normals = matcher.source_search(positions)
+            rotate = partial(resisting.rotations, posed, stage.rotation_radius)
             if matches is None:
-                matches = yield from within(matcher.matches_steps(positions, search), done / total, done / total)
-            solved = _solved(matcher, resisting, posed, normals, matches, weight=weight, ties=ties)
+                fitting = matcher.fitted_steps(positions, search, rotate)
+                matches, rotations = yield from within(fitting, done / total, done / total)
+            else:
+                rotations = rotate()
+            solved = _solved(matcher, resisting, rotations, normals, matches, weight=weight, ties=ties)
             step = (1 + stage.lead) * (solved - positions) + stage.momentum * step
             positions = posed = positions + step
             matches = None
             done += 1
             yield Progress(done / total, "Fitting the surfaces")
     search, _ = matcher.source_search(positions)
-    on_target, on_source = yield from within(matcher.matches_steps(positions, search, last=True), 1.0, 1.0)
-    rotations = source.elastic.rotations(positions, stages[-1].rotation_radius)
+    rotate = partial(source.elastic.rotations, positions, stages[-1].rotation_radius)
+    fitting = matcher.fitted_steps(positions, search, rotate, last=True)
+    (on_target, on_source), rotations = yield from within(fitting, 1.0, 1.0)
     squared = np.square(points_at(on_target, target.triangles, target.vertices) - positions).sum(axis=1)
     squared_back = np.square(points_at(on_source, source.triangles, positions) - target.vertices).sum(axis=1)
     gaps = float(source.mass @ np.sqrt(squared)), float(target.mass @ np.sqrt(squared_back))
@@ -438,14 +455,14 @@ def points_at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray
 def _solved(
     matcher: _Matcher,
     elastic: ElasticSurface,
-    posed: NDArray[np.float64],
+    rotations: NDArray[np.float64],
     normals: NDArray[np.float64],
-    matches: tuple[FoundPoints, FoundPoints],
+    matches: Matches,
     *,
     weight: float,
     ties: Ties | None,
 ) -> NDArray[np.float64]:
-    """Positions of least energy for given matches, with rotations first fitted to the positions `posed`."""
+    """Positions of least energy for given matches, beginning with some rotations."""
     on_target, on_source = matches
     source, target = matcher.source, matcher.target
     wanted = points_at(on_target, target.triangles, target.vertices)
@@ -459,16 +476,21 @@ def _solved(
     solve = equations.solver(own, on_source, theirs, stiffness=elastic.stiffness)
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
     response = None if ties is None else ties.response(solve)
-    for _ in range(_SOLVES):
-        rotations = elastic.rotations(posed, matcher.stage.rotation_radius)
+
+    def at_rest(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Positions of least energy for given rotations."""
         if len(beyond):
             # Harmonic extension: what has no partner turns with its surroundings, however it was squeezed before.
             extended = solve(own[:, None] * rotations.reshape(-1, 9))[beyond]
+            rotations = rotations.copy()
             rotations[beyond] = nearest_rotations(extended.reshape(-1, 3, 3))
-        posed = solve(elastic.pull(rotations) + right)
-        if ties is not None and response is not None:
-            posed = ties.held(posed, response)
-    return posed
+        positions = solve(elastic.pull(rotations) + right)
+        return positions if ties is None or response is None else ties.held(positions, response)
+
+    positions = at_rest(rotations)
+    for _ in range(_SOLVES - 1):
+        positions = at_rest(elastic.rotations(positions, matcher.stage.rotation_radius))
+    return positions
 
 
 def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> NDArray[np.bool_]:

@@ -5,7 +5,8 @@ import os
 import sys
 import time
 
-from engine import MatchError, Progress
+from engine.errors import MatchError
+from engine.progress import Progress
 
 
 class Kept:

@@ -182,6 +182,17 @@ def test_idle_helpers_end():
         assert process.wait(PATIENCE) == 0
 
 
+@pytest.mark.usefixtures("no_helpers")
+def test_what_lies_in_the_working_directory_is_not_taken_for_the_engine(monkeypatch, tmp_path):
+    for name in ("engine", "numpy", "scipy", "pickle"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit\n")
+    monkeypatch.chdir(tmp_path)
+    call_helpers()
+    (helper,) = present_helpers()
+    wait_until(lambda: helper.is_ready)
+    assert helper.pid in run(shared_steps(shared_work.process_of, None, range(6)))
+
+
 def test_a_helper_that_has_ended_is_replaced(helper):
     os.kill(helper.pid, signal.SIGKILL)
     wait_until(lambda: present_helpers() == [])
