@@ -11,7 +11,7 @@ import numpy as np
 
 from .candidates import Candidate, CloseFit, Follower
 from .deformable import DeformableSurface
-from .limb_sides import exchanged_limbs, repaired_start
+from .limb_sides import exchanged_limbs, repaired_start_steps
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps, unrefined_hypotheses_steps, unrefined_hypothesis
 from .progress import Steps, within
 from .steering import agrees, steered_hypotheses_steps
@@ -234,7 +234,7 @@ def _limbs_repaired_steps(follow: Follower, best: Candidate) -> Steps[Candidate 
     """Follow the best candidate up anew if it exchanges limbs; None if it does not, or if that is no better."""
     shapes = follow.x, follow.y
     wrong = follow.vertex_maps(best.registration)
-    start = repaired_start(*shapes, wrong)
+    start = yield from within(repaired_start_steps(*shapes, wrong), 0.0, 0.0)
     if start is None:
         return None
     domains = best.hypothesis.domains

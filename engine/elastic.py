@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,8 +56,6 @@ class ElasticSurface:
         Rest positions v.
     laplace : LaplaceBeltrami
         The operator of the surface.
-    factors : (e,) array of float, optional
-        What the energy of each edge is multiplied by, see `softened`.  The rotations are the same for all.
     edges : (e, 3) array of float, optional
         The edges at rest, if not those between the vertices, see `strained`.
 
@@ -74,7 +73,6 @@ class ElasticSurface:
         self,
         vertices: NDArray[np.float64],
         laplace: LaplaceBeltrami,
-        factors: NDArray[np.float64] | None = None,
         edges: NDArray[np.float64] | None = None,
     ) -> None:
         n = len(vertices)
@@ -88,24 +86,29 @@ class ElasticSurface:
         ends = (np.concatenate([self._tails, self._heads]), np.tile(np.arange(count), 2))
         # Sums over the edges around each vertex: of what does not, and of what does change sign with the direction.
         self._around = csr_array((np.ones(2 * count), ends), shape=(n, count))
-        divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
-        self._resisting = self._weights if factors is None else self._weights * factors
-        self.stiffness = csr_array(divergence @ diags_array(self._resisting) @ divergence.T)
-        self._covariance = self._covariances(n, self._weights)
-        self._pull = csr_array(self._covariances(n, self._resisting).T) / 2
+        self._divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
+        self._covariance = self._covariances(self._weights)
         one_way = csr_array((np.ones(count), (self._tails, self._heads)), shape=(n, n))
         neighbours = csr_array(one_way + one_way.T)
         degree = np.maximum(neighbours.sum(axis=1), 1)
         self._average = csr_array((diags_array(np.ones(n)) + diags_array(1 / degree) @ neighbours) / 2)
         self._edge_length = float(np.sqrt(np.square(self._edges).sum(axis=1).mean())) if count else 1.0
+        self._resist(self._weights)
 
-    def _covariances(self, n: int, weights: NDArray[np.float64]) -> csr_array:
+    def _resist(self, weights: NDArray[np.float64]) -> None:
+        """Let edges have weights (e,) in the energy."""
+        self._resisting = weights
+        self.stiffness = csr_array(self._divergence @ diags_array(weights) @ self._divergence.T)
+        self._pull = csr_array(self._covariances(weights).T) / 2
+
+    def _covariances(self, weights: NDArray[np.float64]) -> csr_array:
         """Matrix (3 n, n) that makes of positions the covariances (3, 3) of rest edges and edges around each vertex."""
         weighted = weights[:, None] * self._edges  # (e, 3)
         ends = self._tails, self._heads
         rows = np.stack([[3 * here[:, None] + np.arange(3)] * 2 for here in ends])  # (2, 2, e, 3)
         columns = np.broadcast_to(np.stack(ends)[:, :, None], rows.shape)
         signed = np.broadcast_to(np.stack([weighted, -weighted]), rows.shape)
+        n = len(self._vertices)
         return csr_array((signed.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, n))
 
     def rotations(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
@@ -185,7 +188,9 @@ class ElasticSurface:
         ]
         factors = (constant + (1 - directed) * relative[0] + directed * relative[1]) ** -power
         factors /= np.average(factors, weights=lengths)
-        return ElasticSurface(self._vertices, self._laplace, factors, self._edges)
+        softer = copy.copy(self)
+        softer._resist(self._weights * factors)  # noqa: SLF001
+        return softer
 
     def _strains_around(
         self, positions: NDArray[np.float64], radius: float, lengths: NDArray[np.float64]
@@ -229,7 +234,7 @@ class ElasticSurface:
         logarithms = np.log(np.maximum(values, np.exp(-_MOST_STRETCHED)))
         accepted = np.clip(np.abs(logarithms), _DOUBTED, _MOST_STRETCHED) - _DOUBTED
         stretch = np.einsum("nab,nb,ncb->nac", vectors, np.exp(np.sign(logarithms) * accepted), vectors)
-        return ElasticSurface(self._vertices, self._laplace, edges=self._at_edges(stretch))
+        return ElasticSurface(self._vertices, self._laplace, self._at_edges(stretch))
 
     def _stretches(
         self, positions: NDArray[np.float64], averaged: Callable[[NDArray[np.float64]], NDArray[np.float64]]

@@ -9,14 +9,17 @@ import numpy as np
 
 from .extremities import limb_tips, mean_distances
 from .map_hypotheses import LandmarkStart
+from .sharing import shared_steps
+from .surface_distances import measured_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .functional_maps import PointMaps
+    from .progress import Steps
     from .shape import Shape
 
-__all__ = ["exchanged_limbs", "repaired_start"]
+__all__ = ["exchanged_limbs", "repaired_start_steps"]
 
 _CENTRAL = 0.5
 """Part of the samples that make up the middle of the body: those least far from all others."""
@@ -41,7 +44,7 @@ _ANCHORS = 40
 """Places of the middle of the body that the rest is found anew from."""
 
 
-def repaired_start(x: Shape, y: Shape, maps: PointMaps) -> LandmarkStart | None:
+def repaired_start_steps(x: Shape, y: Shape, maps: PointMaps) -> Steps[LandmarkStart | None]:
     r"""Look for limbs that a map exchanges, and say where a map that does not would start.
 
     A pose changes hardly anything about how far the tip i of a limb is from places s of the middle of the body.  With
@@ -67,16 +70,17 @@ def repaired_start(x: Shape, y: Shape, maps: PointMaps) -> LandmarkStart | None:
         if no limbs are exchanged.
     """
     found = _exchange(x, y, maps.on_y, maps.on_x)
-    if found is not None:
-        return LandmarkStart(_rows(x, found[0]), _rows(y, found[1]), "limbs")
-    found = _exchange(y, x, maps.on_x, maps.on_y)
-    if found is not None:
-        return LandmarkStart(_rows(x, found[1]), _rows(y, found[0]), "limbs")
-    return None
+    if found is None:
+        back = _exchange(y, x, maps.on_x, maps.on_y)
+        if back is None:
+            return None
+        found = back[::-1]
+    rows = yield from shared_steps(measured_steps, None, list(zip((x.solver, y.solver), found, strict=True)))
+    return LandmarkStart(rows[0] / x.scale, rows[1] / y.scale, "limbs")
 
 
 def exchanged_limbs(x: Shape, y: Shape, maps: PointMaps) -> tuple[bool, bool]:
-    """Say whether a map exchanges limbs, seen from either surface; see `repaired_start`.
+    """Say whether a map exchanges limbs, seen from either surface; see `repaired_start_steps`.
 
     Seen from one alone, a true map may seem to, about once in thirty times; hardly ever from both.
     """
@@ -187,9 +191,3 @@ def _distances_between(shape: Shape, first: NDArray[np.int64], second: NDArray[n
     """Distances between vertices (k,) and (c,), from the samples nearest to the first, (k, c)."""
     nearest = shape.sample_rows[:, first].argmin(axis=0)
     return shape.sample_rows[np.ix_(nearest, second)].astype(np.float64)
-
-
-def _rows(shape: Shape, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Distances from vertices (k,) to all vertices, in sqrt(area), (k, n)."""
-    rows: NDArray[np.float64] = shape.solver.distances(vertices) / shape.scale
-    return rows

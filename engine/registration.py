@@ -49,9 +49,6 @@ _LEAST_AGREEMENT = 0.05
 _ENDS = 1 - 1e-6
 """Part of a point's weights on vertices of the border from which on the point is taken to lie there."""
 
-_SOLVES = 2
-"""How often positions and rotations are found in turn for the same matches."""
-
 _MISFIT_WEIGHT = 20.0
 """How much the mean squared distance that is left counts against the elastic energy."""
 
@@ -187,6 +184,10 @@ poses do, but for the rest they differ everywhere, and gently."""
 _COARSE = 2000
 """Below so many vertices, those of a surface are too far apart for it to slide from one to the next; and any search is
 fast."""
+
+_MORE_SOLVES = 1
+"""How often rotations and positions are found once more for the same matches if vertices are few: on many, new matches
+in each round lead just as far."""
 
 
 class _Matcher:
@@ -488,7 +489,7 @@ def _solved(
         return positions if ties is None or response is None else ties.held(positions, response)
 
     positions = at_rest(rotations)
-    for _ in range(_SOLVES - 1):
+    for _ in range(_MORE_SOLVES if _are_coarse(source, target) else 0):
         positions = at_rest(elastic.rotations(positions, matcher.stage.rotation_radius))
     return positions
 

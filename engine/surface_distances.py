@@ -24,6 +24,7 @@ __all__ = [
     "EmbeddedDistances",
     "PointDistances",
     "SurfaceDistances",
+    "measured_steps",
     "squared_offsets",
     "symmetric_roots",
     "to_all_vertices_steps",
@@ -109,7 +110,7 @@ class SurfaceDistances:
         if not len(missing):
             return
         parts = np.array_split(missing, 2 if len(missing) >= _PARTED else 1)
-        found = yield from shared_steps(_measured_steps, shape.solver, parts)
+        found = yield from shared_steps(measured_steps, None, [(shape.solver, part) for part in parts])
         for part, distances in zip(parts, found, strict=True):
             rows = (distances / shape.scale).astype(np.float32)
             self._rows.update(zip(part.tolist(), rows, strict=True))
@@ -276,8 +277,9 @@ def _weights(points: SurfacePoints) -> tuple[NDArray[np.int64], csr_array]:
     return corners, csr_array((points.barycentric[counts], column, ends), shape=(len(points), len(corners)))
 
 
-def _measured_steps(solver: GeodesicSolver, sources: NDArray[np.int64]) -> Steps[NDArray[np.float64]]:
-    """Compute the distances (s, n) from some sources (s,) to all vertices."""
+def measured_steps(_: None, given: tuple[GeodesicSolver, NDArray[np.int64]]) -> Steps[NDArray[np.float64]]:
+    """Compute the distances (s, n) from some sources (s,) to all vertices, where `shared_steps` has it done."""
+    solver, sources = given
     rows = []
     for first, block in solver.distances_in_blocks(sources):
         rows.append(block)

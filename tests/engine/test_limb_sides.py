@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh, run
 from engine.functional_maps import PointMaps
-from engine.limb_sides import exchanged_limbs, repaired_start
+from engine.limb_sides import exchanged_limbs, repaired_start_steps
 from tests.bodies import mirrored_body
 from tests.shapes import icosphere
 
@@ -73,8 +73,8 @@ def assert_true(x, y, start):
 
 def test_the_true_map_is_left_alone(bodies):
     x, y = bodies
-    assert repaired_start(x.shape, y.shape, truth(x, y)) is None
-    assert repaired_start(y.shape, x.shape, truth(y, x)) is None
+    assert run(repaired_start_steps(x.shape, y.shape, truth(x, y))) is None
+    assert run(repaired_start_steps(y.shape, x.shape, truth(y, x))) is None
     assert exchanged_limbs(x.shape, y.shape, truth(x, y)) == (False, False)
 
 
@@ -82,26 +82,26 @@ def test_a_rough_map_is_left_alone(bodies):
     x, y = bodies
     random = np.random.default_rng(0)
     there, back = (b.nearest(a.rest + 0.03 * a.size * random.normal(size=a.rest.shape)) for a, b in ((x, y), (y, x)))
-    assert repaired_start(x.shape, y.shape, PointMaps(there, back)) is None
+    assert run(repaired_start_steps(x.shape, y.shape, PointMaps(there, back))) is None
 
 
 def test_the_mirrored_map_is_left_alone(bodies):
     x, y = bodies
     mirrored = PointMaps(y.nearest(x.rest * MIRROR), x.nearest(y.rest * MIRROR))
-    assert repaired_start(x.shape, y.shape, mirrored) is None
+    assert run(repaired_start_steps(x.shape, y.shape, mirrored)) is None
 
 
 def test_a_body_without_limbs_is_left_alone():
     ball = shape(*icosphere(6))
     same = np.arange(ball.mesh.vertex_count)
-    assert repaired_start(ball, ball, PointMaps(same, same)) is None
+    assert run(repaired_start_steps(ball, ball, PointMaps(same, same))) is None
 
 
 def test_nothing_is_said_where_the_maps_do_not_agree(bodies):
     x, y = bodies
     maps = exchanged(x, y, FORE)
     nowhere = PointMaps(maps.on_y, np.full_like(maps.on_x, x.shape.samples[0]))
-    assert repaired_start(x.shape, y.shape, nowhere) is None
+    assert run(repaired_start_steps(x.shape, y.shape, nowhere)) is None
 
 
 # --- maps that are wrong
@@ -111,7 +111,7 @@ def test_nothing_is_said_where_the_maps_do_not_agree(bodies):
 @pytest.mark.parametrize("top", [None, -0.7])
 def test_exchanged_legs_are_found_and_put_right(bodies, end, top):
     x, y = bodies
-    start = repaired_start(x.shape, y.shape, exchanged(x, y, end, top))
+    start = run(repaired_start_steps(x.shape, y.shape, exchanged(x, y, end, top)))
     assert start is not None
     assert start.origin == "limbs"
     assert exchanged_limbs(x.shape, y.shape, exchanged(x, y, end, top)) == (True, True)
@@ -124,7 +124,7 @@ def test_all_four_legs_exchanged_are_put_right(bodies):
     fore, hind = exchanged(x, y, FORE), exchanged(x, y, HIND)
     there = np.where(x.leg(HIND), hind.on_y, fore.on_y)
     back = np.where(y.leg(HIND), hind.on_x, fore.on_x)
-    assert_true(x, y, repaired_start(x.shape, y.shape, PointMaps(there, back)))
+    assert_true(x, y, run(repaired_start_steps(x.shape, y.shape, PointMaps(there, back))))
 
 
 def test_three_legs_that_went_round_are_put_right(bodies):
@@ -138,13 +138,13 @@ def test_three_legs_that_went_round_are_put_right(bodies):
             leg = (a.rest[:, :2] * here > [0.2, 0]).all(axis=1) & (a.rest[:, 2] < -0.35)
             places[leg] += end * [there[0] - here[0], there[1] - here[1], 0]
         maps.append(b.nearest(places))
-    assert_true(x, y, repaired_start(x.shape, y.shape, PointMaps(*maps)))
+    assert_true(x, y, run(repaired_start_steps(x.shape, y.shape, PointMaps(*maps))))
 
 
 def test_legs_that_only_the_way_back_exchanges_are_found(bodies):
     x, y = bodies
     maps = PointMaps(truth(x, y).on_y, exchanged(x, y, FORE, -0.6).on_x)
     assert exchanged_limbs(x.shape, y.shape, maps) == (False, True)
-    start = repaired_start(x.shape, y.shape, maps)
+    start = run(repaired_start_steps(x.shape, y.shape, maps))
     assert start is not None
     assert_true(x, y, start)
