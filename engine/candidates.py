@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from .deformable import DeformableSurface
     from .map_domain import MapDomain
+    from .registration import Stage
     from .shape import Shape
     from .ties import Ties
 
@@ -220,10 +221,10 @@ class Follower:
         source, target = self.source, self.target
         positions, isometry = candidate.registration.positions, candidate.isometry
 
-        def register_all_steps(starts: list[NDArray[np.float64]]) -> Steps[list[Registration]]:
+        def register_all_steps(starts: list[NDArray[np.float64]], stage: Stage = FINE) -> Steps[list[Registration]]:
             """Register from several positions."""
-            items = [(start, isometry) for start in starts]
-            return (yield from shared_steps(_finely_registered_steps, (self, *candidate.hypothesis.domains), items))
+            items = [(start, stage, isometry) for start in starts]
+            return (yield from shared_steps(_registered_steps, (self, *candidate.hypothesis.domains), items))
 
         if self.ties is None:
             way = untwisted(self.x, source, target, positions, isometry)
@@ -357,10 +358,10 @@ def _closely_followed_steps(
     return found.registration, found.reverse, found.score
 
 
-def _finely_registered_steps(common: _Common, item: tuple[NDArray[np.float64], float]) -> Steps[Registration]:
+def _registered_steps(common: _Common, item: tuple[NDArray[np.float64], Stage, float]) -> Steps[Registration]:
     """Register the source from some positions."""
-    follow, (start, isometry) = common[0], item
-    steps = register_steps(follow.source, follow.target, start, (FINE,), isometry=isometry, ties=follow.ties)
+    follow, (start, stage, isometry) = common[0], item
+    steps = register_steps(follow.source, follow.target, start, (stage,), isometry=isometry, ties=follow.ties)
     return (yield from steps)
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,9 +19,12 @@ if TYPE_CHECKING:
     from .closest_points import FoundPoints
     from .deformable import DeformableSurface
     from .limb_twists import Untwisted
-    from .registration import Registration
+    from .registration import Registration, Stage
 
 __all__ = ["local_costs", "wound_steps"]
+
+_TOGETHER = replace(FINE, weights=FINE.weights[-1:])
+"""How the source is registered from where several registrations have brought its limbs."""
 
 _APART = 0.02
 """Distance, in sqrt(area), from which on two registrations differ at a place: there they are compared."""
@@ -38,7 +42,7 @@ _MOST_CURVED = 0.2
 
 
 def wound_steps(
-    register: Callable[[list[NDArray[np.float64]]], Steps[list[Registration]]],
+    register: Callable[[list[NDArray[np.float64]], Stage], Steps[list[Registration]]],
     source: DeformableSurface,
     target: DeformableSurface,
     untwisted: Untwisted,
@@ -48,7 +52,7 @@ def wound_steps(
     Parameters
     ----------
     register : callable
-        Registers the source from several positions, (n, 3) each.
+        Registers the source from several positions, (n, 3) each, as a stage has it.
     source, target : DeformableSurface
         The surfaces.
     untwisted : Untwisted
@@ -69,24 +73,26 @@ def wound_steps(
     share = (count + 1) / (count + 2 if count else 1)
     # Limbs hardly touch each other, so all are tried at once.
     ways = [[min(way, len(limb.positions)) for limb in otherwise] for way in range(count + 1)]
-    registered = yield from within(register([_wound(untwisted, tried) for tried in ways]), 0.0, share)
-    found = list(zip(ways, registered, strict=True))
+    registered = yield from within(register([_wound(untwisted, tried) for tried in ways], FINE), 0.0, share)
     if not count:
         return registered[0]
     costs = [local_costs(source, target, registration) for registration in registered]
-    kept = []
-    for number, limb in enumerate(otherwise):
+    chosen = []
+    for limb in otherwise:
         best = 0
         for way in range(1, len(limb.positions) + 1):
-            apart = np.linalg.norm(found[way][1].positions - found[best][1].positions, axis=1)[limb.vertices]
+            apart = np.linalg.norm(registered[way].positions - registered[best].positions, axis=1)[limb.vertices]
             differing = limb.vertices[apart > _APART]
             if costs[way][differing].sum() < costs[best][differing].sum():
                 best = way
-        kept.append(found[best][0][number])
-    for tried, registration in found:
-        if tried == kept:
-            return registration
-    (registration,) = yield from within(register([_wound(untwisted, kept)]), share, 1.0)
+        chosen.append(best)
+    kept = [ways[best][number] for number, best in enumerate(chosen)]
+    if kept in ways:
+        return registered[ways.index(kept)]
+    positions = registered[0].positions.copy()
+    for limb, way in zip(otherwise, chosen, strict=True):
+        positions[limb.vertices] = registered[way].positions[limb.vertices]
+    (registration,) = yield from within(register([positions], _TOGETHER), share, 1.0)
     return registration
 
 

@@ -9,7 +9,7 @@ from engine.deformable import DeformableSurface
 from engine.laplacian import laplace_beltrami
 from engine.limb_twists import Untwisted, Winding
 from engine.limb_windings import local_costs, wound_steps
-from engine.registration import FINE, Registration, register_steps
+from engine.registration import Registration, register_steps
 from engine.sharing import here_steps
 from tests.shapes import icosphere
 
@@ -46,7 +46,7 @@ class Laid:
     def __init__(self, source, target):
         self.source, self.target, self.count = source, target, 0
 
-    def __call__(self, starts):
+    def __call__(self, starts, _):
         return here_steps(lambda _, positions: self.steps(positions), None, starts)
 
     def steps(self, positions):
@@ -144,8 +144,8 @@ def test_winding_the_other_way_is_better_after_a_registration_too(straight):
     """The registration does not undo a full turn by itself: that is what the other way is tried for."""
     limb = end(straight, 1)
 
-    def register(starts):
-        return here_steps(lambda _, start: register_steps(straight, straight, start, (FINE,)), None, starts)
+    def register(starts, stage):
+        return here_steps(lambda _, start: register_steps(straight, straight, start, (stage,)), None, starts)
 
     def error(found):
         return straight.mass @ np.linalg.norm(found.positions - straight.vertices, axis=1)
