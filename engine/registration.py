@@ -124,7 +124,7 @@ CLOSE = Stage(
     lead=0.5,
     momentum=0.9,
     softened=(0.5, 0.75),
-    further=5,
+    further=3,
 )
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
