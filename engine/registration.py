@@ -409,22 +409,25 @@ def register_steps(
     matches = first
     further = _EVENER * (1 - isometry)
     evened = [replace(stage, rotation_radius=stage.rotation_radius + further) for stage in stages]
+    stiff = source.elastic if elastic is None else elastic
     for stage, weights in zip(evened, rounds, strict=True):
         matcher = _Matcher(source, target, stage, guides)
-        resisting = _softened(source.elastic if elastic is None else elastic, positions, stage, sparse)
+        # A smooth start is strained by that wherever the source is thin: there it says nothing about poses yet.
+        resisting = stiff if matches is not None else _softened(stiff, positions, stage, sparse)
         step = np.zeros_like(positions)
         for weight in weights:
             search, normals = matcher.source_search(positions)
             rotate = partial(resisting.rotations, posed, stage.rotation_radius)
             if matches is None:
                 fitting = matcher.fitted_steps(positions, search, rotate)
-                matches, rotations = yield from within(fitting, done / total, done / total)
+                found, rotations = yield from within(fitting, done / total, done / total)
             else:
-                rotations = rotate()
-            solved = _solved(matcher, resisting, rotations, normals, matches, weight=weight, ties=ties)
+                found, rotations = matches, rotate()
+            solved = _solved(matcher, resisting, rotations, normals, found, weight=weight, ties=ties)
             step = (1 + stage.lead) * (solved - positions) + stage.momentum * step
             positions = posed = positions + step
-            matches = None
+            if matches is not None:
+                resisting, matches = _softened(stiff, positions, stage, sparse), None
             done += 1
             yield Progress(done / total, "Fitting the surfaces")
     search, _ = matcher.source_search(positions)
