@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from engine import Progress, TriangleMesh, run
+from engine.closest_points import FoundPoints
 from engine.deformable import DeformableSurface
 from engine.eigenpairs import eigenpairs_steps
+from engine.elastic import ElasticSurface
 from engine.laplacian import laplace_beltrami
-from engine.registration import CLOSE, FINE, LAST, POLISH, SOFT, Stage, register_steps, smooth_start
+from engine.registration import AGAIN, CLOSE, FINE, LAST, POLISH, SOFT, Stage, register_steps, smooth_start
+from engine.surface import SurfacePoints
 from tests.bodies import relative_of_creature
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 
@@ -319,3 +322,22 @@ def test_of_a_start_without_cross_sections_other_positions_say_which_way_round_i
     turned = blade.vertices * [1, -1, -1]
     steps = register_steps(blade, blade, blade.vertices * [1, 0, 0], (SOFT,), posed=turned)
     np.testing.assert_allclose(run(steps).positions, turned if decides else blade.vertices, atol=1e-3)
+
+
+def test_a_smooth_start_does_not_say_where_the_surface_is_strained(monkeypatch):
+    vertices, triangles = icosphere(16)
+    blade = deformable(vertices * [1, 0.2, 0.07], triangles)
+    itself = SurfacePoints.at_vertices(blade.mesh, np.arange(len(vertices)))
+    matches = FoundPoints(itself.triangles, itself.barycentric, np.zeros(len(vertices)))
+    seen = []
+    softened = ElasticSurface.softened
+
+    def noted(surface, positions, *rest, **more):
+        seen.append(positions)
+        return softened(surface, positions, *rest, **more)
+
+    monkeypatch.setattr(ElasticSurface, "softened", noted)
+    start = blade.vertices * [1, 0, 0]  # no more than a curve
+    run(register_steps(blade, blade, start, (AGAIN,), (matches, matches), posed=blade.vertices))
+    assert len(seen) == 1
+    np.testing.assert_allclose(np.ptp(seen[0], axis=0), np.ptp(blade.vertices, axis=0), rtol=0.1)
