@@ -43,13 +43,10 @@ _AT_ONCE = 4096
 _NAME = "engine"
 """What the engine is called in a helper, whatever it is called here."""
 
-_BEGIN = f"""
-import sys, types
-sys.modules["{_NAME}"] = package = types.ModuleType("{_NAME}")
-package.__path__ = sys.argv[1:]
-from {_NAME}.helper_main import serve
-serve()
-"""
+_BEGIN = (
+    f"import sys, types; package = sys.modules['{_NAME}'] = types.ModuleType('{_NAME}'); "
+    f"package.__path__ = sys.argv[1:]; from {_NAME}.helper_main import serve; serve()"
+)
 """What a helper runs.  To import all of the package would take half a second, so each module waits until it is used."""
 
 
