@@ -47,7 +47,7 @@ _BEGIN = (
     f"import sys, types; package = sys.modules['{_NAME}'] = types.ModuleType('{_NAME}'); "
     f"package.__path__ = sys.argv[1:]; from {_NAME}.helper_main import serve; serve()"
 )
-"""What a helper runs.  To import all of the package would take half a second, so each module waits until it is used."""
+"""What a helper runs.  To import all of the package would take it several times as long: modules wait until used."""
 
 
 class Task:
@@ -228,7 +228,7 @@ def use_processes(count: int | None = None) -> None:
 
 
 def call_helpers() -> None:
-    """Start helpers, as many as are allowed, without waiting for them: in half a second they are ready."""
+    """Start helpers, as many as are allowed, without waiting for them: they are ready soon."""
     crew = _own_crew()
     missing = crew.most - 1 - len(crew.present())
     # Where the interpreter is part of another program, that would be started.
