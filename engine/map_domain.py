@@ -30,6 +30,9 @@ _ENERGIES = 40
 _EXTREMITY_PAIRS, _EXTREMITY_ENERGIES = 60, 30  # eigenpairs and energies by which extremities are recognised
 _LEAST_SIGNATURE = 1e-9
 
+_EQUAL = 1e-9
+"""Relative difference up to which squared distances are taken to be the same."""
+
 
 class MapDomain:
     """A shape prepared for the search for maps.
@@ -175,7 +178,8 @@ def _filled_up(points: NDArray[np.float64], samples: NDArray[np.int64], count: i
     nearest = np.square(cKDTree(points[samples]).query(points)[0])
     nearest[samples] = -1.0  # never twice, even where vertices lie in one place
     for number in range(len(samples), count):
-        new = chosen[number] = nearest.argmax()
+        # The first of those that are equally far, such as middles of edges: rounding must not choose.
+        new = chosen[number] = (nearest >= nearest.max() * (1 - _EQUAL)).argmax()
         distance = np.square(axes[0] - axes[0, new])
         distance += np.square(axes[1] - axes[1, new])
         distance += np.square(axes[2] - axes[2, new])
