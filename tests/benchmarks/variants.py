@@ -110,6 +110,11 @@ def decimate(mesh, seed=0, share=0.5):  # noqa: ARG001  (variants are all called
     return Variant(coarse, _closest(coarse, mesh.vertices, mesh.vertex_normals), back)
 
 
+def coarse(mesh, seed=0):
+    """A fifth of the triangles, as many as a character of an older game has."""
+    return decimate(mesh, seed, share=0.2)
+
+
 def split(mesh, seed=0, gap=0.01):  # noqa: ARG001  (variants are all called alike)
     """Two halves, one on either side of the middle, moved apart: as if mirrored, but never merged."""
     halves = TriangleMesh(*halves_apart(mesh.vertices, mesh.triangles, gap * np.sqrt(mesh.area)))
@@ -140,6 +145,7 @@ VARIANTS = {
     "subdivide-source": lambda source, target: (subdivide(source), as_is(target)),
     "decimate-target": lambda source, target: (as_is(source), decimate(target)),
     "decimate-source": lambda source, target: (decimate(source), as_is(target)),
+    "coarse": _both(coarse),
     "split-target": lambda source, target: (as_is(source), split(target)),
     "split-source": lambda source, target: (split(source), as_is(target)),
 }
