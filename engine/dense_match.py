@@ -123,6 +123,7 @@ def densify_steps(
     x = yield from within(_shape_steps(source, "source", covered[0], source_points), 0.0, 0.1)
     y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
+    x, y = x.finer(), y.finer()
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
     yield from within(prepared_shapes_steps(x, y, Wanted(_SAMPLES, MEASURED, EIGENPAIRS)), 0.2, 0.35)
     mirrored = _mirrors(x, y, start)
@@ -202,7 +203,7 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     main_x, main_y = x.cleaned.mesh, y.cleaned.mesh
     polished = None
     largest = max(main_x.vertex_count, main_y.vertex_count)
-    if largest <= _POLISHED and not (x.proxy.is_identity and y.proxy.is_identity):
+    if largest <= _POLISHED and (x.proxy.is_coarser or y.proxy.is_coarser):
         finer = yield from within(finer_surfaces_steps(x, y), 0.0, 0.2)
         polished = Polish(*finer, polish, pair.landmarks)
     lift = _Lift((x, y), (pair.source, pair.target), (pair.registration, pair.reverse), polished)

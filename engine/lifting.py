@@ -274,7 +274,7 @@ def _motion(proxy: Proxy, registered: NDArray[np.float64], average: csr_array) -
     turns = scales[:, None, None] * (u @ vt)
     shifts = registered - np.einsum("kab,kb->ka", turns, rest)
     motion = np.concatenate([turns, shifts[:, :, None]], axis=2).reshape(k, 12)
-    if not proxy.is_identity:  # between the vertices of a coarse mesh there is something to smooth
+    if proxy.is_coarser:  # between its vertices there is something to smooth
         for _ in range(_FIELD_ROUNDS):
             motion = average @ motion
     return motion.reshape(k, 3, 4)

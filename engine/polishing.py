@@ -71,6 +71,8 @@ def finer_surfaces_steps(x: PreparedSurface, y: PreparedSurface) -> Steps[tuple[
 def _finer_proxy_steps(_: None, given: tuple[TriangleMesh, Proxy]) -> Steps[tuple[Proxy, Proxy]]:
     """Make the proxy of a mesh that is registered once more, and say what the coarse one is to that."""
     main, coarse = given
+    if coarse.is_finer:
+        return coarse, Proxy.identity(coarse.mesh)
     proxy = yield from proxy_steps(main, _VERTICES)
     if proxy.is_identity:
         return proxy, coarse

@@ -39,12 +39,15 @@ class PreparedSurface:
         The mesh of these triangles and all vertices, taken apart into manifolds.
     proxy : Proxy
         What stands for the main part.
+    wanted : int
+        About how many vertices what is matched should have.
     """
 
     original: TriangleMesh
     kept_triangles: NDArray[np.int64]
     cleaned: CleanSurface
     proxy: Proxy
+    wanted: int
 
     @property
     def mesh(self) -> TriangleMesh:
@@ -175,4 +178,4 @@ def prepared_steps(
         part = TriangleMesh(mesh.vertices, mesh.triangles[kept]) if len(kept) < mesh.triangle_count else mesh
     cleaned = clean(part, name, left_out)
     proxy = yield from within(proxy_steps(cleaned.mesh, proxy_vertices), 0.3, 1.0, "Simplifying")
-    return PreparedSurface(mesh, kept, cleaned, proxy)
+    return PreparedSurface(mesh, kept, cleaned, proxy, proxy_vertices)

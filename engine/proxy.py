@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Coarse stand-ins for dense meshes: what is matched instead of a million vertices."""
+"""What is matched in the place of a mesh: a coarse one instead of a million vertices, a finer one of few."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, diags_array
@@ -13,6 +13,7 @@ from scipy.sparse.linalg import splu
 
 from .closest_points import ClosestPoints
 from .dual_triangulation import manifold_part
+from .edge_splitting import split_longest_edges
 from .mesh import TriangleMesh
 from .progress import Progress, Steps, within
 from .surface import SurfacePoints
@@ -37,32 +38,61 @@ _STEP = 200_000  # vertices projected between two reports of progress
 
 @dataclass(frozen=True, eq=False)
 class Proxy:
-    """A coarse mesh that stands for a dense one.
+    """A mesh that stands for another: a coarse one for a dense one, or the other way round.
 
     Attributes
     ----------
     mesh : TriangleMesh
-        The coarse mesh, a manifold.
+        The mesh that stands for the other, a manifold.
     points : SurfacePoints
-        For each vertex of the dense mesh, (n,), its place on the coarse one.
+        For each vertex of the other mesh, (n,), its place on this one.
     vertices : (k,) array of int
-        For each vertex of the coarse mesh, a vertex of the dense one: the nearest of those it stands for.  All differ.
+        For each vertex of this mesh, the nearest vertex of the other of those that it stands for.  All differ, but
+        where this mesh is the finer one.
+    ends : (k - n, 2) array of int, optional
+        Of a finer mesh, whose first n vertices are those of the other, the two vertices between which, in the middle
+        of an edge, each of the rest lies.
     """
 
     mesh: TriangleMesh
     points: SurfacePoints
     vertices: NDArray[np.int64]
+    ends: NDArray[np.int64] | None = None
 
     @property
     def is_identity(self) -> bool:
         """Whether the mesh stands for itself."""
         return self.mesh.vertex_count == len(self.points)
 
+    @property
+    def is_finer(self) -> bool:
+        """Whether the mesh has more vertices than the one that it stands for."""
+        return self.ends is not None
+
+    @property
+    def is_coarser(self) -> bool:
+        """Whether the mesh has fewer vertices than the one that it stands for."""
+        return self.mesh.vertex_count < len(self.points)
+
     @classmethod
     def identity(cls, mesh: TriangleMesh) -> Proxy:
         """Let a mesh, all vertices of which have triangles, stand for itself."""
         vertices = np.arange(mesh.vertex_count)
         return cls(mesh, SurfacePoints.at_vertices(mesh, vertices), vertices)
+
+    @classmethod
+    def finer(cls, mesh: TriangleMesh, vertices: int) -> Proxy:
+        """Let a mesh, all vertices of which have triangles, have about so many of them: split its longest edges.
+
+        No edge is split twice, so there are at most four times as many.
+        """
+        own = np.arange(mesh.vertex_count)
+        fine, ends = split_longest_edges(mesh, vertices - mesh.vertex_count)
+        return cls(fine, SurfacePoints.at_vertices(fine, own), np.concatenate([own, ends[:, 0]]), ends)
+
+    def on_finer(self, values: NDArray[np.floating[Any]]) -> NDArray[np.floating[Any]]:
+        """Interpolate values (n, ...) at the vertices of the other mesh at those of this one, if that is finer."""
+        return values if self.ends is None else np.concatenate([values, values[self.ends].mean(axis=1)])
 
 
 def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:

@@ -108,10 +108,12 @@ def refine_map_steps(
     known = locate_landmarks(x, y, landmarks, np.size(landmarks))
     if known is None:
         raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
+    places = source_to_target.positions[x.vertices]
+    x, y = x.finer(), y.finer()
     yield from within(x.spectrum_steps(EIGENPAIRS), 0.1, 0.15)
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.15, 0.2)
     moving, fixed = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
-    places = fixed.in_unit_size(source_to_target.positions[x.vertices])
+    places = fixed.in_unit_size(x.surface.proxy.on_finer(places))
     functions = _functions(x)
     # Without the noise of the map, which the surface would keep as folds.
     start = functions @ (functions.T @ (moving.mass[:, None] * places))

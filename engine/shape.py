@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from .laplacian import LaplaceBeltrami, laplace_beltrami
 from .orientation import tangent_gradient
 from .prepared_surface import PreparedSurface, prepared_steps
 from .progress import Progress, Steps, run
+from .proxy import Proxy
 from .reflection import reflected_surface
 from .sampling import FarthestPointSampler
 
@@ -31,6 +33,10 @@ _CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fin
 
 _TAKEN_TOGETHER, _FOLLOWED_TOGETHER = 100, 40
 """Samples that are taken, and from which paths are followed, in one step."""
+
+_LEAST, _FEW = 1000, 0.8
+"""From so many vertices on, and below so many times what is wanted, a surface gets more where it is registered.  Of
+even fewer a body without clear features may turn over by that."""
 
 _COMPARED = 8
 """Samples by whose distances it is found how much longer paths are."""
@@ -49,7 +55,8 @@ class Shape:
     name : str
         What notes call it.
     proxy_vertices : int
-        About how many vertices that coarse mesh has.
+        About how many vertices that coarse mesh has.  A mesh of fewer than 0.8 times as many, but of a thousand or
+        more, gets up to so many where it is registered, see `finer`.
     excluded : (n,) array of bool, optional
         Vertices to leave out.
 
@@ -113,6 +120,7 @@ class Shape:
         self._paths: dict[int, NDArray[np.float32]] = {}
         self._spectrum: Spectrum | None = None
         self._views: dict[tuple[int, int | None], Shape] = {}
+        self._finer: Shape | None = None
         self._lean: tuple[tuple[object, ...], Shape] | None = None
 
     @cached_property
@@ -240,8 +248,27 @@ class Shape:
         shape = copy.copy(self)
         shape.surface, shape.joined = reflected_surface(self.surface), None
         shape.original, shape.mesh = shape.surface.original, shape.surface.mesh
-        shape._views = {}  # noqa: SLF001
+        shape._views, shape._finer = {}, None  # noqa: SLF001
         shape.__dict__.pop("directions", None)
+        return shape
+
+    def finer(self) -> Shape:
+        """Return the shape with more vertices and without samples if it has few, but not too few; else as it is.
+
+        A surface can bend at its vertices only, and there are few around a joint of a body of a thousand: it is
+        registered with others in the middle of its edges.  The vertices of the shape itself come first.
+        """
+        if not self.surface.proxy.is_identity or not _LEAST <= self.mesh.vertex_count < _FEW * self.surface.wanted:
+            return self
+        if self._finer is None:
+            self._finer = Shape.of(replace(self.surface, proxy=Proxy.finer(self.mesh, self.surface.wanted)))
+        return self._finer
+
+    def sampled_like(self, coarser: Shape) -> Shape:
+        """Return the shape with the samples of the one that it is finer than; distances are interpolated."""
+        shape = self.starting_with(coarser.samples)
+        shape._rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.sample_rows.T).T)  # noqa: SLF001
+        shape._measured = coarser.measured_count  # noqa: SLF001
         return shape
 
     def bare(self) -> Shape:
@@ -249,7 +276,7 @@ class Shape:
         shape = copy.copy(self)
         for name in ("surface", "original", "vertices", "joined"):
             shape.__dict__.pop(name, None)
-        shape._views, shape._lean = {}, None  # noqa: SLF001
+        shape._views, shape._lean, shape._finer = {}, None, None  # noqa: SLF001
         return shape
 
     def lean(self) -> Shape:

@@ -21,7 +21,7 @@ from .map_search import RoughSearch
 from .pair import Pair
 from .progress import within
 from .result import CoarseMatch, MatchResult
-from .shape_preparation import Wanted, prepared_shapes_steps
+from .shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from .solvers import Answer, at_samples, moved, solve_steps
 from .surface import SurfacePoints
 from .surface_distances import SurfaceDistances, to_all_vertices_steps
@@ -110,10 +110,13 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     pair = Pair(*limited, settings, 0 if known is None else len(known))
     clock.lap("descriptors")
     searched: RoughSearch | None = None
+    finer = limited
+    if settings.dense:
+        finer = yield from within(finer_shapes_steps(*limited, EIGENPAIRS), sampled, sampled)
     steps = solve_steps(pair, clock.lap)
     if settings.dense and known is None and eigenpairs == EIGENPAIRS:
         # What the dense map needs first can be looked for beside the sparse answers.
-        search = RoughSearch(map_domains(*limited), (1,))
+        search = RoughSearch(map_domains(*finer), (1,))
         answers, searched = yield from within(search.beside_steps(steps), sampled, sparse_end)
     else:
         answers = yield from within(steps, sampled, sparse_end)
@@ -124,7 +127,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
             rows = yield from _distance_rows_steps(answer)
             results.append(_result(answer, known, notes, clock.laps, rows))
         return replace(results[0], mirrored=results[1] if len(results) > 1 else None)
-    direct, mirrored, dense = yield from within(_dense_steps(answers, known, searched, clock), sparse_end, 1.0)
+    direct, mirrored, dense = yield from within(_dense_steps(answers, finer, known, searched, clock), sparse_end, 1.0)
     result = _result(direct, known, notes, clock.laps)
     return replace(
         result,
@@ -136,9 +139,16 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
 
 
 def _dense_steps(
-    answers: list[Answer], landmarks: Landmarks | None, searched: RoughSearch | None, clock: Clock
+    answers: list[Answer],
+    finer: tuple[Shape, Shape],
+    landmarks: Landmarks | None,
+    searched: RoughSearch | None,
+    clock: Clock,
 ) -> Steps[tuple[Answer, Answer | None, DenseMatch]]:
-    """Find the dense map, and the sparse answers that agree with it: the true and the mirrored one."""
+    """Find the dense map, and the sparse answers that agree with it: the true and the mirrored one.
+
+    It is found on finer shapes than those of the answers where these are coarse.
+    """
     pair = answers[0].coarse.pair
     x, y = pair.source, pair.target
     starts = []
@@ -146,9 +156,10 @@ def _dense_steps(
     followed = answers if landmarks is not None else [a for a in answers if a.orientation > 0] or answers
     for answer in followed:
         places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
-        starts.append(LandmarkStart(x.sample_rows[: len(places)], y.sample_rows[places], "hierarchy"))
+        rows = finer[0].sample_rows[: len(places)], finer[1].sample_rows[places]
+        starts.append(LandmarkStart(*rows, "hierarchy"))
     registered = yield from within(
-        registered_pair_steps(x, y, starts, landmarks=landmarks, searched=searched), 0.0, 0.75
+        registered_pair_steps(*finer, starts, landmarks=landmarks, searched=searched), 0.0, 0.75
     )
     clock.lap("registration")
     dense = yield from within(dense_match_steps(registered), 0.75, 0.9)

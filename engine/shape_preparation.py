@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .progress import Steps
     from .shape import Shape
 
-__all__ = ["Wanted", "prepared_shapes_steps"]
+__all__ = ["Wanted", "finer_shapes_steps", "prepared_shapes_steps"]
 
 
 class Wanted(NamedTuple):
@@ -55,6 +55,16 @@ def prepared_shapes_steps(x: Shape, y: Shape, wanted: Wanted) -> Steps[None]:
             shape.take_spectrum(result)
         else:
             shape.take_samples_of(result)
+
+
+def finer_shapes_steps(x: Shape, y: Shape, eigenpairs: int) -> Steps[tuple[Shape, Shape]]:
+    """Take what is registered in the place of two shapes, see `Shape.finer`, with so many eigenpairs if it is new."""
+    finer = x.finer(), y.finer()
+    new = [fine for fine, shape in zip(finer, (x, y), strict=True) if fine is not shape]
+    if new:
+        yield from prepared_shapes_steps(new[0], new[-1], Wanted(0, 0, eigenpairs))
+    first, second = (f if f is s else f.sampled_like(s) for f, s in zip(finer, (x, y), strict=True))
+    return first, second
 
 
 def _prepared_steps(wanted: Wanted, part: Shape | LaplaceBeltrami) -> Steps[Shape | Spectrum]:
