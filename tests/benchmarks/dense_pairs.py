@@ -27,7 +27,7 @@ each dataset, and the rank correlation of the confidence with the error over all
 says of itself can be trusted.
 
 With --variant each pair is matched as it is and changed: vertices renumbered, both shapes turned, scaled, or coarse (a
-fifth of their triangles), or one of them subdivided, decimated to half, or cut into halves that are moved apart.  The
+quarter of their triangles), or one of them subdivided, decimated to half, or cut into halves that are moved apart.  The
 errors are those of the map that follows between the original shapes (see `variants`), so that all that may change them
 is the match.
 """

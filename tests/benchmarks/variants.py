@@ -111,8 +111,8 @@ def decimate(mesh, seed=0, share=0.5):  # noqa: ARG001  (variants are all called
 
 
 def coarse(mesh, seed=0):
-    """A fifth of the triangles, as many as a character of an older game has."""
-    return decimate(mesh, seed, share=0.2)
+    """A quarter of the triangles, as many as a character of an older game has."""
+    return decimate(mesh, seed, share=0.25)
 
 
 def split(mesh, seed=0, gap=0.01):  # noqa: ARG001  (variants are all called alike)
