@@ -34,9 +34,9 @@ _CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fin
 _TAKEN_TOGETHER, _FOLLOWED_TOGETHER = 100, 40
 """Samples that are taken, and from which paths are followed, in one step."""
 
-_LEAST, _FEW = 1000, 0.8
+_LEAST, _FEW = 1000, 0.4
 """From so many vertices on, and below so many times what is wanted, a surface gets more where it is registered.  Of
-even fewer a body without clear features may turn over by that."""
+even fewer a body without clear features may turn over by that, and of more it gains little."""
 
 _COMPARED = 8
 """Samples by whose distances it is found how much longer paths are."""
@@ -55,7 +55,7 @@ class Shape:
     name : str
         What notes call it.
     proxy_vertices : int
-        About how many vertices that coarse mesh has.  A mesh of fewer than 0.8 times as many, but of a thousand or
+        About how many vertices that coarse mesh has.  A mesh of fewer than 0.4 times as many, but of a thousand or
         more, gets up to so many where it is registered, see `finer`.
     excluded : (n,) array of bool, optional
         Vertices to leave out.

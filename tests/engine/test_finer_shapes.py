@@ -137,7 +137,7 @@ def test_the_vertices_of_the_shape_come_first_and_its_samples_stay(bodies):
 
 @pytest.mark.parametrize(
     ("parts", "wanted", "expected"),
-    [((40, 20), 5000, 0), ((50, 20), 5000, 3050), ((50, 20), 2000, 950), ((50, 20), 1200, 0), ((100, 41), 5000, 0)],
+    [((40, 20), 5000, 0), ((50, 20), 5000, 3050), ((50, 20), 3000, 1950), ((50, 20), 1200, 0), ((100, 20), 5000, 0)],
     ids=["too few", "some", "some fewer", "wanted", "enough"],
 )
 def test_how_many_there_are_at_last(parts, wanted, expected):
