@@ -265,8 +265,11 @@ class Shape:
         return self._finer
 
     def sampled_like(self, coarser: Shape) -> Shape:
-        """Return the shape with the samples of the one that it is finer than; distances are interpolated."""
-        shape = self.starting_with(coarser.samples)
+        """Return the shape with just the samples of the one that it is finer than; distances are interpolated."""
+        shape = copy.copy(self)
+        shape._forget_samples()  # noqa: SLF001
+        shape._views, shape._paths = {}, {}  # noqa: SLF001
+        shape.samples = coarser.samples
         shape._rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.sample_rows.T).T)  # noqa: SLF001
         shape._measured = coarser.measured_count  # noqa: SLF001
         return shape

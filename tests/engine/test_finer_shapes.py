@@ -101,9 +101,11 @@ def test_a_given_correspondence_is_extended_as_well(bodies, result):
     found = densify(x, y, result.source_points, result.target_points)
     assert mean_errors(found, bodies).max() < 1.2 * mean_errors(result, bodies).max()
     shape = Shape(x)
-    match(shape, y, QUICK)
-    again = densify(shape, y, result.source_points, result.target_points)
-    np.testing.assert_allclose(again.source_to_target.positions, found.source_to_target.positions)
+    for _ in range(2):
+        matched = match(shape, y, QUICK)
+        np.testing.assert_array_equal(matched.source_to_target.positions, result.source_to_target.positions)
+        again = densify(shape, y, result.source_points, result.target_points)
+        np.testing.assert_allclose(again.source_to_target.positions, found.source_to_target.positions)
 
 
 def test_one_shape_is_extended_to_itself(bodies):
