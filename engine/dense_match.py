@@ -24,7 +24,7 @@ from .quality import MatchQuality, assess_maps, with_pieces
 from .reflection import reflected_mesh, reflected_points
 from .registration import POLISH
 from .shape import Shape
-from .shape_preparation import Wanted, prepared_shapes_steps
+from .shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
 from .sharing import MOST_SENT, here_steps, shared_steps
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
@@ -123,7 +123,7 @@ def densify_steps(
     x = yield from within(_shape_steps(source, "source", covered[0], source_points), 0.0, 0.1)
     y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
-    x, y = x.finer(), y.finer()
+    x, y = finer_shapes(x, y)
     start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
     yield from within(prepared_shapes_steps(x, y, Wanted(_SAMPLES, MEASURED, EIGENPAIRS)), 0.2, 0.35)
     mirrored = _mirrors(x, y, start)

@@ -177,9 +177,12 @@ def _filled_up(points: NDArray[np.float64], samples: NDArray[np.int64], count: i
     axes = points.T.copy()
     nearest = np.square(cKDTree(points[samples]).query(points)[0])
     nearest[samples] = -1.0  # never twice, even where vertices lie in one place
+    outer = np.linalg.norm(points - points[samples[0]], axis=1)
     for number in range(len(samples), count):
-        # The first of those that are equally far, such as middles of edges: rounding must not choose.
-        new = chosen[number] = (nearest >= nearest.max() * (1 - _EQUAL)).argmax()
+        # Of those that are equally far, such as ends of edges from their middles, neither rounding nor the order of the
+        # vertices chooses, unless the surface is symmetric.
+        equal = np.flatnonzero(nearest >= nearest.max() * (1 - _EQUAL))
+        new = chosen[number] = equal[(outer[equal] >= outer[equal].max() * (1 - _EQUAL)).argmax()]
         distance = np.square(axes[0] - axes[0, new])
         distance += np.square(axes[1] - axes[1, new])
         distance += np.square(axes[2] - axes[2, new])

@@ -24,6 +24,7 @@ from .map_domain import MapDomain
 from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
 from .map_search import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
 from .progress import Progress, Steps, run, within
+from .rigid_maps import rigid_maps
 from .sharing import shared_steps
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class MapHypothesis:
     terms : mapping of str to float
         The parts of the score, and what else was measured; see `map_scores`.
     origin : str
-        Where it started: ``"extremities"``, or the origin of a `LandmarkStart`.
+        Where it started: ``"extremities"``, ``"rigid"``, or the origin of a `LandmarkStart`.
     """
 
     domains: tuple[MapDomain, MapDomain]
@@ -151,7 +152,8 @@ def map_hypotheses_steps(
     Nearly symmetric shapes have several maps that nearly keep all distances: the true one, its reflection, and for
     people also the half turn, which swaps left with right and front with back, and keeps the orientation.  So a few
     extremities are matched in many ways, each way is carried over the whole surface and refined by bijective ZoomOut,
-    and the best distinct maps are compared by all that is known of both surfaces.
+    and the best distinct maps are compared by all that is known of both surfaces.  Where one can be laid onto the other
+    as it is, such maps are compared as well.
 
     Parameters
     ----------
@@ -161,7 +163,7 @@ def map_hypotheses_steps(
     starts : sequence of LandmarkStart
         Correspondences from elsewhere that enter the comparison.
     search : bool
-        Whether matchings of extremities are tried as well; without, there must be a start.
+        Whether matchings of extremities and rigid motions are tried as well; without, there must be a start.
     mirrored : bool
         Whether matchings of extremities that mirror the surface are followed up even if there are others.
     domains : pair of MapDomain, optional
@@ -195,6 +197,8 @@ def map_hypotheses_steps(
         leads = yield from within(steps, 0.05, 0.4)
     candidates = [(_between_fine(a, b, _smooth_maps(a, b, lead.points)), lead.origin) for lead in leads]
     candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
+    if search:
+        candidates += [(points, "rigid") for points in rigid_maps(a, b)]
     refined = yield from within(shared_steps(_refined_lead_steps, domains, candidates), 0.4, 1.0)
     kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
     return [hypothesis_of(domains, lead) for lead in kept]

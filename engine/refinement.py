@@ -18,6 +18,7 @@ from .progress import run, within
 from .reflection import reflected_mesh
 from .registration import FINE, Stage, register_steps, restarted_steps
 from .shape import Shape
+from .shape_preparation import finer_shapes
 from .surface import SurfacePoints
 from .ties import Ties
 
@@ -109,7 +110,7 @@ def refine_map_steps(
     if known is None:
         raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
     places = source_to_target.positions[x.vertices]
-    x, y = x.finer(), y.finer()
+    x, y = finer_shapes(x, y)
     yield from within(x.spectrum_steps(EIGENPAIRS), 0.1, 0.15)
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.15, 0.2)
     moving, fixed = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)

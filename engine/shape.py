@@ -34,9 +34,8 @@ _CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fin
 _TAKEN_TOGETHER, _FOLLOWED_TOGETHER = 100, 40
 """Samples that are taken, and from which paths are followed, in one step."""
 
-_LEAST, _FEW = 1000, 0.4
-"""From so many vertices on, and below so many times what is wanted, a surface gets more where it is registered.  Of
-even fewer a body without clear features may turn over by that, and of more it gains little."""
+_FEW = 0.4
+"""Part of the vertices wanted from which on a surface gains little by more where it is registered."""
 
 _COMPARED = 8
 """Samples by whose distances it is found how much longer paths are."""
@@ -252,13 +251,17 @@ class Shape:
         shape.__dict__.pop("directions", None)
         return shape
 
-    def finer(self) -> Shape:
-        """Return the shape with more vertices and without samples if it has few, but not too few; else as it is.
+    @property
+    def is_coarse(self) -> bool:
+        """Whether a surface has few vertices to be registered with."""
+        return self.mesh.vertex_count < _FEW * self.surface.wanted
 
-        A surface can bend at its vertices only, and there are few around a joint of a body of a thousand: it is
-        registered with others in the middle of its edges.  The vertices of the shape itself come first.
+    def finer(self) -> Shape:
+        """Return the shape with about as many vertices as are wanted, and without samples; a proxy as it is.
+
+        Its own vertices come first, then some in the middle of its edges.
         """
-        if not self.surface.proxy.is_identity or not _LEAST <= self.mesh.vertex_count < _FEW * self.surface.wanted:
+        if not self.surface.proxy.is_identity or self.mesh.vertex_count >= self.surface.wanted:
             return self
         if self._finer is None:
             self._finer = Shape.of(replace(self.surface, proxy=Proxy.finer(self.mesh, self.surface.wanted)))

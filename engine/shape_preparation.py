@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .progress import Steps
     from .shape import Shape
 
-__all__ = ["Wanted", "finer_shapes_steps", "prepared_shapes_steps"]
+__all__ = ["Wanted", "finer_shapes", "finer_shapes_steps", "prepared_shapes_steps"]
 
 
 class Wanted(NamedTuple):
@@ -57,9 +57,18 @@ def prepared_shapes_steps(x: Shape, y: Shape, wanted: Wanted) -> Steps[None]:
             shape.take_samples_of(result)
 
 
+def finer_shapes(x: Shape, y: Shape) -> tuple[Shape, Shape]:
+    """Give two shapes more vertices to be registered with, see `Shape.finer`, if either has few.
+
+    A surface can bend at its vertices only, and there are few around a joint of a body of a thousand.  Both get as
+    many, as far as they can: a fine surface and a coarse one agree less than two coarse ones.
+    """
+    return (x.finer(), y.finer()) if x.is_coarse or y.is_coarse else (x, y)
+
+
 def finer_shapes_steps(x: Shape, y: Shape, eigenpairs: int) -> Steps[tuple[Shape, Shape]]:
-    """Take what is registered in the place of two shapes, see `Shape.finer`, with so many eigenpairs if it is new."""
-    finer = x.finer(), y.finer()
+    """Take what is registered in the place of two shapes, see `finer_shapes`, with so many eigenpairs if it is new."""
+    finer = finer_shapes(x, y)
     new = [fine for fine, shape in zip(finer, (x, y), strict=True) if fine is not shape]
     if new:
         yield from prepared_shapes_steps(new[0], new[-1], Wanted(0, 0, eigenpairs))

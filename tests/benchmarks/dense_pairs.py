@@ -26,10 +26,10 @@ orientation term and ZoomOut up to 150 functions, as its documentation recommend
 each dataset, and the rank correlation of the confidence with the error over all pairs: towards -1 if what the match
 says of itself can be trusted.
 
-With --variant each pair is matched as it is and changed: vertices renumbered, both shapes turned, scaled, or coarse (a
-quarter of their triangles), or one of them subdivided, decimated to half, or cut into halves that are moved apart.  The
-errors are those of the map that follows between the original shapes (see `variants`), so that all that may change them
-is the match.
+With --variant each pair is matched as it is and changed: vertices renumbered, both shapes turned, scaled, coarse (a
+quarter of their triangles) or coarsest (a twentieth), or one of them subdivided, decimated to half, or cut into halves
+that are moved apart.  The errors are those of the map that follows between the original shapes (see `variants`), so
+that all that may change them is the match.
 """
 
 import argparse

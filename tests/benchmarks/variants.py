@@ -115,6 +115,11 @@ def coarse(mesh, seed=0):
     return decimate(mesh, seed, share=0.25)
 
 
+def coarsest(mesh, seed=0):
+    """A twentieth of the triangles, as many as something far away in a game has."""
+    return decimate(mesh, seed, share=0.05)
+
+
 def split(mesh, seed=0, gap=0.01):  # noqa: ARG001  (variants are all called alike)
     """Two halves, one on either side of the middle, moved apart: as if mirrored, but never merged."""
     halves = TriangleMesh(*halves_apart(mesh.vertices, mesh.triangles, gap * np.sqrt(mesh.area)))
@@ -146,6 +151,7 @@ VARIANTS = {
     "decimate-target": lambda source, target: (as_is(source), decimate(target)),
     "decimate-source": lambda source, target: (decimate(source), as_is(target)),
     "coarse": _both(coarse),
+    "coarsest": _both(coarsest),
     "split-target": lambda source, target: (as_is(source), split(target)),
     "split-source": lambda source, target: (split(source), as_is(target)),
 }

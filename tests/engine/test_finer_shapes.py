@@ -12,7 +12,7 @@ from engine.eigenpairs import Spectrum
 from engine.progress import run
 from engine.proxy import Proxy
 from engine.refinement import refine_map
-from engine.shape_preparation import finer_shapes_steps
+from engine.shape_preparation import finer_shapes, finer_shapes_steps
 from tests.shapes import creature, cylinder, subdivided
 
 QUICK = MatchSettings(points=24, samples=128)
@@ -139,8 +139,14 @@ def test_the_vertices_of_the_shape_come_first_and_its_samples_stay(bodies):
 
 @pytest.mark.parametrize(
     ("parts", "wanted", "expected"),
-    [((40, 20), 5000, 0), ((50, 20), 5000, 3050), ((50, 20), 3000, 1950), ((50, 20), 1200, 0), ((100, 20), 5000, 0)],
-    ids=["too few", "some", "some fewer", "wanted", "enough"],
+    [
+        ((12, 4), 5000, 156),
+        ((50, 20), 5000, 3050),
+        ((50, 20), 3000, 1950),
+        ((50, 20), 1000, 0),
+        ((100, 20), 5000, 2900),
+    ],
+    ids=["all edges", "nearly all", "some", "enough", "many"],
 )
 def test_how_many_there_are_at_last(parts, wanted, expected):
     around, along = parts
@@ -150,6 +156,18 @@ def test_how_many_there_are_at_last(parts, wanted, expected):
     # Edges that are equally long are split together.
     assert expected <= added <= 1.4 * expected
     assert (shape.finer() is shape) == (expected == 0)
+
+
+def test_two_shapes_are_made_finer_if_one_has_few_vertices():
+    few, some, many = (Shape(TriangleMesh(*cylinder(around, 20))) for around in (50, 110, 240))
+    finer = finer_shapes(few, some)
+    assert [shape.mesh.vertex_count > 3900 for shape in finer] == [True, True]
+    assert finer_shapes(few, many)[1] is many
+    assert finer_shapes(some, many) == (some, many)
+    # What shall have no more than it has keeps them.
+    given = as_it_is(few.mesh)
+    assert finer_shapes(given, some) == (given, some)
+    assert finer_shapes(given, few)[1] is few.finer()
 
 
 def test_functions_are_linear_along_split_edges(bodies):
