@@ -42,8 +42,8 @@ _RESIZED = 1.3
 """How much larger or smaller a surface may become, as much of the area of one of them may be missing."""
 
 _RIGID = 0.012
-"""Mean distance, in sqrt(area), up to which surfaces are taken for the same rigid body, but for what one of them lacks.
-It is measured along the normals, as their samples lie elsewhere."""
+"""Mean distance of these, in sqrt(area), up to which surfaces are taken for the same rigid body.  It is measured along
+the normals, as their samples lie elsewhere."""
 
 _MOST = 2
 _DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
