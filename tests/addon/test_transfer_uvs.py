@@ -52,8 +52,12 @@ def test_the_layer_arrives_without_smeared_faces(pair):
     source, target = pair
     assert carry() == {"FINISHED"}
     assert names(target) == ["UVMap"]
-    # The meshes have 24 x 16 and 28 x 18 faces; a smeared one would have the width of the layer.
-    assert extents(target, "UVMap").max() < 2.5 * extents(source, "UVMap").max()
+    # The meshes have 24 x 16 and 28 x 18 faces; a smeared one would have the width of the layer.  At the poles, where
+    # all 24 columns meet, a face reaches over some of them if its corner is next to the pole.
+    sizes = extents(target, "UVMap") / extents(source, "UVMap").max()
+    at_pole = np.array([len(polygon.vertices) == 3 for polygon in target.data.polygons])
+    assert sizes[~at_pole].max() < 1.5
+    assert sizes[at_pole].max() < 4
     uvs = read_attribute(target.data, "UVMap")
     assert np.ptp(uvs, axis=0).min() > 0.9
     seams = read_seams(target.data)
