@@ -7,13 +7,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csc_array, diags_array
-from scipy.sparse.linalg import splu
+from scipy.sparse import diags_array
 
 from .closest_points import ClosestPoints
 from .elastic import ElasticSurface
 from .normal_equations import NormalEquations
 from .progress import Progress, Steps
+from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -118,15 +118,7 @@ class DeformableSurface:
         integrated = np.einsum("nd,nd->n", self._laplace.stiffness @ self.vertices, self.normals) / 2
         smoothed = []
         for time in _CURVATURE_TIMES:
-            system = csc_array(diags_array(self.mass) + time / _HEAT_STEPS * self._laplace.stiffness)
-            factor = splu(
-                system,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                relax=1,
-                panel_size=1,
-                options={"SymmetricMode": True},
-            )
+            factor = symmetric_factor(diags_array(self.mass) + time / _HEAT_STEPS * self._laplace.stiffness)
             heat = factor.solve(integrated)
             for _ in range(_HEAT_STEPS - 1):
                 heat = factor.solve(self.mass * heat)

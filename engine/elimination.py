@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csc_array, eye_array
 from scipy.sparse.csgraph import dijkstra
-from scipy.sparse.linalg import splu
+
+from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,16 +65,8 @@ class ShiftedFactor:
         if order is not None:
             shifted = csc_array(shifted[order][:, order])
         self._shifted = shifted
-        # Symmetric mode and no threshold: pivots stay on the diagonal, which keeps the factors sparse and their signs
-        # meaningful.  Panels of one column are a third faster where factors are as sparse as on surfaces.
-        self._factor = splu(
-            shifted,
-            permc_spec="MMD_AT_PLUS_A" if order is None else "NATURAL",
-            diag_pivot_thresh=0.0,
-            relax=1,
-            panel_size=1,
-            options={"SymmetricMode": True},
-        )
+        # Its pivots stay on the diagonal, which keeps their signs meaningful.
+        self._factor = symmetric_factor(shifted, ordered=order is not None)
         symmetric = bool((self._factor.perm_r == self._factor.perm_c).all())
         self.negative_count = int((self._factor.U.diagonal() < 0).sum()) if symmetric else None
         self._inner_order = order

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array
-from scipy.sparse.linalg import splu
 
 from .symmetric_factor import symmetric_factor
 
@@ -92,14 +91,7 @@ class NormalEquations:
         values = known + np.bincount(self._corners[points.triangles].ravel(), squares, len(self._rows))
         values[self._diagonal] += own
         n = len(self._place)
-        factor = splu(
-            csc_array((values, self._rows, self._starts), shape=(n, n)),
-            permc_spec="NATURAL",
-            diag_pivot_thresh=0.0,
-            relax=1,
-            panel_size=1,
-            options={"SymmetricMode": True},
-        )
+        factor = symmetric_factor(csc_array((values, self._rows, self._starts), shape=(n, n)), ordered=True)
 
         def solve(right: NDArray[np.float64]) -> NDArray[np.float64]:
             """Solve for a right-hand side in the order of the vertices."""

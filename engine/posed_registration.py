@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array, vstack
-from scipy.sparse.linalg import splu
 
 from .closest_points import ClosestPoints, FoundPoints, facing
 from .elastic import ElasticSurface
+from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -200,14 +200,7 @@ class _SlidingSystem:
         # A third of each squared normal component stands in for the planes in the preconditioner.
         mean = diags_array(planes.shares * (1 / 3 + _SLIDING))
         near = elastic + self._transposed @ mean @ planes.evaluate
-        self._factor = splu(
-            near.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            relax=1,
-            panel_size=1,
-            options={"SymmetricMode": True},
-        )
+        self._factor = symmetric_factor(near)
         self.wanted: NDArray[np.float64] = self._transposed @ self._pulled(planes.points)
 
     def solved(self, right: NDArray[np.float64], start: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, csr_array, diags_array
+from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import splu
 
 from .closest_points import ClosestPoints
 from .dual_triangulation import manifold_part
@@ -18,6 +17,7 @@ from .mesh import TriangleMesh
 from .progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .surface_cells import SurfaceCells, grid_labels, nearest_members
+from .symmetric_factor import symmetric_factor
 from .voronoi_regions import VoronoiRegions, spread_regions_steps
 
 if TYPE_CHECKING:
@@ -267,6 +267,5 @@ def _fitted_positions(
     interpolate = csr_array((barycentric.ravel(), search.triangles[triangles].ravel(), np.arange(s + 1) * 3), (s, k))
     weighted = csr_array(interpolate.T @ diags_array(weights))
     tether = np.full(k, _TETHER * weights.sum() / k)
-    system = csc_array(weighted @ interpolate + diags_array(tether))
-    factor = splu(system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
-    return factor.solve(weighted @ wanted + tether[:, None] * search.vertices)
+    system = weighted @ interpolate + diags_array(tether)
+    return symmetric_factor(system).solve(weighted @ wanted + tether[:, None] * search.vertices)
