@@ -54,8 +54,8 @@ class Shape:
     name : str
         What notes call it.
     proxy_vertices : int
-        About how many vertices that coarse mesh has.  A mesh of fewer than 0.4 times as many, but of a thousand or
-        more, gets up to so many where it is registered, see `finer`.
+        About how many vertices that coarse mesh has.  Where either of two meshes has fewer than 0.4 times as many,
+        both get up to so many where they are registered, see `finer`.
     excluded : (n,) array of bool, optional
         Vertices to leave out.
 
