@@ -213,7 +213,10 @@ class _Lift:
             normal_weight=_NORMAL_REACH**2 * self.target.area,
             normal_gate=_NORMAL_GATE,
         )
-        agreement = np.einsum("qd,qd->q", normals, self.target.triangle_normals[found.triangles])
+        # Not the normal of the triangle: which of two a point is in, on their edge, is for rounding to decide.
+        corners = self.target.vertex_normals[self.target.triangles[found.triangles]]
+        there = np.einsum("qc,qcd->qd", found.barycentric, corners)
+        agreement = np.einsum("qd,qd->q", normals, there)
         return found.triangles, found.barycentric, agreement
 
     def correction(
