@@ -282,12 +282,13 @@ class Follower:
     def again_steps(self, candidate: Candidate, found: Registration) -> Steps[tuple[Registration, Registration]]:
         """Register the target from where the source lies on it, then the source from where the target does."""
         source, target = self.source, self.target
+        here, there = self._guides(candidate.hypothesis, self.vertex_maps(found))
         restart = partial(restarted_steps, stages=_STAGES, isometry=candidate.isometry)
-        matches = found.on_source, found.on_target
-        steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back)
+        matches, guides = (found.on_source, found.on_target), (there, here)
+        steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back, guides=guides)
         reverse = yield from within(steps, 0.0, 0.5)
-        matches = reverse.on_source, reverse.on_target
-        steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties)
+        matches, guides = (reverse.on_source, reverse.on_target), (here, there)
+        steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties, guides=guides)
         return reverse, (yield from within(steps, 0.5, 1.0))
 
     def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:

@@ -113,8 +113,9 @@ enough for the hands and feet of a body that crouches."""
 FINE = Stage((40, 160, 640, 1280), 0.1, 0.05, matched="around")
 """Onto the target."""
 
-AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", softened=(0.0, 0.75))
-"""The same from a map that is nearly right, and says where a pose strains the surface."""
+AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", guide_length=0.03, softened=(0.0, 0.75))
+"""The same from a map that is nearly right, and says where a pose strains the surface.  A leg that is far shorter than
+the other body's does not reach its end yet, whose closest points may be on the next leg: guides keep them apart."""
 
 CLOSE = Stage(
     (1280,) * 3 + (2560,) * 5,
@@ -314,6 +315,7 @@ def restarted_steps(
     stages: tuple[Stage, ...],
     isometry: float = 1.0,
     ties: Ties | None = None,
+    guides: Guides | None = None,
 ) -> Steps[Registration]:
     """Register anew from the matches of an earlier registration, of these surfaces or of the two exchanged.
 
@@ -328,13 +330,15 @@ def restarted_steps(
         Eigenfunctions to smooth by, see `smooth_start`.
     matches : pair of FoundPoints
         The matching point of the target for each vertex of the source, and the other way round.
-    stages, isometry, ties
+    stages, isometry, ties, guides
         As in `register_steps`.
     """
     places = points_at(matches[0], target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
     posed = (start + places) / 2
-    steps = register_steps(source, target, start, stages, matches, posed=posed, isometry=isometry, ties=ties)
+    steps = register_steps(
+        source, target, start, stages, matches, posed=posed, isometry=isometry, ties=ties, guides=guides
+    )
     return (yield from steps)
 
 

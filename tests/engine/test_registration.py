@@ -7,12 +7,23 @@ import numpy as np
 import pytest
 
 from engine import Progress, TriangleMesh, run
-from engine.closest_points import FoundPoints
+from engine.closest_points import ClosestPoints, FoundPoints
 from engine.deformable import DeformableSurface
 from engine.eigenpairs import eigenpairs_steps
 from engine.elastic import ElasticSurface
 from engine.laplacian import laplace_beltrami
-from engine.registration import AGAIN, CLOSE, FINE, LAST, POLISH, SOFT, Stage, register_steps, smooth_start
+from engine.registration import (
+    AGAIN,
+    CLOSE,
+    FINE,
+    LAST,
+    POLISH,
+    SOFT,
+    Stage,
+    register_steps,
+    restarted_steps,
+    smooth_start,
+)
 from engine.surface import SurfacePoints
 from tests.bodies import relative_of_creature
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
@@ -312,6 +323,26 @@ def test_guides_lead_to_what_is_far_in_space():
 
     start = np.linalg.norm(turned - ball.vertices, axis=1).mean()
     assert error(guides=guides) < 0.1 * start
+    assert error() > 0.8 * start
+
+
+def test_a_restart_goes_by_guides():
+    ball = deformable(*icosphere(6))
+    turn = rotation([0.0, 0.0, 1.0], 0.5)
+    search = ClosestPoints(ball.mesh).moved(ball.vertices)
+    matches = search.nearest(ball.vertices @ turn.T), search.nearest(ball.vertices @ turn)
+    everything = np.linalg.qr(np.concatenate([ball.vertices, ball.normals], axis=1))[0]
+    functions = everything / np.sqrt(ball.mass.mean())
+    guides = ball.vertices, ball.vertices
+
+    def error(**options):
+        stages = (replace(AGAIN, guide_length=1.0), LAST)
+        found = run(restarted_steps(ball, ball, functions, matches, stages=stages, **options))
+        return np.linalg.norm(found.positions - ball.vertices, axis=1).mean()
+
+    # The first round goes where the matches say; then nothing but guides tells one place of a ball from another.
+    start = np.linalg.norm(ball.vertices @ turn.T - ball.vertices, axis=1).mean()
+    assert error(guides=guides) < 0.5 * start
     assert error() > 0.8 * start
 
 
