@@ -63,6 +63,9 @@ _DETAILED = 100
 _ROLLS = 3
 """How often a long body is turned back at most: the better it lies, the better is seen how it is turned."""
 
+_WORTHWHILE = 3.0
+"""Difference of scores up to which a body that was laid down otherwise is turned back as well."""
+
 _POSED, _BUILT = 0.38, 0.48
 """Mean difference of wave kernel signatures up to which only poses differ, and from which on bodies are unlike."""
 
@@ -183,23 +186,44 @@ class Follower:
         registration = yield from within(steps, 0.2, 1.0)
         return self._judged(hypothesis, registration)
 
-    def rolled_back_steps(self, candidate: Candidate) -> Steps[Candidate]:
-        """Turn a long body back where it is turned about its axis; the candidate itself if that is not more credible.
+    def rolled_back_steps(self, candidate: Candidate) -> Steps[list[Candidate]]:
+        """Turn a long body back where it is turned about its axis, and try how else it might lie as a whole.
 
-        What landmarks hold stays the way round it is.
+        Returned are all ways to lie, the most credible first, or the candidate alone.  What landmarks hold stays the
+        way round it is.
         """
-        for number in range(_ROLLS if self.ties is None else 0):
+        if self.ties is not None:
+            return [candidate]
+        best, ways = yield from within(self._turned_back_steps(candidate), 0.0, 0.4)
+        found = [best]
+        for number, way in enumerate(ways):
+            begin, end = (0.4 + 0.6 * (number + i) / len(ways) for i in (0, 1))
+            lying = yield from within(self._registered_again_steps(candidate, way), begin, (begin + end) / 2)
+            if lying.score < best.score + _WORTHWHILE:
+                lying, _ = yield from within(self._turned_back_steps(lying), (begin + end) / 2, end)
+            found.append(lying)
+        return sorted(found, key=lambda candidate: candidate.score)
+
+    def _turned_back_steps(self, candidate: Candidate) -> Steps[tuple[Candidate, list[NDArray[np.float64]]]]:
+        """Turn parts of a long body back while that is more credible; and say how else all of it might be placed."""
+        ways: list[NDArray[np.float64]] = []
+        for number in range(_ROLLS):
             positions = candidate.registration.positions
-            turned = rolled_back(self.x, self.source, self.target, positions)
+            turned, otherwise = rolled_back(self.x, self.source, self.target, positions)
+            ways = [way for winding in otherwise for way in winding.positions]
             if turned is positions:
                 break
-            steps = register_steps(self.source, self.target, turned, (GUIDED, SOFT))
-            registration = yield from within(steps, number / _ROLLS, (number + 1) / _ROLLS)
-            rolled = self._judged(candidate.hypothesis, registration)
+            again = self._registered_again_steps(candidate, turned)
+            rolled = yield from within(again, number / _ROLLS, (number + 1) / _ROLLS)
             if rolled.score >= candidate.score:
                 break
             candidate = rolled
-        return candidate
+        return candidate, ways
+
+    def _registered_again_steps(self, candidate: Candidate, positions: NDArray[np.float64]) -> Steps[Candidate]:
+        """Follow a candidate's hypothesis from other positions."""
+        registration = yield from register_steps(self.source, self.target, positions, (GUIDED, SOFT))
+        return self._judged(candidate.hypothesis, registration)
 
     def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
         """Say how credible a hypothesis is by the soft registration that it led to."""

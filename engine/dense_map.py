@@ -198,15 +198,19 @@ def _unrefined_steps(
 
 
 def _rolled_back_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[Candidate]]:
-    """Turn a long body back where those that may be chosen turn it about its axis; then the most credible is first."""
+    """Turn a long body back where those that may be chosen turn it about its axis; then the most credible is first.
+
+    How else it might lie is compared as well.
+    """
     contenders = _contenders(follow, candidates)
-    rolled = {}
+    ways = []
     for number, candidate in enumerate(contenders):
         begin, end = ((number + i) / len(contenders) for i in (0, 1))
-        rolled[id(candidate)] = yield from within(follow.rolled_back_steps(candidate), begin, end)
-    if all(rolled[id(candidate)] is candidate for candidate in contenders):
+        ways += yield from within(follow.rolled_back_steps(candidate), begin, end)
+    if all(way is candidate for way, candidate in zip(ways, contenders, strict=False)):
         return candidates
-    return sorted((rolled.get(id(c), c) for c in candidates), key=lambda candidate: candidate.score)
+    others = [candidate for candidate in candidates if not any(candidate is c for c in contenders)]
+    return sorted([*ways, *others], key=lambda candidate: candidate.score)
 
 
 def _contenders(follow: Follower, candidates: list[Candidate]) -> list[Candidate]:

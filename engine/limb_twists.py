@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.ndimage import minimum_filter
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
@@ -71,6 +72,9 @@ _LEAST_TURN = 0.8
 _NEARLY, _MOST_OTHERS = 2.0, 2
 """How many times as much it may cost to wind a limb otherwise that is worth a try, and how many are tried at most."""
 
+_LYING, _MOST_LYING = 3.0, 3
+"""The same for a long body that might lie otherwise: what is bent the wrong way is not round its own axis any more."""
+
 
 class Winding(NamedTuple):
     """Vertices (v,) of a limb, and their positions (v, 3) in each other way that it might be wound about its axis."""
@@ -80,7 +84,7 @@ class Winding(NamedTuple):
 
 
 class Untwisted(NamedTuple):
-    """Positions (n, 3) with limbs turned back, and what else might be meant for some of them."""
+    """Positions (n, 3) with limbs turned back, and how else each of some limbs, or the body, might be turned."""
 
     positions: NDArray[np.float64]
     otherwise: list[Winding]
@@ -172,11 +176,14 @@ def untwisted(
 
 def rolled_back(
     shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
-) -> NDArray[np.float64]:
+) -> Untwisted:
     """Turn back what a registration has turned about the axis of a long body: a snake's, a fish's, a whale's.
 
     The lowest eigenfunctions of such a body say where along it a point is, but not which way round it lies, and the
     tail may end the other way round than the head.  It is treated as `untwisted` treats limbs, with no ring held.
+
+    Nor is it seen from there whether the whole of it lies on its back: where it does, it has been bent until it fits.
+    So other turns that cost a minimum, up to three times the least, are offered, three at most.
 
     Parameters
     ----------
@@ -189,11 +196,11 @@ def rolled_back(
 
     Returns
     -------
-    (n, 3) array of float
+    Untwisted
         The same, with parts of the body turned where that makes them fit better; `positions` themselves if there are
-        none, or if the body is not long.
+        none, or if the body is not long.  And other ways to turn all of its vertices.
     """
-    return _turned_back(_long_body(shape, source), source, target, positions, _GAIN).positions
+    return _turned_back(_long_body(shape, source), source, target, positions, _GAIN)
 
 
 def _turned_back(
@@ -380,8 +387,8 @@ def _best_angles(
 ) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
     """Find the angles (k,) of least cost to turn the rings by, all zero if they save no more than a gain, and others.
 
-    The gain is a part of the cost as it is.  The others are the best that turn the tip otherwise, by a third of a turn
-    or more, if these cost little more.
+    The gain is a part of the cost as it is.  The others are the best that turn the tip otherwise, or the other end if
+    that is not held, by a third of a turn or more, if these cost little more.
     """
     steps = np.arange(-_TURNS * _ANGLES, _TURNS * _ANGLES + 1)
     tried, costs = steps * (2 * np.pi / _ANGLES), costs[:, steps % _ANGLES]
@@ -389,35 +396,43 @@ def _best_angles(
     radii = np.minimum(limb.radii, np.median(limb.radii))
     stiffness = np.pi * ((radii[1:] + radii[:-1]) / 2) ** 3 / _WIDTH
     differences = tried[None, :] - tried[:, None]  # the next ring's angle less this one's
-    begun = steps == 0 if limb.held else np.abs(steps) <= _ANGLES // 2
-    total = np.where(begun, costs[-1], np.inf)
+    # Angles of the last ring: all within a turn, and one more at either side, to tell which are minima.
+    last = np.flatnonzero(np.abs(steps) <= (0 if limb.held else _ANGLES // 2 + 1))
+    total = np.full((len(last), len(steps)), np.inf)
+    total[np.arange(len(last)), last] = costs[-1, last]
     choices = []
     for number in range(len(stiffness) - 1, -1, -1):
-        whole = total[None, :] + stiffness[number] * np.square(twists[number] + differences)
-        choices.append(whole.argmin(axis=1))
-        total = costs[number] + whole.min(axis=1)
+        whole = total[:, None] + stiffness[number] * np.square(twists[number] + differences)
+        choices.append(whole.argmin(axis=2))
+        total = costs[number] + whole.min(axis=2)
 
-    def angles(tip: int) -> NDArray[np.float64]:
-        """Follow the best choices from an angle of the tip to the body."""
+    def angles(end: int, tip: int) -> NDArray[np.float64]:
+        """Follow the best choices from an angle of the tip to the last ring, which has one of its own."""
         path = [tip]
         for choice in choices[::-1]:
-            path.append(int(choice[path[-1]]))
+            path.append(int(choice[end, path[-1]]))
         return tried[path]
 
-    best, unturned = int(total.argmin()), int(np.flatnonzero(steps == 0)[0])
+    ends, tips = np.nonzero(total <= minimum_filter(total, 3, mode="constant", cval=np.inf))
+    inside = limb.held | ((ends > 0) & (ends < len(last) - 1))
+    ways = np.stack([ends, tips], axis=1)[inside]
+    ways = ways[np.argsort(total[tuple(ways.T)], kind="stable")]
+    least, unturned = total[tuple(ways[0])], int(np.flatnonzero(steps == 0)[0])
     now = costs[:, unturned].sum() + (stiffness * np.square(twists)).sum()
-    turning = total[best] <= (1 - gain) * now
-    tips = [best if turning else unturned]
-    # Whatever the angles, rings fit no better than that.
-    least = costs.min(axis=1).sum()
-    for tip in np.argsort(total, kind="stable") if limb.held else ():
-        if total[tip] - least > _NEARLY * (total[best] - least) or len(tips) > _MOST_OTHERS:
+    turning = least <= (1 - gain) * now
+    taken = [ways[0] if turning else np.array([np.flatnonzero(last == unturned)[0], unturned])]
+    # Whatever the angles, rings fit no better than that.  Of a body that is not held, none may be what it is to be.
+    sure = costs.min(axis=1).sum() if limb.held else 0.0
+    nearly, most = (_NEARLY, _MOST_OTHERS) if limb.held else (_LYING, _MOST_LYING)
+    turns = np.arange(1) if limb.held else np.arange(-1, 2)
+    for way in ways:
+        if total[tuple(way)] - sure > nearly * (least - sure) or len(taken) > most:
             break
-        beside = total[max(tip - 1, 0) : tip + 2]
-        if total[tip] <= beside.min() and all(np.abs(tip - taken) > _ANGLES // 3 for taken in tips):
-            tips.append(int(tip))
-    chosen = angles(best) if turning else np.zeros(len(limb.radii))
-    return chosen, [angles(tip) for tip in tips[1:]]
+        apart = np.abs(way - np.array(taken)[:, None] + _ANGLES * turns[:, None]).max(axis=2)
+        if apart.min() > _ANGLES // 3:
+            taken.append(way)
+    chosen = angles(*ways[0]) if turning else np.zeros(len(limb.radii))
+    return chosen, [angles(*way) for way in taken[1:]]
 
 
 def _moved(

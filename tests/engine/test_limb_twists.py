@@ -214,7 +214,7 @@ def test_a_long_body_whose_tail_lies_the_other_way_round_is_turned_back(form, mo
     placed = target.in_unit_size(form(twisted(vertices, most)))
     wrong = (placed + on_surface(target, placed)) / 2  # near the surface, as by a soft registration
     before = mean_distance(target, wrong, target.vertices)
-    after = mean_distance(target, rolled_back(shape(mesh), surface(mesh), target, wrong), target.vertices)
+    after = mean_distance(target, rolled_back(shape(mesh), surface(mesh), target, wrong).positions, target.vertices)
     assert before > 0.008
     assert after < 0.5 * before
 
@@ -224,7 +224,27 @@ def test_a_long_body_that_lies_right_stays_as_it_is(form):
     vertices, triangles = fish()
     mesh = TriangleMesh(vertices, triangles)
     target = surface(TriangleMesh(form(vertices), triangles))
-    assert rolled_back(shape(mesh), surface(mesh), target, target.vertices) is target.vertices
+    assert rolled_back(shape(mesh), surface(mesh), target, target.vertices).positions is target.vertices
+
+
+@pytest.mark.parametrize("part", [0.0, 0.7])
+@pytest.mark.parametrize("form", [np.asarray, bent])
+def test_how_else_a_long_body_might_lie_is_offered(form, part):
+    """All of the fish, or its tail, is upside down, and has been bent until it fits as well as it can."""
+    vertices, triangles = fish()
+    mesh = TriangleMesh(vertices, triangles)
+    target = surface(TriangleMesh(form(vertices), triangles))
+    places = vertices[:, 0] / vertices[:, 0].max()
+    over = np.where(places > part if part else np.ones(len(places), bool), -1, 1)
+    placed = target.in_unit_size(form(vertices * np.stack([over**2, over, over], axis=1)))
+    wrong = on_surface(target, placed)
+    found = rolled_back(shape(mesh), surface(mesh), target, wrong)
+    ways = [found.positions, *(way for winding in found.otherwise for way in winding.positions)]
+    before = mean_distance(target, wrong, target.vertices)
+    assert before > 0.008
+    assert min(mean_distance(target, way, target.vertices) for way in ways) < 0.5 * before
+    assert all(way.shape == wrong.shape for way in ways)
+    assert len(ways) <= 4
 
 
 def test_bodies_that_are_not_long_are_not_turned():
@@ -232,7 +252,9 @@ def test_bodies_that_are_not_long_are_not_turned():
     mesh = TriangleMesh(vertices * [1, 0.8, 0.6], triangles)
     plump = surface(mesh)
     wrong = on_surface(plump, plump.in_unit_size(twisted(mesh.vertices, 2.5)))
-    assert rolled_back(shape(mesh), plump, plump, wrong) is wrong
+    found = rolled_back(shape(mesh), plump, plump, wrong)
+    assert found.positions is wrong
+    assert not found.otherwise
 
 
 def test_slices_without_vertices_do_not_matter():
@@ -240,4 +262,4 @@ def test_slices_without_vertices_do_not_matter():
     vertices, triangles = icosphere(2)
     mesh = TriangleMesh(vertices * [1, 0.2, 0.1], triangles)
     rod = surface(mesh)
-    assert np.isfinite(rolled_back(shape(mesh), rod, rod, rod.vertices[::-1].copy())).all()
+    assert np.isfinite(rolled_back(shape(mesh), rod, rod, rod.vertices[::-1].copy()).positions).all()
