@@ -406,6 +406,11 @@ def _best_angles(
         choices.append(whole.argmin(axis=2))
         total = costs[number] + whole.min(axis=2)
 
+    minima = total <= minimum_filter(total, 3, mode="constant", cval=np.inf)
+    inside = slice(None) if limb.held else slice(1, -1)
+    total, last, choices = total[inside], last[inside], [choice[inside] for choice in choices]
+    minima = minima[inside] | (total == total.min())
+
     def angles(end: int, tip: int) -> NDArray[np.float64]:
         """Follow the best choices from an angle of the tip to the last ring, which has one of its own."""
         path = [tip]
@@ -413,10 +418,8 @@ def _best_angles(
             path.append(int(choice[end, path[-1]]))
         return tried[path]
 
-    ends, tips = np.nonzero(total <= minimum_filter(total, 3, mode="constant", cval=np.inf))
-    inside = limb.held | ((ends > 0) & (ends < len(last) - 1))
-    ways = np.stack([ends, tips], axis=1)[inside]
-    ways = ways[np.argsort(total[tuple(ways.T)], kind="stable")]
+    ways = np.argwhere(minima)
+    ways = ways[np.argsort(total[minima], kind="stable")]
     least, unturned = total[tuple(ways[0])], int(np.flatnonzero(steps == 0)[0])
     now = costs[:, unturned].sum() + (stiffness * np.square(twists)).sum()
     turning = least <= (1 - gain) * now
