@@ -3,19 +3,21 @@
 
     apt-get download 0ad-data && dpkg-deb -x 0ad-data_*.deb FOLDER
     python -m tests.benchmarks.game_animals --archive FOLDER/usr/share/games/0ad/mods/public/public.zip
-        [--pairs 60] [--seed 1] [--jobs 2]
+        [--pairs 60] [--seed 1] [--jobs 2] [--long]
 
 Each animal takes up to five poses from its animations that differ much.  Its few triangles are split, and each pose is
 meshed anew with 5,000 vertices, so that no two surfaces have triangles in common, and turned.
 
 Pairs of the same animal are measured by the true correspondence: the mean distance from there, over the square root of
-the area, times 100, at 300 vertices, and the share of them that are more than 15 away.  For pairs of different animals
+the area, times 100, at 300 vertices, and the share of them that are more than 15 away. For pairs of different animals
 it is said to which end each end of the one goes, from either side: 0 and 1 the fore feet, 2 and 3 the hind feet, 4 the
-head; 01234 is right.  Margin and confidence are what the match says of itself.  At last it is counted how many are
-wrong, and how many of those have a confidence of one half or more.
+head; 01234 is right. With --long, sharks, fin whales and crocodiles are matched instead, each in all pairs of its
+poses: bodies that may come to lie on their backs. Margin and confidence are what the match says of itself. At last it
+is counted how many are wrong, and how many of those have a confidence of one half or more.
 """
 
 import argparse
+import itertools
 import multiprocessing
 import os
 import time
@@ -66,6 +68,12 @@ ANIMALS = {
     "tiger": ("tiger", "cat"),
 }
 LOOKS_BACK = {"sheep"}
+# Long bodies: where their animations are.
+LONG = {
+    "shark": "art/animation/other",
+    "whale_fin": "art/animation/other",
+    "Croc": "art/animation/quadraped",
+}
 POSES, FRAMES = 5, 6
 DENSE, COARSE = 26_000, 5_000
 FAR, WRONG = 15.0, 0.03
@@ -84,7 +92,8 @@ class Animal(Remeshed):
 def poses(archive, name):
     """Vertices of up to five poses, the most usual first, then each as far as can be from those before."""
     model = archive.model(name)
-    frames = [archive.frames(a, len(model.bones), FRAMES) for a in archive.animations(ANIMALS[name][0])]
+    animations = archive.animations(name, LONG[name]) if name in LONG else archive.animations(ANIMALS[name][0])
+    frames = [archive.frames(a, len(model.bones), FRAMES) for a in animations]
     rest = TriangleMesh(model.vertices, model.triangles)
     found = [model.posed(frame) for each in frames for frame in each]
     found = [
@@ -162,6 +171,14 @@ def measure(task):
     return line, wrong, quality.confidence
 
 
+def long_pairs(archive):
+    """All pairs of poses of each long body, ((name, pose), (name, pose))."""
+    pairs = [
+        ((name, i), (name, j)) for name in LONG for i, j in itertools.combinations(range(len(poses(archive, name))), 2)
+    ]
+    return {"one long body in two poses": pairs}
+
+
 def drawn_pairs(archive, count, seed):
     """Random pairs of one animal in two poses, and of two animals of different kinds, ((name, pose), (name, pose))."""
     random = np.random.default_rng(seed)
@@ -184,13 +201,15 @@ def main():
     parser.add_argument("--archive", type=Path, required=True, help="the game's public.zip")
     parser.add_argument("--pairs", type=int, default=60, help="of one animal, and of two (default 60 each)")
     parser.add_argument("--seed", type=int, default=1, help="of the random pairs (default 1)")
+    parser.add_argument("--long", action="store_true", help="match long bodies, all pairs of their poses")
     parser.add_argument("--jobs", type=int, default=1, help="pairs matched at the same time (default 1)")
     options = parser.parse_args()
     archive = Archive(options.archive)
     if options.jobs > 1:
         os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
-        for title, pairs in drawn_pairs(archive, options.pairs, options.seed).items():
+        drawn = long_pairs(archive) if options.long else drawn_pairs(archive, options.pairs, options.seed)
+        for title, pairs in drawn.items():
             print(f"{title:48s} {'':30s} margin conf. seconds")
             wrong, sure = 0, 0
             for line, failed, confidence in pool.imap(measure, [(archive, pair) for pair in pairs]):

@@ -112,9 +112,7 @@ class Archive:
         chosen = np.unique(np.linspace(0, frames - 1, count).astype(int))
         return transformations(states.reshape(-1, 7)).reshape(frames, keys, 4, 4)[chosen]
 
-    def animations(self, start):
-        """Names of the animations that start with a word."""
+    def animations(self, start, folder=ANIMATIONS):
+        """Names of the animations in a folder that start with a word."""
         names = (PurePosixPath(name) for name in self.names)
-        return [
-            str(n) for n in names if n.suffix == ".psa" and n.is_relative_to(ANIMATIONS) and n.name.startswith(start)
-        ]
+        return [str(n) for n in names if n.suffix == ".psa" and n.is_relative_to(folder) and n.name.startswith(start)]
