@@ -63,6 +63,9 @@ _DETAILED = 100
 _ROLLS = 3
 """How often a long body is turned back at most: the better it lies, the better is seen how it is turned."""
 
+_TRIFLE = 0.006
+"""Mean distance, in sqrt(area), up to which a body lies as before: but a tip is turned, or it is wound about itself."""
+
 _WORTHWHILE = 3.0
 """Difference of scores up to which a body that was laid down otherwise is turned back as well."""
 
@@ -210,7 +213,7 @@ class Follower:
         for number in range(_ROLLS):
             positions = candidate.registration.positions
             turned, otherwise = rolled_back(self.x, self.source, self.target, positions)
-            ways = [way for winding in otherwise for way in winding.positions]
+            ways = [way for winding in otherwise for way in winding.positions if self.apart(way, positions) > _TRIFLE]
             if turned is positions:
                 break
             again = self._registered_again_steps(candidate, turned)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import compress
+from operator import is_
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -207,7 +208,7 @@ def _rolled_back_steps(follow: Follower, candidates: list[Candidate]) -> Steps[l
     for number, candidate in enumerate(contenders):
         begin, end = ((number + i) / len(contenders) for i in (0, 1))
         ways += yield from within(follow.rolled_back_steps(candidate), begin, end)
-    if all(way is candidate for way, candidate in zip(ways, contenders, strict=False)):
+    if len(ways) == len(contenders) and all(map(is_, ways, contenders)):
         return candidates
     others = [candidate for candidate in candidates if not any(candidate is c for c in contenders)]
     return sorted([*ways, *others], key=lambda candidate: candidate.score)

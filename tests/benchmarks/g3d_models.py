@@ -38,7 +38,7 @@ def read_meshes(path):
 
 
 def read_unit(folder):
-    """Read what most files of a unit show: places of the vertices in all frames (f, n, 3), and triangles (m, 3)."""
+    """Read what most files of a unit show, if anything: vertices in all frames (f, n, 3), and triangles (m, 3)."""
     frames = {}
     for path in sorted(folder.glob("models/*.g3d")):
         places, triangles = max(read_meshes(path), key=lambda mesh: len(mesh[1]))

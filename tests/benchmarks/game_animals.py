@@ -125,13 +125,15 @@ def ends(vertices, *, backwards):
 
 @cache
 def animal(archive, name, pose):
-    """Mesh a pose anew, turned at random."""
+    """Mesh a pose anew, turned at random; without the ends if the body is long."""
     model = archive.model(name)
     parts = max(3, int(np.ceil(np.sqrt(DENSE / len(model.vertices)))))
     random = np.random.default_rng(pose)
     turn = rotation(random.standard_normal(3), random.uniform(0, 2 * np.pi))
     vertices, triangles = subdivided(poses(archive, name)[pose] @ turn.T, model.triangles, parts)
     found = remeshed(vertices, triangles, name, COARSE)
+    if name in LONG:
+        return found
     rest, _ = subdivided(model.vertices, model.triangles, parts)
     all_ends = ends(rest, backwards=name in LOOKS_BACK)
     return Animal(found.mesh, found.model, found.places, all_ends[found.model])

@@ -427,6 +427,24 @@ def test_where_a_map_is_looked_for_long_bodies_are_turned_back(long_bodies, upse
     assert pair.candidates[0].score < upset[1].score
 
 
+def test_a_way_to_lie_that_is_no_better_at_first_is_registered_closely_as_well(long_bodies, upset, monkeypatch):
+    x, y = long_bodies
+    over = upset[1].registration
+
+    def ways(_self, candidate):
+        return returned([candidate, replace(candidate, registration=over, score=candidate.score + 1)])
+
+    closely = []
+    own = Follower.close_steps
+    monkeypatch.setattr(Follower, "rolled_back_steps", ways)
+    monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.registration) or own(self, c))
+    chosen = x.samples[:20]
+    pair = run(registered_pair_steps(x, y, [start_from(x, y, chosen, chosen)]))
+    assert over in closely
+    assert len(closely) == 2
+    assert misplaced(x, pair.target, pair.registration) < 0.03
+
+
 def test_motion_and_scale_do_not_matter(registered, bodies):
     x, y = bodies[:2]
     turn = rotation([1, -1, 2], 2.5)
