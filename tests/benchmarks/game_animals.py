@@ -33,7 +33,7 @@ import numpy as np
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
 from engine.geodesics import GeodesicSolver
 from tests.benchmarks.game_models import Archive
-from tests.benchmarks.remeshed import Remeshed, errors, remeshed
+from tests.benchmarks.remeshed import Remeshed, compared, remeshed, said
 from tests.shapes import rotation, subdivided
 
 # Model: how the names of its animations start, and its kind.  All look along -z at rest, but the sheep.
@@ -76,7 +76,6 @@ LONG = {
 }
 POSES, FRAMES = 5, 6
 DENSE, COARSE = 26_000, 5_000
-FAR, WRONG = 15.0, 0.03
 ENDS = 5
 CONFIDENT = 0.5
 
@@ -151,26 +150,19 @@ def measure(task):
     """Match two animals; return how they are called, what is printed of the match, if it is wrong, and confidence."""
     archive, (first, second) = task
     source, target = animal(archive, *first), animal(archive, *second)
-    label = f"{first[0]} {first[1]} -> {second[0]} {second[1]}"
+    label = f"{f'{first[0]} {first[1]} -> {second[0]} {second[1]}':48s}"
+    if first[0] == second[0]:
+        line, wrong, row = compared(label, source, target)
+        return line, wrong, row[2] if row else 0.0
     start = time.perf_counter()
     try:
         result = match(source.mesh, target.mesh, MatchSettings(dense=True))
     except HierMatchError as error:
-        return f"{label:48s} {error}", True, 0.0
+        return f"{label} {error}", True, 0.0
     seconds = time.perf_counter() - start
-    both = (source, target, result.source_to_target), (target, source, result.target_to_source)
-    if first[0] == second[0]:
-        away = [errors(*each) for each in both]
-        wrong = any((e > FAR).mean() > WRONG for e in away)
-        what = "  ".join(f"{e.mean():6.2f} {(e > FAR).mean():6.1%}" for e in away)
-    else:
-        words = [reached(*each) for each in both]
-        wrong = any(word != "01234" for word in words)
-        what = " ".join(words)
-    quality = result.quality
-    margin = "-" if quality.margin is None else f"{quality.margin:.2f}"
-    line = f"{label:48s} {what:30s} {margin:>6s} {quality.confidence:5.2f} {seconds:6.1f}  {'WRONG' if wrong else ''}"
-    return line, wrong, quality.confidence
+    words = [reached(source, target, result.source_to_target), reached(target, source, result.target_to_source)]
+    wrong = any(word != "01234" for word in words)
+    return said(label, " ".join(words), result.quality, seconds, wrong), wrong, result.quality.confidence
 
 
 def long_pairs(archive):

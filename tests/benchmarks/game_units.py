@@ -18,7 +18,6 @@ import argparse
 import itertools
 import multiprocessing
 import os
-import time
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -26,14 +25,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from engine import HierMatchError, MatchSettings, match
 from tests.benchmarks.g3d_models import areas, largest_part, read_unit
-from tests.benchmarks.remeshed import errors, remeshed
+from tests.benchmarks.remeshed import compared, remeshed
 from tests.shapes import rotation, subdivided
 
 POSES, LEAST_POSES, MOST = 3, 5, 0.7
 DENSE, COARSE = 26_000, 5_000
-FAR, WRONG = 15.0, 0.03
 CONFIDENT = 0.5
 
 
@@ -74,26 +71,13 @@ def meshed_anew(vertices, triangles, name, number):
 
 
 def measure(task):
-    """Match a body's poses; for each pair return what is printed, if it is wrong, and the confidence."""
+    """Match a body's poses; for each pair return what is printed, if it is wrong, and if it is confident."""
     name, (places, triangles) = task
     meshes = [meshed_anew(pose, triangles, name, number) for number, pose in enumerate(poses(places, triangles))]
     rows = []
     for number, (source, target) in enumerate(itertools.pairwise(meshes)):
-        label = f"{name} {number} -> {number + 1}"
-        start = time.perf_counter()
-        try:
-            result = match(source.mesh, target.mesh, MatchSettings(dense=True))
-        except HierMatchError as error:
-            rows.append((f"{label:36s} {error}", True, 0.0))
-            continue
-        seconds = time.perf_counter() - start
-        away = errors(source, target, result.source_to_target), errors(target, source, result.target_to_source)
-        wrong = any((e > FAR).mean() > WRONG for e in away)
-        what = "  ".join(f"{e.mean():6.2f} {(e > FAR).mean():6.1%}" for e in away)
-        quality = result.quality
-        margin = "-" if quality.margin is None else f"{quality.margin:.2f}"
-        line = f"{label:36s} {what:30s} {margin:>6s} {quality.confidence:5.2f} {seconds:6.1f}  {'WRONG' * wrong}"
-        rows.append((line, wrong, quality.confidence))
+        line, wrong, row = compared(f"{name + f' {number} -> {number + 1}':36s}", source, target)
+        rows.append((line, wrong, row is not None and row[2] >= CONFIDENT))
     return rows
 
 
@@ -109,11 +93,11 @@ def main():
     count = wrong = sure = 0
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
         for rows in pool.imap(measure, bodies(options.data, options.only).items()):
-            for line, failed, confidence in rows:
+            for line, failed, confident in rows:
                 print(line, flush=True)
                 count += 1
                 wrong += failed
-                sure += failed and confidence >= CONFIDENT
+                sure += failed and confident
     print(f"{wrong} of {count} wrong, {sure} of them with a confidence of {CONFIDENT} or more")
 
 

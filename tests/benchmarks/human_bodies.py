@@ -21,7 +21,6 @@ import gzip
 import json
 import multiprocessing
 import os
-import time
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -31,12 +30,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from engine import HierMatchError, MatchSettings, TriangleMesh, match
-from tests.benchmarks.remeshed import Remeshed, errors, remeshed
+from engine import TriangleMesh
+from tests.benchmarks.remeshed import Remeshed, compared, remeshed
 from tests.shapes import rotation, subdivided
 
 FINER = 5
-FAR, WRONG = 15.0, 0.03
 AGES, AMOUNTS = ("baby", "child", "young", "old"), {"min": "-", "average": "=", "max": "+"}
 # Bones: the direction in which they bend (x to the person's left, y up, z ahead), how far at least and at most, in
 # degrees, and how far they turn otherwise.  Those of both sides are named by one.
@@ -171,20 +169,7 @@ def measure(task):
     """Match two people; return what is printed, if it is wrong, and what is averaged."""
     folder, numbers, *meshing = task
     (source, first), (target, second) = (somebody(folder, number, *meshing) for number in numbers)
-    label = f"{first} -> {second}"
-    start = time.perf_counter()
-    try:
-        result = match(source.mesh, target.mesh, MatchSettings(dense=True))
-    except HierMatchError as error:
-        return f"{label:48s} {error}", True, None
-    seconds = time.perf_counter() - start
-    away = errors(source, target, result.source_to_target), errors(target, source, result.target_to_source)
-    wrong = any((e > FAR).mean() > WRONG for e in away)
-    what = "  ".join(f"{e.mean():6.2f} {(e > FAR).mean():6.1%}" for e in away)
-    quality = result.quality
-    margin = "-" if quality.margin is None else f"{quality.margin:.2f}"
-    line = f"{label:48s} {what} {margin:>6s} {quality.confidence:5.2f} {seconds:6.1f}  {'WRONG' if wrong else ''}"
-    return line, wrong, (*(e.mean() for e in away), quality.confidence, seconds)
+    return compared(f"{first + ' -> ' + second:48s}", source, target)
 
 
 def main():

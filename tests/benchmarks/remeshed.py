@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Poses of one model, each meshed anew, so that no two surfaces have triangles in common; the truth is kept."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from engine import TriangleMesh
+from engine import HierMatchError, MatchSettings, TriangleMesh, match
 from engine.geodesics import GeodesicSolver
 from engine.shape import Shape
 
 PLACES = 300
+FAR, WRONG = 15.0, 0.03
+"""From which error on a place is far away, and from which share of such places on a map is wrong."""
 
 
 @dataclass(frozen=True)
@@ -34,3 +37,27 @@ def errors(source, target, found):
     rows = GeodesicSolver(target.mesh).distances(target.places[source.model[chosen]])
     away = rows[np.arange(len(chosen)), found.nearest_vertices[chosen]]
     return 100 * away / np.sqrt(target.mesh.area)
+
+
+def compared(label, source, target):
+    """Match two poses of a model; return a row to be printed, whether either map is wrong, and the numbers of the row.
+
+    These are the mean errors there and back, the confidence and the seconds; None if there is no match.
+    """
+    start = time.perf_counter()
+    try:
+        result = match(source.mesh, target.mesh, MatchSettings(dense=True))
+    except HierMatchError as error:
+        return f"{label} {error}", True, None
+    seconds = time.perf_counter() - start
+    away = errors(source, target, result.source_to_target), errors(target, source, result.target_to_source)
+    wrong = any((e > FAR).mean() > WRONG for e in away)
+    what = "  ".join(f"{e.mean():6.2f} {(e > FAR).mean():6.1%}" for e in away)
+    quality = result.quality
+    return said(label, what, quality, seconds, wrong), wrong, (*(e.mean() for e in away), quality.confidence, seconds)
+
+
+def said(label, what, quality, seconds, wrong):
+    """A row to be printed: what came of a match, and what it says of itself."""
+    margin = "-" if quality.margin is None else f"{quality.margin:.2f}"
+    return f"{label} {what:30s} {margin:>6s} {quality.confidence:5.2f} {seconds:6.1f}  {'WRONG' if wrong else ''}"
