@@ -3,21 +3,21 @@
 
 from .closest_points import ClosestPoints
 from .dense_match import DenseMatch, densify, densify_steps
-from .errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .fitted_rig import FittedRig
-from .helpers import use_processes
 from .joint_placement import PlacedJoints, place_joints
 from .local_frames import LocalFrames, bone_frames, surface_frames
 from .matching import match, match_steps
 from .mesh import TriangleMesh
 from .morphing import in_between
 from .polygons import Polygons
-from .progress import Progress, run
 from .quality import MatchQuality
 from .rest_pose import RestPose, rest_pose
 from .result import CoarseMatch, Level, MatchResult
 from .retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
 from .rig_fit import fit_rig, fit_rig_steps
+from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
+from .runtime.progress import Progress, run
+from .runtime.worker import use_processes
 from .settings import MatchSettings
 from .shape import Shape
 from .shape_key_transfer import carry_offsets_steps

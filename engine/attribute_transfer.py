@@ -11,16 +11,16 @@ import numpy as np
 
 from .corner_transfer import carry_corner_values, carry_point_marks, carry_point_values
 from .edge_tracing import nearest_edge_values, trace_edges_steps
-from .errors import MatchError
 from .face_places import FacePlaces
 from .face_transfer import carry_face_values
+from .runtime.errors import MatchError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh import TriangleMesh
     from .polygons import Polygons
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .surface_map import SurfaceMap
 
 __all__ = ["CarriedValues", "Crossing", "Domain", "carry_values_steps"]

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import block_diag, eigh, qr
 
 from .elimination import ShiftedFactor, elimination_order
-from .progress import Progress, Steps, within
+from .runtime.progress import Progress, Steps, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,12 +11,12 @@ from scipy.optimize import linear_sum_assignment
 
 from .dual_ascent import dual_ascent_steps, pair_model
 from .enumeration import Enumeration
-from .errors import MatchError
 from .exclusion import Exclusion
 from .gilmore_lawler import gilmore_lawler_steps
 from .incumbent import TOLERANCE, Incumbent
 from .local_search import beam_search
-from .progress import Progress, run, within
+from .runtime.errors import MatchError
+from .runtime.progress import Progress, run, within
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from .dual_ascent import PairModel
     from .problem import MatchingProblem
-    from .progress import Steps
+    from .runtime.progress import Steps
 
 __all__ = [
     "TOLERANCE",

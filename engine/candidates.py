@@ -15,7 +15,6 @@ from .limb_twists import rolled_back, untwisted
 from .limb_windings import wound_steps
 from .map_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
 from .map_search import MapLead
-from .progress import Steps, within
 from .registration import (
     AGAIN,
     CLOSE,
@@ -29,7 +28,8 @@ from .registration import (
     restarted_steps,
     smooth_start,
 )
-from .sharing import shared_steps
+from .runtime.parallel_map import shared_steps
+from .runtime.progress import Steps, within
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from .boundary_loops import boundary_loops
 from .clean_surface import CleanSurface, SurfacePart
 from .cleaning_notes import CleaningCounts, cleaning_notes
 from .edge_pairs import EdgeGroups, group_half_edges, pair_half_edges, repeated_triangles
-from .errors import MeshError
 from .hole_filling import fill_holes, small_holes
 from .mesh import TriangleMesh
 from .mesh_orientation import inward_components, orient_consistently, turn_triangles
 from .pinched_gaps import pinched_gaps
+from .runtime.errors import MeshError
 from .spikes import find_spikes, pulled_in
 from .triangle_components import triangle_components
 from .vertex_fans import split_fans

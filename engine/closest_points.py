@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from .errors import MeshError
+from .runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

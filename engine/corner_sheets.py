@@ -13,8 +13,8 @@ from scipy.sparse.csgraph import connected_components
 
 from .closest_points import ClosestPoints
 from .edge_pairs import following, group_half_edges, pair_half_edges
-from .errors import MeshError
 from .mesh import TriangleMesh
+from .runtime.errors import MeshError
 from .triangle_components import triangle_components
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .corner_sheets import cut_into_sheets
-from .errors import MatchError, MeshError
+from .runtime.errors import MatchError, MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -14,15 +14,15 @@ from scipy.spatial import cKDTree
 from .candidates import Follower
 from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS
-from .errors import MatchError
 from .map_domain import MapDomain
 from .map_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
 from .mesh import TriangleMesh
 from .missing_parts import with_partner
 from .part_search import part_placements_steps
-from .progress import Steps, within
+from .runtime.errors import MatchError
+from .runtime.parallel_map import shared_steps
+from .runtime.progress import Steps, within
 from .shape import Shape
-from .sharing import shared_steps
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:

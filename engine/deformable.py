@@ -12,7 +12,7 @@ from scipy.sparse import diags_array
 from .closest_points import ClosestPoints
 from .elastic import ElasticSurface
 from .normal_equations import NormalEquations
-from .progress import Progress, Steps
+from .runtime.progress import Progress, Steps
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from .candidates import Candidate, CloseFit, Follower
 from .deformable import DeformableSurface
 from .limb_sides import exchanged_limbs, repaired_start_steps
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps, unrefined_hypotheses_steps, unrefined_hypothesis
-from .progress import Steps, within
+from .runtime.progress import Steps, within
 from .steering import agrees, steered_hypotheses_steps
 from .ties import Ties
 

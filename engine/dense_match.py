@@ -11,7 +11,6 @@ import numpy as np
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .functional_maps import nearest_both_ways
 from .handle_cutting import evened_steps
-from .helpers import call_helpers
 from .joined_surface import with_limbs_steps
 from .landmarks import placed_at_vertices
 from .lifting import lift_steps
@@ -19,13 +18,14 @@ from .map_hypotheses import LandmarkStart
 from .pieces_only import piece_of, with_pieces_only
 from .pinning import pinned
 from .polishing import Polish, finer_surfaces_steps
-from .progress import Progress, Steps, run, within
 from .quality import MatchQuality, assess_maps, with_pieces
 from .reflection import reflected_mesh, reflected_points
 from .registration import POLISH
+from .runtime.parallel_map import MOST_SENT, here_steps, shared_steps
+from .runtime.progress import Progress, Steps, run, within
+from .runtime.worker import call_helpers
 from .shape import Shape
 from .shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
-from .sharing import MOST_SENT, here_steps, shared_steps
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap
 from .whole_maps import whole_maps_steps

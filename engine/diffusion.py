@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import MeshError, SettingsError
+from .runtime.errors import MeshError, SettingsError
 
 if TYPE_CHECKING:
     from collections.abc import Generator

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from .incumbent import forbidding_cost
-from .progress import Progress
+from .runtime.progress import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from .exclusion import Exclusion
     from .problem import MatchingProblem
-    from .progress import Steps
+    from .runtime.progress import Steps
 
 __all__ = ["PairModel", "assignment_duals", "dual_ascent_steps", "pair_model"]
 

@@ -13,14 +13,14 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from .edge_chains import edge_chains
-from .errors import MatchError
-from .progress import Progress
+from .runtime.errors import MatchError
+from .runtime.progress import Progress
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .mesh import TriangleMesh
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .surface_map import SurfaceMap
 
 __all__ = ["TracedEdges", "nearest_edge_values", "trace_edges_steps"]

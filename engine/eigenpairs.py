@@ -11,9 +11,9 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from .block_krylov import EigenPairs, lowest_eigenpairs_steps
-from .errors import SettingsError
 from .laplacian import LaplaceBeltrami, laplace_beltrami
-from .progress import Progress, Steps, run, within
+from .runtime.errors import SettingsError
+from .runtime.progress import Progress, Steps, run, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .closest_points import ClosestPoints
-from .errors import MatchError
+from .runtime.errors import MatchError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

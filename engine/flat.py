@@ -12,7 +12,7 @@ from .branch_and_bound import BoundedMatching, distinct_matchings_steps
 
 if TYPE_CHECKING:
     from .pair import Pair
-    from .progress import Steps
+    from .runtime.progress import Steps
 
 __all__ = ["flat_candidates", "flat_steps"]
 

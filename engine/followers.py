@@ -14,7 +14,7 @@ from .closest_points import ClosestPoints
 from .mesh import TriangleMesh
 from .part_pairs import contact_with, paired_parts
 from .part_placement import laid_onto_steps
-from .progress import Progress, Steps, within
+from .runtime.progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .surroundings import Surroundings
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from .errors import MatchError
-from .progress import Progress, Steps, run
-from .small_products import product
+from .runtime.errors import MatchError
+from .runtime.progress import Progress, Steps, run
+from .runtime.small_products import product
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

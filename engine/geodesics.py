@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
 from .corner_tables import corner_tables
-from .errors import MeshError
+from .runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from collections.abc import Generator

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .dual_ascent import assignment_duals
-from .progress import Progress
+from .runtime.progress import Progress
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .exclusion import Exclusion
     from .incumbent import Incumbent
     from .problem import MatchingProblem
-    from .progress import Steps
+    from .runtime.progress import Steps
 
 __all__ = ["gilmore_lawler_bound", "gilmore_lawler_steps"]
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from .errors import MatchError
 from .hierarchy import level_sizes
 from .local_stress import PairStress
 from .problem import MatchingProblem
-from .progress import Progress, Steps, within
 from .relaxation import descend
+from .runtime.errors import MatchError
+from .runtime.progress import Progress, Steps, within
 from .settling import Settled, Stress, joined, settle_steps
 from .surface import SurfacePoints
 from .surface_distances import SurfaceDistances, symmetric_roots

@@ -15,8 +15,8 @@ from .edge_pairs import group_half_edges, pair_half_edges
 from .handles import genus, shortest_handle_loop_steps
 from .hole_filling import fill_holes
 from .mesh import TriangleMesh
-from .progress import Steps, within
 from .proxy import Proxy, proxy_steps
+from .runtime.progress import Steps, within
 from .shape import Shape
 from .vertex_fans import split_fans
 

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 from .boundary_loops import boundary_loops
 from .edge_pairs import group_half_edges, pair_half_edges
 from .neighbour_means import neighbour_means
-from .progress import Progress, Steps
+from .runtime.progress import Progress, Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

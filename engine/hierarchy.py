@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .progress import Progress, Steps
 from .relaxation import RelaxedMatching, descend, project
+from .runtime.progress import Progress, Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

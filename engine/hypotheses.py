@@ -19,7 +19,7 @@ from .descriptors import squared_differences, weighted_correlation
 from .hierarchy import Refined, level_sizes, refine_steps
 from .orientation import orientation_agreement, signed_areas
 from .pair import Pair
-from .progress import Progress, Steps, within
+from .runtime.progress import Progress, Steps, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

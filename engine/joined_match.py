@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import MatchError
 from .joined_surface import separate_limbs, with_limbs_steps
 from .partial_match import has_border
 from .pieced_body import PiecedBody, resized_share, torn_share, without_partner
-from .progress import within
+from .runtime.errors import MatchError
+from .runtime.progress import within
 from .shape_matching import matched_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .progress import Steps
     from .result import MatchResult
+    from .runtime.progress import Steps
     from .shape import Shape
     from .shape_matching import MatchTask
 

@@ -15,12 +15,12 @@ from .cleaning import clean
 from .cleaning_notes import cleaning_notes
 from .closest_points import ClosestPoints, facing
 from .edge_pairs import group_half_edges, pair_half_edges
-from .errors import MeshError
 from .gap_bridges import bridged
 from .mesh import TriangleMesh
 from .mesh_orientation import enclosed_volumes
-from .progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
+from .runtime.errors import MeshError
+from .runtime.progress import Progress, Steps, within
 from .shape import Shape
 from .solid_indicator import solid_indicator
 from .surface_nets import surface_net

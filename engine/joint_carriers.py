@@ -15,7 +15,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from .errors import RigError
+from .runtime.errors import RigError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import RigError
 from .joint_carriers import carriers_of, moved_areas, nearest_on_bones
 from .procrustes import nearest_rotations
+from .runtime.errors import RigError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .errors import MatchError
+from .runtime.errors import MatchError
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array
 
 from .closest_points import ClosestPoints
-from .errors import MatchError
-from .progress import Progress, Steps, within
+from .runtime.errors import MatchError
+from .runtime.progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .torn_patches import NearVertices, with_patches_mended
 from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle_steps

@@ -9,14 +9,14 @@ import numpy as np
 
 from .extremities import limb_tips, mean_distances
 from .map_hypotheses import LandmarkStart
-from .sharing import shared_steps
+from .runtime.parallel_map import shared_steps
 from .surface_distances import measured_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .functional_maps import PointMaps
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .shape import Shape
 
 __all__ = ["exchanged_limbs", "repaired_start_steps"]

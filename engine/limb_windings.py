@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .progress import Steps, within
 from .registration import FINE
+from .runtime.progress import Steps, within
 
 if TYPE_CHECKING:
     from collections.abc import Callable

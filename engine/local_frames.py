@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags_array
 
-from .errors import MeshError
 from .laplacian import laplace_beltrami
+from .runtime.errors import MeshError
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import MatchError
 from .functional_maps import (
     FunctionalMaps,
     PointMaps,
@@ -23,9 +22,10 @@ from .functional_maps import (
 from .map_domain import MapDomain
 from .map_scores import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
 from .map_search import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
-from .progress import Progress, Steps, run, within
 from .rigid_maps import rigid_maps
-from .sharing import shared_steps
+from .runtime.errors import MatchError
+from .runtime.parallel_map import shared_steps
+from .runtime.progress import Progress, Steps, run, within
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

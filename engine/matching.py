@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .blas_threads import one_thread
-from .errors import MatchError
-from .helpers import call_helpers
 from .joined_match import matched_with_pieces_steps
 from .partial_match import has_border, part_matched_steps
 from .prepared_surface import prepared_steps
-from .progress import Progress, Steps, run, within
+from .runtime.blas_threads import one_thread
+from .runtime.errors import MatchError
+from .runtime.parallel_map import MOST_SENT, here_steps, shared_steps
+from .runtime.progress import Progress, Steps, run, within
+from .runtime.worker import call_helpers
 from .settings import MatchSettings
 from .shape import Shape
 from .shape_matching import MatchTask, matched_steps
-from .sharing import MOST_SENT, here_steps, shared_steps
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -15,8 +15,8 @@ from .deformable import DeformableSurface
 from .laplacian import laplace_beltrami
 from .mesh import TriangleMesh
 from .procrustes import nearest_rotations
-from .progress import Steps, within
 from .registration import FINE, LAST, Stage, register_steps
+from .runtime.progress import Steps, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

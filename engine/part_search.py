@@ -12,12 +12,12 @@ from scipy.spatial import cKDTree
 from .extremity_search import beam_matchings
 from .lifted_matchings import squared_differences
 from .orientation import signed_areas
-from .progress import Progress
+from .runtime.progress import Progress
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .shape import Shape
 
 __all__ = ["PartPlacement", "part_placements_steps"]

@@ -10,18 +10,18 @@ import numpy as np
 
 from .clean_surface import StandIn
 from .covered_parts import continued, covered_parts_steps
-from .errors import MatchError
 from .joined_surface import with_limbs_steps
 from .pieces_only import share_of, with_piece_only
-from .progress import within
+from .runtime.errors import MatchError
+from .runtime.progress import within
 from .shape import Shape
 from .shape_matching import matched_steps
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .progress import Steps
     from .result import MatchResult
+    from .runtime.progress import Steps
     from .shape_matching import MatchTask
 
 __all__ = ["has_border", "part_matched_steps"]

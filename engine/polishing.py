@@ -11,10 +11,10 @@ from .closest_points import ClosestPoints
 from .deformable import DeformableSurface
 from .laplacian import laplace_beltrami
 from .lifting import lift_steps
-from .progress import within
 from .proxy import Proxy, proxy_steps
 from .registration import LAST, register_steps
-from .sharing import shared_steps
+from .runtime.parallel_map import shared_steps
+from .runtime.progress import within
 from .surface import SurfacePoints
 from .ties import Ties
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from .landmarks import Landmarks
     from .mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
-    from .progress import Steps
     from .registration import Stage
+    from .runtime.progress import Steps
 
 __all__ = ["FinerSurface", "Polish", "finer_surfaces_steps"]
 

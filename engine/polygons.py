@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import MeshError
+from .runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,10 +11,10 @@ import numpy as np
 
 from .cleaning import clean
 from .closest_points import ClosestPoints
-from .errors import MatchError
 from .mesh import TriangleMesh
-from .progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
+from .runtime.errors import MatchError
+from .runtime.progress import Progress, Steps, within
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:

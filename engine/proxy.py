@@ -14,7 +14,7 @@ from .closest_points import ClosestPoints
 from .dual_triangulation import manifold_part
 from .edge_splitting import split_longest_edges
 from .mesh import TriangleMesh
-from .progress import Progress, Steps, within
+from .runtime.progress import Progress, Steps, within
 from .surface import SurfacePoints
 from .surface_cells import SurfaceCells, grid_labels, nearest_members
 from .symmetric_factor import symmetric_factor

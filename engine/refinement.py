@@ -10,13 +10,13 @@ import numpy as np
 from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS, RegisteredPair
 from .dense_match import dense_match_steps
-from .errors import MatchError
 from .joined_surface import joined_shapes_steps, with_limbs_steps
 from .landmarks import locate_landmarks
 from .pieces_only import piece_of, with_pieces_only
-from .progress import run, within
 from .reflection import reflected_mesh
 from .registration import FINE, Stage, register_steps, restarted_steps
+from .runtime.errors import MatchError
+from .runtime.progress import run, within
 from .shape import Shape
 from .shape_preparation import finer_shapes
 from .surface import SurfacePoints
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from .dense_match import DenseMatch
     from .mesh import TriangleMesh
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .surface_map import SurfaceMap
 
 __all__ = ["distortion_after", "placed_by_map", "point_distortions", "refine_map", "refine_map_steps"]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from .errors import MeshError
 from .geodesics import GeodesicSolver
+from .runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

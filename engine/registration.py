@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from .procrustes import nearest_rotations
-from .progress import Progress, Steps, within
-from .sharing import beside_steps
+from .runtime.parallel_map import beside_steps
+from .runtime.progress import Progress, Steps, within
 
 if TYPE_CHECKING:
     from collections.abc import Callable

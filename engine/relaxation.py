@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.sparse import csr_array
 
 from .quasi_newton import minimize_lbfgs
-from .small_products import product
+from .runtime.small_products import product
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import RigError
 from .joint_carriers import carriers_of, moved_areas
 from .joint_placement import root_direction, standing
+from .runtime.errors import RigError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

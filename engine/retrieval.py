@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .descriptors import distance_histograms, earth_movers_distance, squared_differences
-from .errors import MatchError, SettingsError
 from .hierarchy import level_sizes, refine_steps
 from .hypotheses import coarse_steps
 from .pair import Pair
-from .progress import Progress, Steps, run, within
+from .runtime.errors import MatchError, SettingsError
+from .runtime.progress import Progress, Steps, run, within
 from .settings import MatchSettings
 from .shape import Shape
 from .surface import SurfacePoints

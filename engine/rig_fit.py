@@ -14,14 +14,14 @@ from .clean_surface import StandIn
 from .cleaning import clean
 from .closest_points import ClosestPoints, FoundPoints, facing
 from .digit_fit import with_digits
-from .errors import RigError
 from .fitted_rig import FittedRig
 from .homes import Homes
 from .joined_surface import joined_steps, separate_limbs
 from .laplacian import laplace_beltrami
 from .posed_registration import PosedRegistration
-from .progress import Progress, Steps, run, within
 from .proxy import proxy_steps
+from .runtime.errors import RigError
+from .runtime.progress import Progress, Steps, run, within
 from .stunted_digits import stunted_digits, with_stiff_digits
 from .surface import SurfacePoints
 from .surface_map import SurfaceMap

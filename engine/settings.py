@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from .errors import SettingsError
+from .runtime.errors import SettingsError
 
 __all__ = ["SETUPS", "MatchSettings"]
 

@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from .local_stress import LocalStress, PairStress
-from .progress import Progress, Steps
+from .runtime.progress import Progress, Steps
 from .surface import SurfacePoints
 from .surface_distances import symmetric_roots
 

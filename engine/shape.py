@@ -17,9 +17,9 @@ from .integral_invariants import smoothed_mean_curvature
 from .laplacian import LaplaceBeltrami, laplace_beltrami
 from .orientation import tangent_gradient
 from .prepared_surface import PreparedSurface, prepared_steps
-from .progress import Progress, Steps, run
 from .proxy import Proxy
 from .reflection import reflected_surface
+from .runtime.progress import Progress, Steps, run
 from .sampling import FarthestPointSampler
 
 if TYPE_CHECKING:

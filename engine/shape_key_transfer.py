@@ -9,9 +9,9 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.csgraph import connected_components
 
-from .errors import MatchError
 from .laplacian import laplace_beltrami
-from .progress import Progress
+from .runtime.errors import MatchError
+from .runtime.progress import Progress
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from .local_frames import LocalFrames
     from .mesh import TriangleMesh
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .surface_map import SurfaceMap
 
 __all__ = ["Scaling", "carry_offsets_steps"]

@@ -12,15 +12,15 @@ from scipy.optimize import linear_sum_assignment
 
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .dense_match import MEASURED, DenseMatch, dense_match_steps
-from .errors import MatchError
 from .handle_cutting import evened_steps
 from .hierarchy import refine_steps
 from .landmarks import locate_landmarks, placed_at_vertices
 from .map_hypotheses import LandmarkStart, map_domains
 from .map_search import RoughSearch
 from .pair import Pair
-from .progress import within
 from .result import CoarseMatch, MatchResult
+from .runtime.errors import MatchError
+from .runtime.progress import within
 from .shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from .solvers import Answer, at_samples, moved, solve_steps
 from .surface import SurfacePoints
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .landmarks import Landmarks
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .settings import MatchSettings
     from .shape import Shape
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from .eigenpairs import Spectrum, eigenpairs_steps
 from .laplacian import LaplaceBeltrami
-from .sharing import shared_steps
+from .runtime.parallel_map import shared_steps
 
 if TYPE_CHECKING:
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .shape import Shape
 
 __all__ = ["Wanted", "finer_shapes", "finer_shapes_steps", "prepared_shapes_steps"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import RigError
+from .runtime.errors import RigError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
 
-from .errors import MatchError, RigError
+from .runtime.errors import MatchError, RigError
 
 if TYPE_CHECKING:
     from typing import Any

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import SettingsError
+from .runtime.errors import SettingsError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .map_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps
-from .progress import Steps, within
+from .runtime.progress import Steps, within
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

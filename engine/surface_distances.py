@@ -9,8 +9,8 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from .descriptors import squared_differences
-from .progress import Progress, Steps, run
-from .sharing import shared_steps
+from .runtime.parallel_map import shared_steps
+from .runtime.progress import Progress, Steps, run
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:

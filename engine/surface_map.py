@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .closest_points import ClosestPoints
-from .errors import MatchError
+from .runtime.errors import MatchError
 from .surface import SurfacePoints
 
 if TYPE_CHECKING:

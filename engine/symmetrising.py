@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
-from .errors import MatchError
 from .laplacian import laplace_beltrami
 from .local_frames import surface_frames
+from .runtime.errors import MatchError
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:

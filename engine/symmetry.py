@@ -10,11 +10,11 @@ import numpy as np
 
 from .branch_and_bound import Exclusion, branch_and_bound_steps
 from .descriptors import squared_differences, weighted_correlation
-from .errors import MatchError
 from .hierarchy import level_sizes, refine_steps
 from .orientation import orientation_agreement, signed_areas
 from .pair import Pair
-from .progress import Progress, Steps, run, within
+from .runtime.errors import MatchError
+from .runtime.progress import Progress, Steps, run, within
 from .settings import MatchSettings
 from .shape import Shape
 from .surface import SurfacePoints

@@ -6,14 +6,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .dense_match import densify_steps
-from .progress import run, within
+from .runtime.progress import run, within
 from .shape import Shape
 from .symmetry import find_symmetry_steps
 
 if TYPE_CHECKING:
     from .dense_match import DenseMatch
     from .mesh import TriangleMesh
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .settings import MatchSettings
 
 __all__ = ["symmetry_map", "symmetry_map_steps"]

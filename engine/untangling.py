@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from .progress import Progress, Steps
+from .runtime.progress import Progress, Steps
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 
 from .corner_sheets import cut_into_sheets
 from .corner_welding import jumps, weld
-from .errors import MatchError
-from .progress import Progress
+from .runtime.errors import MatchError
+from .runtime.progress import Progress
 from .stray_faces import splinters, teeth
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .corner_sheets import CornerSheets
     from .face_places import CornerPlaces, FacePlaces
     from .polygons import Polygons
-    from .progress import Steps
+    from .runtime.progress import Steps
 
 __all__ = ["CarriedUVs", "carry_uvs_steps"]
 

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from .dual_triangulation import DualTriangulation, dual_triangulation
-from .progress import Progress, Steps
+from .runtime.progress import Progress, Steps
 from .sizing_field import vertex_density
 from .surface_cells import SurfaceCells, nearest_members
 

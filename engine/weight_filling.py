@@ -10,9 +10,9 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
-from .errors import MeshError, RigError
 from .laplacian import laplace_beltrami
 from .mesh import TriangleMesh
+from .runtime.errors import MeshError, RigError
 from .skin_weights import with_rows
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 
 from .followers import follow_steps
 from .missing_parts import round_trips
-from .progress import Progress, Steps, within
 from .quality import closeness, map_confidence, trip_confidence
+from .runtime.progress import Progress, Steps, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.sparse import diags_array
 
 from .elastic import ElasticSurface
-from .errors import MatchError
 from .laplacian import laplace_beltrami
 from .local_frames import surface_frames
-from .progress import Progress
+from .runtime.errors import MatchError
+from .runtime.progress import Progress
 from .surface import SurfacePoints
 from .surroundings import Surroundings
 from .symmetric_factor import symmetric_factor
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh import TriangleMesh
-    from .progress import Steps
+    from .runtime.progress import Steps
     from .surface_map import SurfaceMap
 
 __all__ = ["WrappedSurface", "kept_in_place", "wrap_steps"]

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..engine import Progress
-from ..engine.progress import run, within
 from ..engine.refinement import distortion_after, placed_by_map
+from ..engine.runtime.progress import run, within
 from . import writing
 from .contents import contents_steps
 from .stored_match import CornerPoints, Quality
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..engine import DenseMatch, SurfacePoints, TriangleMesh
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .contents import Content
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps

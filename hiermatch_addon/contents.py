@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from ..engine import Progress
-from ..engine.progress import run
+from ..engine.runtime.progress import run
 from . import colors
 from .stretch import DOUBLED, vertex_stretch
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .vertex_maps import MapPair
 
 __all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents", "contents_steps"]

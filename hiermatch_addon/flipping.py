@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ..engine import Shape, densify_steps
-from ..engine.progress import within
+from ..engine.runtime.progress import within
 from ..engine.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .access import mesh_of, view_layer_of
 from .answer_writing import following, mapped_contents_steps, restored
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..engine import SurfacePoints, TriangleMesh
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .contents import Content
     from .halves import Half
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
-from ..engine.progress import within
 from ..engine.refinement import distortion_after, placed_by_map
+from ..engine.runtime.progress import within
 from . import writing
 from .access import mesh_of, view_layer_of
 from .contents import contents_steps
@@ -27,7 +27,7 @@ from .vertex_maps import StoredMaps, add_maps
 
 if TYPE_CHECKING:
     from ..engine import DenseMatch, MatchResult
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .contents import Content
     from .properties import MatchOptions
     from .vertex_maps import MapPair

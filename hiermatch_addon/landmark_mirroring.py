@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ..engine import symmetry_map_steps
-from ..engine.progress import within
+from ..engine.runtime.progress import within
 from .access import mesh_of, view_layer_of
 from .errors import ObjectError
 from .halves import find_common
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..engine import TriangleMesh
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .landmarks import Landmark
 
 __all__ = ["MirrorJob"]

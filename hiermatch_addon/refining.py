@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import Progress
-from ..engine.progress import within
 from ..engine.refinement import refine_map_steps
+from ..engine.runtime.progress import within
 from .access import mesh_of, view_layer_of
 from .answer_writing import following, mapped_contents_steps
 from .errors import ObjectError
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .halves import Half
 
 __all__ = ["RefineJob"]

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import bpy
 
-from ..engine.helpers import close_helpers
+from ..engine.runtime.worker import close_helpers
 from .command_line import register_command, unregister_command
 from .freshness import start_watching, stop_watching
 from .hover import HIERMATCH_GGT_hover, HIERMATCH_GT_hover

@@ -12,7 +12,7 @@ from ..engine import Progress
 if TYPE_CHECKING:
     import bpy
 
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
 
 __all__ = ["SteppedJob"]
 

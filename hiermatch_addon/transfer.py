@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import bpy
 
     from ..engine import FittedRig
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .vertex_maps import MapPair
 
 __all__ = ["Passage", "Transfer", "TransferReport"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..engine import HierMatchError, Progress, fit_rig_steps
-from ..engine.progress import within
+from ..engine.runtime.progress import within
 from .access import mesh_of, view_layer_of
 from .armatures import read_rig
 from .errors import ObjectError
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..engine import TriangleMesh
-    from ..engine.progress import Steps
+    from ..engine.runtime.progress import Steps
     from .armatures import SourceRig
     from .job import JobOptions, Outcome
     from .transfer import Transfer

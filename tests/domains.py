@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from engine import Shape, TriangleMesh
 from engine.map_domain import MapDomain
-from engine.progress import run
+from engine.runtime.progress import run
 
 
 def domain(vertices, triangles, samples=200, eigenpairs=60):

@@ -5,8 +5,8 @@ import os
 import sys
 import time
 
-from engine.errors import MatchError
-from engine.progress import Progress
+from engine.runtime.errors import MatchError
+from engine.runtime.progress import Progress
 
 
 class Kept:

@@ -11,7 +11,7 @@ from ...engine.attribute_transfer import Crossing, carry_values_steps
 from ...engine.corner_transfer import carry_normals
 from ...engine.face_transfer import carry_face_values
 from ...engine.local_frames import surface_frames
-from ...engine.progress import Progress, within
+from ...engine.runtime.progress import Progress, within
 from ..access import mesh_of
 from ..attribute_choice import SEAMS, choose_attributes, taken_note
 from ..attribute_io import (
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from ...engine.attribute_transfer import Domain
     from ...engine.polygons import Polygons
-    from ...engine.progress import Steps
+    from ...engine.runtime.progress import Steps
     from ..attribute_io import AttributeLayout
     from ..transfer import Passage
     from .attributes_options import AttributeSettings

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ...engine.joint_placement import place_joints
-from ...engine.progress import Progress
 from ...engine.rest_pose import is_posed, rest_pose
+from ...engine.runtime.progress import Progress
 from ..access import view_layer_of
 from ..armature_copy import copy_armature, move_joints, repoint
 from ..armatures import armature_of, find_armature, moving_armatures, read_rig
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...engine.joint_placement import PlacedJoints
-    from ...engine.progress import Steps
     from ...engine.rest_pose import RestPose
+    from ...engine.runtime.progress import Steps
     from ..transfer import Passage
     from .rig_options import RigSettings
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...engine import Progress, symmetry_map_steps
-from ...engine.progress import within
+from ...engine.runtime.progress import within
 from ...engine.symmetrising import Symmetriser
 from ..access import mesh_of, view_layer_of
 from ..attribute_io import attribute_layouts, read_attribute, write_attribute
@@ -40,7 +40,7 @@ from .wrap import wrap_key_name
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...engine.progress import Steps
+    from ...engine.runtime.progress import Steps
     from .symmetrise_options import SymmetriseSettings
 
 __all__ = ["SymmetriseJob"]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...engine.face_places import FacePlaces
-from ...engine.progress import Progress, within
+from ...engine.runtime.progress import Progress, within
 from ...engine.uv_transfer import carry_uvs_steps
 from ..access import mesh_of
 from ..attribute_io import (
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...engine.polygons import Polygons
-    from ...engine.progress import Steps
+    from ...engine.runtime.progress import Steps
     from ...engine.uv_transfer import CarriedUVs
     from ..transfer import Passage
     from .uvs_options import UVSettings

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.progress import Steps
+    from ...engine.runtime.progress import Steps
     from ..transfer import Passage
     from .weights_options import WeightSettings
 

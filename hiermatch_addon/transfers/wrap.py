@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from ...engine.morphing import in_between
-from ...engine.progress import Progress, within
+from ...engine.runtime.progress import Progress, within
 from ...engine.wrapping import kept_in_place, wrap_steps
 from .. import writing
 from ..access import mesh_of
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.progress import Steps
+    from ...engine.runtime.progress import Steps
     from ..transfer import Passage
     from .wrap_options import WrapSettings
 

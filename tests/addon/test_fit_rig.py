@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine import HierMatchError
-from hiermatch.engine.progress import run
+from hiermatch.engine.runtime.progress import run
 from hiermatch.hiermatch_addon.armatures import find_armature, read_skeleton
 from hiermatch.hiermatch_addon.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.transfers.rig import RigTransfer

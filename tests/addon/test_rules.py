@@ -17,7 +17,8 @@ STANDARD = {"__future__", "collections", "contextlib", "copy", "dataclasses", "f
 ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time"}
 # What starts another process, sends it values and ends it, without any thread, also of libraries.
 PROCESSES = {
-    ROOT / "engine" / f"{name}.py" for name in ("helpers", "helper_main", "pipes", "sent_objects", "blas_threads")
+    ROOT / "engine" / "runtime" / f"{name}.py"
+    for name in ("worker", "worker_main", "pipes", "messages", "blas_threads")
 }
 PROCESSES_MAY = {"atexit", "ctypes", "io", "msvcrt", "os", "pathlib", "pickle", "select", "subprocess", "sys"}
 PROCESSES_MAY |= {"weakref"}

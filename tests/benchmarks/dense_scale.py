@@ -31,7 +31,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from engine import MatchSettings, match
-from engine.helpers import close_helpers
+from engine.runtime.worker import close_helpers
 from tests.benchmarks.known_shapes import LISTED, KnownShapes, score
 from tests.benchmarks.variants import as_is, decimate, subdivide
 

@@ -22,8 +22,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from engine.mesh import TriangleMesh
-from engine.progress import run
 from engine.retrieval import RetrievalSettings, retrieve
+from engine.runtime.progress import run
 from engine.shape import Shape
 from tests.benchmarks.symmetry import read_off
 from tests.bodies import mirrored_body, relative_of_creature

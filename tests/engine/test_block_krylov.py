@@ -7,7 +7,7 @@ from scipy.sparse import csr_array, diags_array, kron
 
 from engine import block_krylov
 from engine.block_krylov import lowest_eigenpairs_steps
-from engine.progress import run
+from engine.runtime.progress import run
 
 
 def path(n):

@@ -16,9 +16,9 @@ from engine.branch_and_bound import (
     branch_and_bound_steps,
     distinct_matchings_steps,
 )
-from engine.errors import MatchError
 from engine.problem import MatchingProblem
-from engine.progress import Progress, run
+from engine.runtime.errors import MatchError
+from engine.runtime.progress import Progress, run
 from tests.problems import all_costs, brute_force, random_problem, relabelled, shape_problem
 
 METHODS = ["dual ascent", "gilmore-lawler"]

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, SurfaceMap, SurfacePoints, TriangleMesh
 from engine.covered_parts import best_and_rivals, continued, covered_parts_steps
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.shapes import compacted, creature, cylinder
 
 FRONT = 0.0

@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from engine.branch_and_bound import Exclusion
 from engine.dual_ascent import assignment_duals, dual_ascent_steps, pair_model
 from engine.problem import MatchingProblem
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.problems import all_costs, brute_force, random_problem, shape_problem
 
 

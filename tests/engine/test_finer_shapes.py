@@ -9,9 +9,9 @@ import pytest
 from engine import MatchSettings, Shape, SurfacePoints, TriangleMesh, match
 from engine.dense_match import densify
 from engine.eigenpairs import Spectrum
-from engine.progress import run
 from engine.proxy import Proxy
 from engine.refinement import refine_map
+from engine.runtime.progress import run
 from engine.shape_preparation import finer_shapes, finer_shapes_steps
 from tests.shapes import creature, cylinder, subdivided
 

@@ -15,7 +15,7 @@ from engine.functional_maps import (
     refine_bijective_steps,
     spectral_sizes,
 )
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.shapes import creature, permuted
 
 

@@ -8,7 +8,7 @@ from engine import MatchSettings, Shape, TriangleMesh, match
 from engine.cleaning import clean
 from engine.handle_cutting import cut_along, evened_steps
 from engine.handles import genus, shortest_handle_loop_steps
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.engine.test_handles import with_handles
 from tests.messes import bridged
 from tests.shapes import compacted, creature, icosphere, torus

@@ -6,7 +6,7 @@ import pytest
 
 from engine import TriangleMesh
 from engine.handles import genus, shortest_handle_loop_steps
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.messes import bridged
 from tests.shapes import (
     compacted,

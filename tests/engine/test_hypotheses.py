@@ -6,7 +6,7 @@ import pytest
 from engine import MatchSettings, Shape, TriangleMesh
 from engine.hypotheses import choose_steps, coarse_steps
 from engine.pair import Pair
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.shapes import creature
 
 SPARSE = MatchSettings(points=20, samples=100, coarse_points=8, coarse_candidates=16, hypotheses=5, dense=False)

@@ -10,8 +10,8 @@ from engine.cleaning import clean
 from engine.closest_points import ClosestPoints
 from engine.handles import genus
 from engine.joined_surface import separate_limbs, with_limbs_steps
-from engine.progress import run
 from engine.reflection import reflected_surface
+from engine.runtime.progress import run
 from engine.surface import SurfacePoints
 from tests.limbs import modular_creature
 from tests.messes import together

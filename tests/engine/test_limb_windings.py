@@ -10,7 +10,7 @@ from engine.laplacian import laplace_beltrami
 from engine.limb_twists import Untwisted, Winding
 from engine.limb_windings import local_costs, wound_steps
 from engine.registration import Registration, register_steps
-from engine.sharing import here_steps
+from engine.runtime.parallel_map import here_steps
 from tests.shapes import icosphere
 
 FULL = 2 * np.pi

@@ -11,7 +11,7 @@ from engine.branch_and_bound import Exclusion
 from engine.dual_ascent import dual_ascent_steps, pair_model
 from engine.local_search import beam_search, improve_matching
 from engine.problem import MatchingProblem
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.problems import brute_force, random_problem, shape_problem
 
 

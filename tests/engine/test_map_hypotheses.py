@@ -16,7 +16,7 @@ from engine.map_hypotheses import (
     unrefined_hypotheses_steps,
     unrefined_hypothesis,
 )
-from engine.progress import Progress, run
+from engine.runtime.progress import Progress, run
 from tests.bodies import mirrored_body
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 

@@ -4,7 +4,7 @@ import pytest
 
 from engine.functional_maps import PointMaps
 from engine.map_search import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
-from engine.progress import Progress, run
+from engine.runtime.progress import Progress, run
 from tests.bodies import octopus
 from tests.domains import domain
 from tests.shapes import creature, rotation

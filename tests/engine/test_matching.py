@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, match, match_steps
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.shapes import creature, icosphere, permuted, rotation
 
 QUICK = MatchSettings(points=40, samples=200, dense=False)

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
 from engine.part_search import part_placements_steps
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.shapes import compacted, creature
 
 

@@ -7,8 +7,8 @@ import pytest
 from engine import MatchSettings, Shape, TriangleMesh, densify, match, match_steps
 from engine.covered_parts import CoveredPart
 from engine.partial_match import has_border, part_matched_steps
-from engine.progress import run
 from engine.refinement import refine_map
+from engine.runtime.progress import run
 from engine.shape_matching import MatchTask, matched_steps
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 

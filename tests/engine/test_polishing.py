@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, dense_match, match, polishing
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.shapes import creature, subdivided
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)

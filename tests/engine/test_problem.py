@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from engine.errors import MatchError
 from engine.problem import MatchingProblem
+from engine.runtime.errors import MatchError
 from tests.problems import random_problem, relabelled
 
 

@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
-from engine.errors import MatchError, SettingsError
 from engine.mesh import TriangleMesh
-from engine.progress import run
 from engine.retrieval import RetrievalSettings, retrieve, retrieve_steps
+from engine.runtime.errors import MatchError, SettingsError
+from engine.runtime.progress import run
 from engine.shape import Shape
 from tests.bodies import relative_of_creature
 from tests.shapes import icosphere, permuted, rotation, torus

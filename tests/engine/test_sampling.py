@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import shortest_path
 
-from engine.errors import MatchError
+from engine.runtime.errors import MatchError
 from engine.sampling import FarthestPointSampler, farthest_point_sampling
 
 

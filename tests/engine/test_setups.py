@@ -6,7 +6,7 @@ import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, match
 from engine.pair import Pair
-from engine.progress import run
+from engine.runtime.progress import run
 from engine.settings import SETUPS
 from tests.shapes import creature
 

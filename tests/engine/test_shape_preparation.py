@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from engine import Shape, TriangleMesh
-from engine.blas_threads import one_thread
 from engine.map_domain import MapDomain
-from engine.progress import run
+from engine.runtime.blas_threads import one_thread
+from engine.runtime.progress import run
 from engine.shape_preparation import Wanted, prepared_shapes_steps
 from tests.shapes import creature, icosphere, irregular
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import Shape, TriangleMesh
-from engine.progress import run
+from engine.runtime.progress import run
 from tests.shapes import creature, icosphere, irregular, subdivided
 
 COUNT, MEASURED = 60, 12

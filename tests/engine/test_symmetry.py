@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from engine.errors import MatchError
 from engine.mesh import TriangleMesh
-from engine.progress import run
+from engine.runtime.errors import MatchError
+from engine.runtime.progress import run
 from engine.settings import MatchSettings
 from engine.shape import Shape
 from engine.symmetry import find_symmetry, find_symmetry_steps

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, TriangleMesh, symmetry_map
-from engine.progress import run
+from engine.runtime.progress import run
 from engine.symmetry_map import symmetry_map_steps
 from tests.bodies import mirrored_body
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.progress import run
+from engine.runtime.progress import run
 from engine.surface_cells import SurfaceCells, grid_labels
 from engine.voronoi_regions import VoronoiRegions, spread_regions_steps
 from tests.shapes import icosphere, plane, torus

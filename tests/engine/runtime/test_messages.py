@@ -2,7 +2,7 @@
 import gc
 import pickle
 
-from engine.sent_objects import SentObjects
+from engine.runtime.messages import SentObjects
 from tests.shared_work import Kept
 
 

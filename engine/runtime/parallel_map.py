@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from .blas_threads import one_thread
 from .errors import HierMatchError
-from .helpers import present_helpers
 from .progress import Progress, within
+from .worker import present_helpers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import Self
 
-    from .helpers import Helper, Task
     from .progress import Steps
+    from .worker import Helper, Task
 
 __all__ = ["MOST_SENT", "beside_steps", "here_steps", "shared_steps"]
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
 
-from engine.progress import Progress, run, within
+from engine.runtime.progress import Progress, run, within
 
 
 def counting(count, log=None):

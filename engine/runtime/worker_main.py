@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a helper does, a process beside this one that takes over parts of its work; see `helpers`."""
+"""What a helper does, a process beside this one that takes over parts of its work; see `worker`."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Any
 
 from .blas_threads import one_thread
 from .errors import HierMatchError
+from .messages import pack, unpack
 from .pipes import has_more, receive, send
 from .progress import run
-from .sent_objects import pack, unpack
 
 __all__ = ["READY", "serve"]
 

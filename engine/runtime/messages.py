@@ -11,7 +11,10 @@ from typing import IO, TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["SentObjects", "pack", "unpack"]
+__all__ = ["PACKAGE", "SentObjects", "pack", "unpack"]
+
+PACKAGE = __name__.rsplit(".", 2)[0]
+"""What the engine is called here: another program may have it inside of a package."""
 
 
 class SentObjects:
@@ -24,7 +27,7 @@ class SentObjects:
         self._new: list[tuple[int, bytes]] = []
 
     def messages(self, order: object) -> list[bytes]:
-        """Pack an order, and what of it has not been sent yet; see `helper_main.serve`."""
+        """Pack an order, and what of it has not been sent yet; see `worker_main.serve`."""
         gone = self._sent - set(self._numbers.values())
         packed = self._packed(order)
         new, self._new = self._new, []
@@ -94,7 +97,7 @@ class _Unpacker(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:  # noqa: ANN401
         """Find a class or function of the engine by what that is called here."""
         if module == self._package or module.startswith(f"{self._package}."):
-            module = f"{__package__}{module[len(self._package) :]}"
+            module = f"{PACKAGE}{module[len(self._package) :]}"
         return super().find_class(module, name)
 
     def persistent_load(self, pid: int) -> Any:  # noqa: ANN401

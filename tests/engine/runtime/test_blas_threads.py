@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
 
-from engine import blas_threads
-from engine.blas_threads import one_thread, thread_counts
+from engine.runtime import blas_threads
+from engine.runtime.blas_threads import one_thread, thread_counts
 
 
 @pytest.fixture

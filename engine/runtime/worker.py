@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy
 
-from .helper_main import READY
+from .messages import PACKAGE, SentObjects, unpack
 from .pipes import has_more, receive, send
-from .sent_objects import SentObjects, unpack
+from .worker_main import READY
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,12 +40,15 @@ _MOST = 2
 _AT_ONCE = 4096
 """Bytes that are read at a time of what an interpreter says before it is ready."""
 
+_ROOT = Path(__file__).resolve().parents[1]
+"""Folder of the engine."""
+
 _NAME = "engine"
 """What the engine is called in a helper, whatever it is called here."""
 
 _BEGIN = (
     f"import sys, types; package = sys.modules['{_NAME}'] = types.ModuleType('{_NAME}'); "
-    f"package.__path__ = sys.argv[1:]; from {_NAME}.helper_main import serve; serve()"
+    f"package.__path__ = sys.argv[1:]; from {_NAME}.runtime.worker_main import serve; serve()"
 )
 """What a helper runs.  To import all of the package would take it several times as long: modules wait until used."""
 
@@ -80,7 +83,7 @@ class Helper:
     def __init__(self) -> None:
         hidden = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # Windows would open a console
         self._process = subprocess.Popen(  # noqa: S603 - this interpreter
-            [sys.executable, "-c", _BEGIN, str(Path(__file__).resolve().parent)],
+            [sys.executable, "-c", _BEGIN, str(_ROOT)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -96,7 +99,7 @@ class Helper:
         self._task: Task | None = None
         self._begun, self._heard = False, b""
         with suppress(OSError):
-            send(self._orders, str(__package__).encode())
+            send(self._orders, PACKAGE.encode())
 
     @property
     def pid(self) -> int:
@@ -167,8 +170,8 @@ class Helper:
 
 def _environment() -> dict[str, str]:
     """Tell a helper where the engine is, and what that needs, and not to look for it in the working directory."""
-    files = __file__, np.__file__, scipy.__file__
-    paths = [str(Path(str(file)).parent.parent.resolve()) for file in files] + [os.environ.get("PYTHONPATH", "")]
+    packages = [_ROOT, *(Path(str(file)).resolve().parent for file in (np.__file__, scipy.__file__))]
+    paths = [str(package.parent) for package in packages] + [os.environ.get("PYTHONPATH", "")]
     found = os.pathsep.join(path for path in paths if path)
     return os.environ | {_VARIABLE: "1", "PYTHONPATH": found, "PYTHONSAFEPATH": "1"}
 

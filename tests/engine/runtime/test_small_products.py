@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from engine.small_products import product
+from engine.runtime.small_products import product
 
 
 @pytest.mark.parametrize(

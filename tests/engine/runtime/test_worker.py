@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from engine import MatchError, Progress, TriangleMesh, match, run
-from engine.helper_main import READY
-from engine.helpers import call_helpers, close_helpers, present_helpers, use_processes
-from engine.pipes import send
-from engine.sharing import beside_steps, here_steps, shared_steps
+from engine.runtime.parallel_map import beside_steps, here_steps, shared_steps
+from engine.runtime.pipes import send
+from engine.runtime.worker import call_helpers, close_helpers, present_helpers, use_processes
+from engine.runtime.worker_main import READY
 from tests import shared_work
 from tests.shapes import creature
 from tests.shared_work import Kept
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PATIENCE = 60
 
 
@@ -174,7 +174,7 @@ def test_an_error_here_ends_what_helpers_do():
 
 
 def test_idle_helpers_end():
-    script = "from engine.helper_main import serve; serve(0.1)"
+    script = "from engine.runtime.worker_main import serve; serve(0.1)"
     streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, bufsize=0, **streams) as process:
         send(process.stdin.fileno(), b"engine")
@@ -312,7 +312,7 @@ def python(script, **environment):
 def test_helpers_end_with_the_process_that_called_them():
     script = """
 import time
-from engine import helpers
+from engine.runtime import worker as helpers
 helpers.use_processes(2); helpers.call_helpers(); (helper,) = helpers.present_helpers()
 while not helper.is_ready: time.sleep(0.01)
 print(helper.pid)
@@ -330,8 +330,9 @@ def test_helpers_find_an_engine_inside_of_another_package(tmp_path):
     (package / "engine").symlink_to(ROOT / "engine")
     script = """
 import time
-from outer.inner.engine import TriangleMesh, Shape, helpers, run
-from outer.inner.engine.sharing import shared_steps
+from outer.inner.engine import TriangleMesh, Shape, run
+from outer.inner.engine.runtime import worker as helpers
+from outer.inner.engine.runtime.parallel_map import shared_steps
 from outer.inner.engine.shape_preparation import Wanted, _prepared_steps
 from tests.shapes import creature
 helpers.use_processes(2); helpers.call_helpers(); (helper,) = helpers.present_helpers()

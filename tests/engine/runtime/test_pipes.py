@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from engine.pipes import has_more, receive, send
+from engine.runtime.pipes import has_more, receive, send
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def test_messages_come_as_they_were_sent(pipe, message):
 
 def test_a_message_may_be_larger_than_the_pipe():
     message = os.urandom(5 << 20)
-    script = "import os; from engine.pipes import receive, send; send(1, receive(0)[::-1])"
+    script = "import os; from engine.runtime.pipes import receive, send; send(1, receive(0)[::-1])"
     streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, bufsize=0, **streams) as process:
         send(process.stdin.fileno(), message)
