@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The engine of HierMatch: NumPy and SciPy only, no Blender."""
 
-from .closest_points import ClosestPoints
 from .dense_match import DenseMatch, densify, densify_steps
 from .fitted_rig import FittedRig
 from .joint_placement import PlacedJoints, place_joints
 from .local_frames import LocalFrames, bone_frames, surface_frames
 from .matching import match, match_steps
-from .mesh import TriangleMesh
+from .mesh.closest_points import ClosestPoints
+from .mesh.polygons import Polygons
+from .mesh.surface_map import SurfaceMap
+from .mesh.surface_points import SurfacePoints
+from .mesh.triangle_mesh import TriangleMesh
 from .morphing import in_between
-from .polygons import Polygons
 from .quality import MatchQuality
 from .rest_pose import RestPose, rest_pose
 from .result import CoarseMatch, Level, MatchResult
@@ -23,8 +25,6 @@ from .shape import Shape
 from .shape_key_transfer import carry_offsets_steps
 from .skeleton import Skeleton
 from .skin_weights import carried as carry_weights
-from .surface import SurfacePoints
-from .surface_map import SurfaceMap
 from .symmetrising import Symmetriser
 from .symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
 from .symmetry_map import symmetry_map, symmetry_map_steps

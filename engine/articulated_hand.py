@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.sparse import csr_array
 
-    from .closest_points import FoundPoints
     from .digit_groups import DigitGroup
-    from .mesh import TriangleMesh
+    from .mesh.closest_points import FoundPoints
+    from .mesh.triangle_mesh import TriangleMesh
     from .skeleton import Skeleton
 
 __all__ = ["Hand", "HandPose", "HandSolver"]

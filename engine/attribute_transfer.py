@@ -18,10 +18,10 @@ from .runtime.errors import MatchError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
-    from .polygons import Polygons
+    from .mesh.polygons import Polygons
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps
-    from .surface_map import SurfaceMap
 
 __all__ = ["CarriedValues", "Crossing", "Domain", "carry_values_steps"]
 

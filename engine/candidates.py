@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .closest_points import FoundPoints
 from .functional_maps import PointMaps
 from .limb_twists import rolled_back, untwisted
 from .limb_windings import wound_steps
 from .map_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
 from .map_search import MapLead
+from .mesh.closest_points import FoundPoints
+from .mesh.surface_points import SurfacePoints
 from .registration import (
     AGAIN,
     CLOSE,
@@ -30,7 +31,6 @@ from .registration import (
 )
 from .runtime.parallel_map import shared_steps
 from .runtime.progress import Steps, within
-from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -11,16 +11,16 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .closest_points import ClosestPoints
-from .edge_pairs import following, group_half_edges, pair_half_edges
-from .mesh import TriangleMesh
+from .mesh.closest_points import ClosestPoints
+from .mesh.connectivity.halfedges import following, group_half_edges, pair_half_edges
+from .mesh.connectivity.triangle_components import triangle_components
+from .mesh.triangle_mesh import TriangleMesh
 from .runtime.errors import MeshError
-from .triangle_components import triangle_components
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .polygons import Polygons
+    from .mesh.polygons import Polygons
 
 __all__ = ["CornerSheets", "cut_into_sheets"]
 

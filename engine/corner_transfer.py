@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .face_places import FacePlaces
-    from .mesh import TriangleMesh
-    from .polygons import Polygons
-    from .surface_map import SurfaceMap
+    from .mesh.polygons import Polygons
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["carry_corner_values", "carry_normals", "carry_point_marks", "carry_point_values"]
 

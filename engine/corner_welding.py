@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .polygons import Polygons
+    from .mesh.polygons import Polygons
 
 __all__ = ["groups_of", "jumps", "weld"]
 

@@ -16,19 +16,19 @@ from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS
 from .map_domain import MapDomain
 from .map_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
-from .mesh import TriangleMesh
+from .mesh.surface_points import SurfacePoints
+from .mesh.triangle_mesh import TriangleMesh
 from .missing_parts import with_partner
 from .part_search import part_placements_steps
 from .runtime.errors import MatchError
 from .runtime.parallel_map import shared_steps
 from .runtime.progress import Steps, within
 from .shape import Shape
-from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .surface_map import SurfaceMap
+    from .mesh.surface_map import SurfaceMap
 
 __all__ = ["CoveredPart", "best_and_rivals", "continued", "covered_parts_steps"]
 

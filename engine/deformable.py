@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags_array
 
-from .closest_points import ClosestPoints
 from .elastic import ElasticSurface
+from .mesh.closest_points import ClosestPoints
 from .normal_equations import NormalEquations
 from .runtime.progress import Progress, Steps
 from .symmetric_factor import symmetric_factor
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .laplacian import LaplaceBeltrami
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["DeformableSurface"]
 

@@ -15,6 +15,8 @@ from .joined_surface import with_limbs_steps
 from .landmarks import placed_at_vertices
 from .lifting import lift_steps
 from .map_hypotheses import LandmarkStart
+from .mesh.surface_map import SurfaceMap
+from .mesh.surface_points import SurfacePoints
 from .pieces_only import piece_of, with_pieces_only
 from .pinning import pinned
 from .polishing import Polish, finer_surfaces_steps
@@ -26,8 +28,6 @@ from .runtime.progress import Progress, Steps, run, within
 from .runtime.worker import call_helpers
 from .shape import Shape
 from .shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
-from .surface import SurfacePoints
-from .surface_map import SurfaceMap
 from .whole_maps import whole_maps_steps
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from .deformable import DeformableSurface
     from .dense_map import RegisteredPair
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
     from .registration import Registration, Stage
     from .whole_maps import WholeMap

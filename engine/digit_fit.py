@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from .bone_fit import BoneTransforms
-    from .closest_points import FoundPoints
-    from .mesh import TriangleMesh
+    from .mesh.closest_points import FoundPoints
+    from .mesh.triangle_mesh import TriangleMesh
     from .skeleton import Skeleton
 
 __all__ = ["with_digits"]

@@ -12,16 +12,16 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from .edge_chains import edge_chains
+from .mesh.connectivity.edge_chains import edge_chains
 from .runtime.errors import MatchError
 from .runtime.progress import Progress
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps
-    from .surface_map import SurfaceMap
 
 __all__ = ["TracedEdges", "nearest_edge_values", "trace_edges_steps"]
 

@@ -18,7 +18,7 @@ from .runtime.progress import Progress, Steps, run, within
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Spectrum", "eigenpairs", "eigenpairs_steps"]
 

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .closest_points import ClosestPoints
+from .mesh.closest_points import ClosestPoints
 from .runtime.errors import MatchError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .closest_points import FoundPoints
     from .corner_sheets import CornerSheets
-    from .mesh import TriangleMesh
-    from .polygons import Polygons
-    from .surface_map import SurfaceMap
+    from .mesh.closest_points import FoundPoints
+    from .mesh.polygons import Polygons
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["CornerPlaces", "FacePlaces", "FaceSamples", "FaceSeats"]
 

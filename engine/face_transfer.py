@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .face_places import FacePlaces, FaceSamples
-    from .polygons import Polygons
+    from .mesh.polygons import Polygons
 
 __all__ = ["carry_face_values", "majority"]
 

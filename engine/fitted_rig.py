@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.sparse import csr_array
 
+    from .mesh.surface_map import SurfaceMap
     from .skeleton import Skeleton
-    from .surface_map import SurfaceMap
 
 __all__ = ["FittedRig"]
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .closest_points import ClosestPoints
-from .mesh import TriangleMesh
+from .mesh.closest_points import ClosestPoints
+from .mesh.surface_points import SurfacePoints
+from .mesh.triangle_mesh import TriangleMesh
 from .part_pairs import contact_with, paired_parts
 from .part_placement import laid_onto_steps
 from .runtime.progress import Progress, Steps, within
-from .surface import SurfacePoints
 from .surroundings import Surroundings
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["GeodesicSolver", "geodesic_distances"]
 

@@ -13,12 +13,12 @@ import numpy as np
 
 from .hierarchy import level_sizes
 from .local_stress import PairStress
+from .mesh.surface_points import SurfacePoints
 from .problem import MatchingProblem
 from .relaxation import descend
 from .runtime.errors import MatchError
 from .runtime.progress import Progress, Steps, within
 from .settling import Settled, Stress, joined, settle_steps
-from .surface import SurfacePoints
 from .surface_distances import SurfaceDistances, symmetric_roots
 
 if TYPE_CHECKING:

@@ -10,15 +10,15 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from .boundary_loops import boundary_loops
-from .edge_pairs import group_half_edges, pair_half_edges
 from .handles import genus, shortest_handle_loop_steps
 from .hole_filling import fill_holes
-from .mesh import TriangleMesh
+from .mesh.connectivity.boundary_loops import boundary_loops
+from .mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from .mesh.connectivity.nonmanifold_vertices import split_fans
+from .mesh.triangle_mesh import TriangleMesh
 from .proxy import Proxy, proxy_steps
 from .runtime.progress import Steps, within
 from .shape import Shape
-from .vertex_fans import split_fans
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,13 +10,13 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
-from .closest_points import FoundPoints
+from .mesh.closest_points import FoundPoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .closest_points import ClosestPoints
-    from .mesh import TriangleMesh
+    from .mesh.closest_points import ClosestPoints
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Homes"]
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .fitted_rig import FittedRig
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .skeleton import Skeleton
 
 __all__ = ["JointCarriers", "carriers_of", "moved_areas", "nearest_on_bones"]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .fitted_rig import FittedRig
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .skeleton import Skeleton
 
 __all__ = ["PlacedJoints", "place_joints", "root_direction", "standing"]

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .closest_points import FoundPoints
     from .deformable import DeformableSurface
     from .limb_twists import Untwisted
+    from .mesh.closest_points import FoundPoints
     from .registration import Registration, Stage
 
 __all__ = ["local_costs", "wound_steps"]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .fitted_rig import FittedRig
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["LocalFrames", "bone_frames", "surface_frames"]
 

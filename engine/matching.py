@@ -23,7 +23,7 @@ from .shape_matching import MatchTask, matched_steps
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
     from .result import MatchResult
 

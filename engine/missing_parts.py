@@ -10,13 +10,13 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from .neighbour_means import neighbour_means
+from .mesh.connectivity.neighbour_means import neighbour_means
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
-    from .surface import SurfacePoints
+    from .mesh.surface_points import SurfacePoints
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["round_trips", "with_partner"]
 

@@ -17,7 +17,7 @@ from .symmetric_factor import symmetric_factor
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["in_between"]
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.sparse import csr_array
 
-    from .closest_points import FoundPoints
+    from .mesh.closest_points import FoundPoints
 
     Solve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 

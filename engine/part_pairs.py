@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .surroundings import Surroundings
 
 __all__ = ["Contact", "PartPair", "contact_with", "paired_parts"]

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from .closest_points import ClosestPoints, FoundPoints
 from .deformable import DeformableSurface
 from .laplacian import laplace_beltrami
-from .mesh import TriangleMesh
+from .mesh.closest_points import ClosestPoints, FoundPoints
+from .mesh.triangle_mesh import TriangleMesh
 from .procrustes import nearest_rotations
 from .registration import FINE, LAST, Stage, register_steps
 from .runtime.progress import Steps, within

@@ -6,15 +6,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
+from .mesh.surface_map import SurfaceMap
 from .quality import of_covered_part
-from .surface_map import SurfaceMap
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from .dense_match import DenseMatch
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .result import MatchResult
 
 __all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .boundary_loops import BoundaryLoops
-from .edge_pairs import triangle_slots
 from .hole_filling import small_holes
-from .vertex_fans import several_fans
+from .mesh.connectivity.boundary_loops import BoundaryLoops
+from .mesh.connectivity.halfedges import triangle_slots
+from .mesh.connectivity.nonmanifold_vertices import several_fans
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .landmarks import placed_at_vertices
-from .surface import SurfacePoints
+from .mesh.surface_points import SurfacePoints
 from .vicinity import distances_to_others, vicinity
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .closest_points import ClosestPoints
-    from .mesh import TriangleMesh
+    from .mesh.closest_points import ClosestPoints
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["pinned"]
 

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from .closest_points import ClosestPoints
 from .deformable import DeformableSurface
 from .laplacian import laplace_beltrami
 from .lifting import lift_steps
+from .mesh.closest_points import ClosestPoints
+from .mesh.surface_points import SurfacePoints
 from .proxy import Proxy, proxy_steps
 from .registration import LAST, register_steps
 from .runtime.parallel_map import shared_steps
 from .runtime.progress import within
-from .surface import SurfacePoints
 from .ties import Ties
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .landmarks import Landmarks
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
     from .registration import Stage
     from .runtime.progress import Steps

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array, vstack
 
-from .closest_points import ClosestPoints, FoundPoints, facing
 from .elastic import ElasticSurface
+from .mesh.closest_points import ClosestPoints, FoundPoints, facing
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from .homes import Homes
     from .laplacian import LaplaceBeltrami
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["PosedRegistration"]
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .cleaning import clean
-from .closest_points import ClosestPoints
-from .mesh import TriangleMesh
+from .mesh.closest_points import ClosestPoints
+from .mesh.surface_points import SurfacePoints
+from .mesh.triangle_mesh import TriangleMesh
 from .proxy import Proxy, proxy_steps
 from .runtime.errors import MatchError
 from .runtime.progress import Progress, Steps, within
-from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

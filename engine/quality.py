@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import expit
 
+from .mesh.connectivity.neighbour_means import neighbour_means
+from .mesh.surface_map import SurfaceMap
 from .missing_parts import round_trips, with_partner
-from .neighbour_means import neighbour_means
-from .surface_map import SurfaceMap
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
-    from .surface import SurfacePoints
+    from .mesh.surface_points import SurfacePoints
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = [
     "MatchQuality",

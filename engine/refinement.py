@@ -12,6 +12,7 @@ from .dense_map import EIGENPAIRS, RegisteredPair
 from .dense_match import dense_match_steps
 from .joined_surface import joined_shapes_steps, with_limbs_steps
 from .landmarks import locate_landmarks
+from .mesh.surface_points import SurfacePoints
 from .pieces_only import piece_of, with_pieces_only
 from .reflection import reflected_mesh
 from .registration import FINE, Stage, register_steps, restarted_steps
@@ -19,16 +20,15 @@ from .runtime.errors import MatchError
 from .runtime.progress import run, within
 from .shape import Shape
 from .shape_preparation import finer_shapes
-from .surface import SurfacePoints
 from .ties import Ties
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .dense_match import DenseMatch
-    from .mesh import TriangleMesh
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps
-    from .surface_map import SurfaceMap
 
 __all__ = ["distortion_after", "placed_by_map", "point_distortions", "refine_map", "refine_map_steps"]
 

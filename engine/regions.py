@@ -14,7 +14,7 @@ from .runtime.errors import MeshError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["NO_REGION", "nearest_regions"]
 

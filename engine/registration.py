@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .closest_points import ClosestPoints, FoundPoints
     from .deformable import DeformableSurface
     from .elastic import ElasticSurface
+    from .mesh.closest_points import ClosestPoints, FoundPoints
     from .ties import Ties
 
     Find = Callable[[ClosestPoints, NDArray[np.float64]], FoundPoints]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from .fitted_rig import FittedRig
     from .joint_placement import PlacedJoints
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["RestPose", "bend_angles", "is_posed", "rest_pose", "unposed"]
 

@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.surface_points import SurfacePoints
     from .quality import MatchQuality
-    from .surface import SurfacePoints
-    from .surface_map import SurfaceMap
 
 __all__ = ["CoarseMatch", "Level", "MatchResult"]
 

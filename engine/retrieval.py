@@ -12,19 +12,19 @@ import numpy as np
 from .descriptors import distance_histograms, earth_movers_distance, squared_differences
 from .hierarchy import level_sizes, refine_steps
 from .hypotheses import coarse_steps
+from .mesh.surface_points import SurfacePoints
 from .pair import Pair
 from .runtime.errors import MatchError, SettingsError
 from .runtime.progress import Progress, Steps, run, within
 from .settings import MatchSettings
 from .shape import Shape
-from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Retrieval", "RetrievalSettings", "RetrievedMatch", "retrieve", "retrieve_steps"]
 

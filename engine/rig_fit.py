@@ -12,26 +12,26 @@ from scipy.sparse import csr_array, vstack
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .clean_surface import StandIn
 from .cleaning import clean
-from .closest_points import ClosestPoints, FoundPoints, facing
 from .digit_fit import with_digits
 from .fitted_rig import FittedRig
 from .homes import Homes
 from .joined_surface import joined_steps, separate_limbs
 from .laplacian import laplace_beltrami
+from .mesh.closest_points import ClosestPoints, FoundPoints, facing
+from .mesh.surface_map import SurfaceMap
+from .mesh.surface_points import SurfacePoints
 from .posed_registration import PosedRegistration
 from .proxy import proxy_steps
 from .runtime.errors import RigError
 from .runtime.progress import Progress, Steps, run, within
 from .stunted_digits import stunted_digits, with_stiff_digits
-from .surface import SurfacePoints
-from .surface_map import SurfaceMap
 from .whole_maps import whole_maps_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .clean_surface import CleanSurface
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .proxy import Proxy
     from .skeleton import Skeleton
 

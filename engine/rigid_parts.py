@@ -13,8 +13,8 @@ from .skin_weights import with_rows
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .surface_map import SurfaceMap
-    from .welded_parts import WeldedParts
+    from .mesh.connectivity.welded_parts import WeldedParts
+    from .mesh.surface_map import SurfaceMap
 
 __all__ = ["with_rigid_parts"]
 

@@ -25,7 +25,7 @@ from .sampling import FarthestPointSampler
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Shape"]
 

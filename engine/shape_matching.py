@@ -17,13 +17,13 @@ from .hierarchy import refine_steps
 from .landmarks import locate_landmarks, placed_at_vertices
 from .map_hypotheses import LandmarkStart, map_domains
 from .map_search import RoughSearch
+from .mesh.surface_points import SurfacePoints
 from .pair import Pair
 from .result import CoarseMatch, MatchResult
 from .runtime.errors import MatchError
 from .runtime.progress import within
 from .shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from .solvers import Answer, at_samples, moved, solve_steps
-from .surface import SurfacePoints
 from .surface_distances import SurfaceDistances, to_all_vertices_steps
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .surface_map import SurfaceMap
+    from .mesh.surface_map import SurfaceMap
 
 __all__ = ["carried", "limited", "mixed", "normalised", "pruned", "row_differences", "row_sums", "with_rows"]
 

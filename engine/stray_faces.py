@@ -12,7 +12,7 @@ from .corner_welding import groups_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .polygons import Polygons
+    from .mesh.polygons import Polygons
 
 __all__ = ["splinters", "teeth"]
 

@@ -13,9 +13,9 @@ from .digit_groups import digit_groups
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .closest_points import FoundPoints
     from .digit_groups import DigitGroup
-    from .mesh import TriangleMesh
+    from .mesh.closest_points import FoundPoints
+    from .mesh.triangle_mesh import TriangleMesh
     from .skeleton import Skeleton
 
 __all__ = ["stunted_digits", "with_stiff_digits"]

@@ -9,15 +9,15 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from .descriptors import squared_differences
+from .mesh.surface_points import SurfacePoints
 from .runtime.parallel_map import shared_steps
 from .runtime.progress import Progress, Steps, run
-from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .geodesics import GeodesicSolver
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .shape import Shape
 
 __all__ = [

@@ -12,8 +12,8 @@ from scipy.spatial import cKDTree
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
-    from .surface import SurfacePoints
+    from .mesh.surface_points import SurfacePoints
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Similarities", "Surroundings"]
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .local_frames import LocalFrames
-    from .mesh import TriangleMesh
-    from .surface_map import SurfaceMap
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Symmetriser"]
 

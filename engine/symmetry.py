@@ -11,19 +11,19 @@ import numpy as np
 from .branch_and_bound import Exclusion, branch_and_bound_steps
 from .descriptors import squared_differences, weighted_correlation
 from .hierarchy import level_sizes, refine_steps
+from .mesh.surface_points import SurfacePoints
 from .orientation import orientation_agreement, signed_areas
 from .pair import Pair
 from .runtime.errors import MatchError
 from .runtime.progress import Progress, Steps, run, within
 from .settings import MatchSettings
 from .shape import Shape
-from .surface import SurfacePoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .branch_and_bound import BoundedMatching
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["SymmetryResult", "find_symmetry", "find_symmetry_steps"]
 

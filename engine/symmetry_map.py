@@ -12,7 +12,7 @@ from .symmetry import find_symmetry_steps
 
 if TYPE_CHECKING:
     from .dense_match import DenseMatch
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps
     from .settings import MatchSettings
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from .surface import SurfacePoints
+from .mesh.surface_points import SurfacePoints
 from .vicinity import distances_to_others, vicinity
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from .deformable import DeformableSurface
     from .landmarks import LandmarkPlaces
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
     from .proxy import Proxy
 
 __all__ = ["Ties"]

@@ -14,8 +14,8 @@ from .symmetric_factor import symmetric_factor
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .closest_points import ClosestPoints
-    from .mesh import TriangleMesh
+    from .mesh.closest_points import ClosestPoints
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle_steps"]
 

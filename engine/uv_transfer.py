@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from .corner_sheets import CornerSheets
     from .face_places import CornerPlaces, FacePlaces
-    from .polygons import Polygons
+    from .mesh.polygons import Polygons
     from .runtime.progress import Steps
 
 __all__ = ["CarriedUVs", "carry_uvs_steps"]

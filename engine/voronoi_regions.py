@@ -18,7 +18,7 @@ from .surface_cells import SurfaceCells, nearest_members
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["VoronoiRegions", "spread_regions_steps"]
 

@@ -11,14 +11,14 @@ from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from .laplacian import laplace_beltrami
-from .mesh import TriangleMesh
+from .mesh.triangle_mesh import TriangleMesh
 from .runtime.errors import MeshError, RigError
 from .skin_weights import with_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .welded_parts import WeldedParts
+    from .mesh.connectivity.welded_parts import WeldedParts
 
 __all__ = ["filled"]
 

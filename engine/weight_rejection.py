@@ -14,9 +14,9 @@ from .skin_weights import row_differences
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
-    from .surface_map import SurfaceMap
-    from .welded_parts import WeldedParts
+    from .mesh.connectivity.welded_parts import WeldedParts
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["torn_vertices"]
 

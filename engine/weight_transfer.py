@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, hstack
 
+from .mesh.connectivity.welded_parts import WeldedParts
 from .rigid_parts import with_rigid_parts
 from .runtime.progress import Progress
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
 from .weight_filling import filled
 from .weight_rejection import torn_vertices
-from .welded_parts import WeldedParts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps
-    from .surface_map import SurfaceMap
 
 __all__ = ["CarriedWeights", "Columns", "carry_weights_steps", "put_in"]
 

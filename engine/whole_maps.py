@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from .clean_surface import CleanSurface
     from .followers import FollowedMap
-    from .surface import SurfacePoints
+    from .mesh.surface_points import SurfacePoints
 
 __all__ = ["WholeMap", "WholeMaps", "whole_maps_steps"]
 

@@ -12,18 +12,18 @@ from scipy.sparse import diags_array
 from .elastic import ElasticSurface
 from .laplacian import laplace_beltrami
 from .local_frames import surface_frames
+from .mesh.surface_points import SurfacePoints
 from .runtime.errors import MatchError
 from .runtime.progress import Progress
-from .surface import SurfacePoints
 from .surroundings import Surroundings
 from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .mesh.surface_map import SurfaceMap
+    from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps
-    from .surface_map import SurfaceMap
 
 __all__ = ["WrappedSurface", "kept_in_place", "wrap_steps"]
 

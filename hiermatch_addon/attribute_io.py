@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..engine.polygons import Polygons
+from ..engine.mesh.polygons import Polygons
 from .access import mesh_of
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import MeshError, SurfaceMap, SurfacePoints
-from ..engine.closest_points import ClosestPoints
+from ..engine.mesh.closest_points import ClosestPoints
 from .mesh_io import read_values
 
 if TYPE_CHECKING:

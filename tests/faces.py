@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine import ClosestPoints, SurfaceMap, TriangleMesh
-from engine.polygons import from_faces
+from engine.mesh.polygons import from_faces
 
 
 def quads(faces):

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...engine.attribute_transfer import Domain
-    from ...engine.polygons import Polygons
+    from ...engine.mesh.polygons import Polygons
     from ...engine.runtime.progress import Steps
     from ..attribute_io import AttributeLayout
     from ..transfer import Passage

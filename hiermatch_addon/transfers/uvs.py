@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.polygons import Polygons
+    from ...engine.mesh.polygons import Polygons
     from ...engine.runtime.progress import Steps
     from ...engine.uv_transfer import CarriedUVs
     from ..transfer import Passage

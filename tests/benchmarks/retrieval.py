@@ -21,7 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from engine.mesh import TriangleMesh
+from engine.mesh.triangle_mesh import TriangleMesh
 from engine.retrieval import RetrievalSettings, retrieve
 from engine.runtime.progress import run
 from engine.shape import Shape

@@ -27,7 +27,7 @@ from scipy.spatial import cKDTree
 
 from engine import symmetry_map
 from engine.geodesics import GeodesicSolver
-from engine.mesh import TriangleMesh
+from engine.mesh.triangle_mesh import TriangleMesh
 from engine.sampling import farthest_point_sampling
 from engine.settings import MatchSettings
 from engine.symmetry import find_symmetry

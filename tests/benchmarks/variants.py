@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine import SurfacePoints, TriangleMesh
-from engine.closest_points import ClosestPoints
+from engine.mesh.closest_points import ClosestPoints
 from tests.messes import halves_apart
 from tests.shapes import permuted, rotation, subdivided
 

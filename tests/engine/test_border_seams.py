@@ -7,7 +7,7 @@ import pytest
 from engine import TriangleMesh
 from engine.border_seams import seam_partners
 from engine.cleaning import clean
-from engine.edge_pairs import group_half_edges
+from engine.mesh.connectivity.halfedges import group_half_edges
 from tests.messes import halves_apart, partly_turned, together, without_faces
 from tests.shapes import compacted, creature, cylinder, plane
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from engine import MatchError, SurfaceMap, TriangleMesh, run
-from engine.edge_chains import edge_chains
 from engine.edge_tracing import nearest_edge_values, trace_edges_steps
+from engine.mesh.connectivity.edge_chains import edge_chains
 from tests.faces import closest_map, grid, triangulated
 from tests.shapes import icosphere, plane, rotation
 

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.closest_points import ClosestPoints, FoundPoints
 from engine.homes import Homes
+from engine.mesh.closest_points import ClosestPoints, FoundPoints
 from tests.shapes import plane
 
 

@@ -8,10 +8,10 @@ from engine import MatchError, MatchSettings, Shape, TriangleMesh, densify, matc
 from engine.cleaning import clean
 from engine.joined_match import matched_with_pieces_steps
 from engine.joined_surface import separate_limbs
+from engine.mesh.surface_points import SurfacePoints
 from engine.refinement import point_distortions, refine_map
 from engine.runtime.progress import run
 from engine.shape_matching import MatchTask
-from engine.surface import SurfacePoints
 from tests.limbs import modular_creature
 from tests.messes import together
 from tests.shapes import creature, cylinder, icosphere

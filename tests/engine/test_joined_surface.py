@@ -7,12 +7,12 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
 from engine.cleaning import clean
-from engine.closest_points import ClosestPoints
 from engine.handles import genus
 from engine.joined_surface import separate_limbs, with_limbs_steps
+from engine.mesh.closest_points import ClosestPoints
+from engine.mesh.surface_points import SurfacePoints
 from engine.reflection import reflected_surface
 from engine.runtime.progress import run
-from engine.surface import SurfacePoints
 from tests.limbs import modular_creature
 from tests.messes import together
 from tests.shapes import creature, icosphere, permuted, rotation

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from engine import MatchError, SurfacePoints, TriangleMesh, run
-from engine.closest_points import ClosestPoints
 from engine.lifting import lift_steps
+from engine.mesh.closest_points import ClosestPoints
 from engine.proxy import Proxy, proxy_steps
 from engine.untangling import flipped_triangles
 from tests.shapes import creature, icosphere, permuted, plane, rotation

@@ -6,8 +6,8 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import TriangleMesh
-from engine.closest_points import FoundPoints
 from engine.laplacian import laplace_beltrami
+from engine.mesh.closest_points import FoundPoints
 from engine.normal_equations import NormalEquations
 from tests.shapes import creature
 

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.closest_points import ClosestPoints, facing
 from engine.laplacian import laplace_beltrami
+from engine.mesh.closest_points import ClosestPoints, facing
 from engine.posed_registration import PosedRegistration
 from tests.shapes import creature, icosphere, plane
 

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from engine import Progress, TriangleMesh, run
-from engine.closest_points import ClosestPoints, FoundPoints
 from engine.deformable import DeformableSurface
 from engine.eigenpairs import eigenpairs_steps
 from engine.elastic import ElasticSurface
 from engine.laplacian import laplace_beltrami
+from engine.mesh.closest_points import ClosestPoints, FoundPoints
+from engine.mesh.surface_points import SurfacePoints
 from engine.registration import (
     AGAIN,
     CLOSE,
@@ -24,7 +25,6 @@ from engine.registration import (
     restarted_steps,
     smooth_start,
 )
-from engine.surface import SurfacePoints
 from tests.bodies import relative_of_creature
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from engine.mesh import TriangleMesh
+from engine.mesh.triangle_mesh import TriangleMesh
 from engine.retrieval import RetrievalSettings, retrieve, retrieve_steps
 from engine.runtime.errors import MatchError, SettingsError
 from engine.runtime.progress import run

@@ -5,10 +5,10 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from engine import ClosestPoints, SurfaceMap, TriangleMesh
+from engine.mesh.connectivity.welded_parts import WeldedParts
 from engine.rigid_parts import with_rigid_parts
 from engine.skin_weights import carried
-from engine.welded_parts import WeldedParts
-from tests.engine.test_welded_parts import together
+from tests.engine.mesh.connectivity.test_welded_parts import together
 from tests.shapes import icosphere
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 from engine import SurfaceMap, SurfacePoints, TriangleMesh
-from engine.closest_points import ClosestPoints
+from engine.mesh.closest_points import ClosestPoints
 from engine.runtime.progress import run
 from engine.untangling import (
     flipped_triangles,

@@ -6,10 +6,10 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import RigError, TriangleMesh
+from engine.mesh.connectivity.welded_parts import WeldedParts
 from engine.skin_weights import normalised, row_sums
 from engine.weight_filling import filled
-from engine.welded_parts import WeldedParts
-from tests.engine.test_welded_parts import together
+from tests.engine.mesh.connectivity.test_welded_parts import together
 from tests.shapes import cylinder, icosphere, permuted, plane, plane_with_slit
 
 

@@ -6,9 +6,9 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import SurfaceMap, TriangleMesh
+from engine.mesh.connectivity.welded_parts import WeldedParts
 from engine.skin_weights import carried
 from engine.weight_rejection import torn_vertices
-from engine.welded_parts import WeldedParts
 from tests.shapes import creature
 from tests.skeletons import creature_weights
 

@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from engine.edge_pairs import group_half_edges, pair_half_edges
-from engine.triangle_components import triangle_components, triangle_neighbours
+from engine.mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from engine.mesh.connectivity.triangle_components import triangle_components, triangle_neighbours
 from tests.messes import together
 from tests.shapes import icosphere, plane
 

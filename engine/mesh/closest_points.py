@@ -11,12 +11,12 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from .runtime.errors import MeshError
+from ..runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .triangle_mesh import TriangleMesh
 
 __all__ = ["ClosestPoints", "FoundPoints", "closest_in_triangles", "facing"]
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .edge_pairs import following
+from .halfedges import following
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from engine.edge_pairs import group_half_edges, pair_half_edges
-from engine.vertex_fans import split_fans
+from engine.mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from engine.mesh.connectivity.nonmanifold_vertices import split_fans
 from tests.shapes import cone, icosphere, plane, torus
 
 

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..runtime.errors import MatchError
 from .closest_points import ClosestPoints
-from .runtime.errors import MatchError
-from .surface import SurfacePoints
+from .surface_points import SurfacePoints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh import TriangleMesh
+    from .triangle_mesh import TriangleMesh
 
 __all__ = ["SurfaceMap"]
 

@@ -10,12 +10,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from .edge_pairs import triangle_slots
+from .halfedges import triangle_slots
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .edge_pairs import EdgeGroups
+    from .halfedges import EdgeGroups
 
 __all__ = ["weld_boundaries"]
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .edge_pairs import triangle_slots
+from .halfedges import triangle_slots
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .triangle_mesh import TriangleMesh
 
 __all__ = ["AreaSamples", "area_samples", "even_samples"]
 

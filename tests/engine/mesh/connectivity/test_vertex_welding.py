@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from engine.edge_pairs import group_half_edges
-from engine.vertex_welding import weld_boundaries
+from engine.mesh.connectivity.halfedges import group_half_edges
+from engine.mesh.connectivity.vertex_welding import weld_boundaries
 from tests.messes import cut_along_seam, in_pieces, together
 from tests.shapes import icosphere, plane, plane_with_slit
 

@@ -4,9 +4,10 @@
 import numpy as np
 import pytest
 
-from engine import MatchError, SurfacePoints, TriangleMesh, surface_map
-from engine.closest_points import ClosestPoints
-from engine.surface_map import SurfaceMap
+from engine import MatchError, SurfacePoints, TriangleMesh
+from engine.mesh import surface_map
+from engine.mesh.closest_points import ClosestPoints
+from engine.mesh.surface_map import SurfaceMap
 from tests.shapes import icosphere, plane, rotation, torus
 
 

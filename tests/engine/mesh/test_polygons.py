@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import MeshError, TriangleMesh
-from engine.polygons import Polygons
+from engine.mesh.polygons import Polygons
 from tests.faces import grid, polygons, triangulated
 
 PENTAGON = [[0, 1, 2, 3, 4], [4, 3, 5]]

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 if TYPE_CHECKING:
-    from .mesh import TriangleMesh
+    from ..triangle_mesh import TriangleMesh
 
 __all__ = ["vertex_adjacency"]
 

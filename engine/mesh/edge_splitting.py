@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .mesh import TriangleMesh
+from .triangle_mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from engine.boundary_loops import boundary_loops
-from engine.edge_pairs import group_half_edges
+from engine.mesh.connectivity.boundary_loops import boundary_loops
+from engine.mesh.connectivity.halfedges import group_half_edges
 from tests.shapes import cylinder, icosphere, plane_with_hole
 
 

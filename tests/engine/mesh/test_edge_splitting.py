@@ -4,7 +4,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import TriangleMesh
-from engine.edge_splitting import split_longest_edges
+from engine.mesh.edge_splitting import split_longest_edges
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 MESHES = {

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from ..triangle_mesh import TriangleMesh
 
 __all__ = ["neighbour_means"]
 

@@ -11,13 +11,13 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-from .edge_pairs import group_half_edges
+from .halfedges import group_half_edges
 from .vertex_welding import weld_boundaries
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from ..triangle_mesh import TriangleMesh
 
 __all__ = ["WeldedParts"]
 

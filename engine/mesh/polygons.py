@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .runtime.errors import MeshError
+from ..runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh import TriangleMesh
+    from .triangle_mesh import TriangleMesh
 
 __all__ = ["Polygons", "from_faces"]
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .runtime.errors import MeshError
+from ..runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

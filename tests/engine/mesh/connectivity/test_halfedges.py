@@ -4,7 +4,13 @@
 import numpy as np
 import pytest
 
-from engine.edge_pairs import following, group_half_edges, pair_half_edges, repeated_triangles, triangle_slots
+from engine.mesh.connectivity.halfedges import (
+    following,
+    group_half_edges,
+    pair_half_edges,
+    repeated_triangles,
+    triangle_slots,
+)
 from tests.shapes import creature, icosphere, irregular, plane, rotation, torus
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 from engine import TriangleMesh
-from engine.welded_parts import WeldedParts
+from engine.mesh.connectivity.welded_parts import WeldedParts
 from tests.shapes import icosphere, plane
 
 

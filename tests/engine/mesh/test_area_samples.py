@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.area_samples import area_samples, even_samples
-from engine.closest_points import ClosestPoints
+from engine.mesh.area_samples import area_samples, even_samples
+from engine.mesh.closest_points import ClosestPoints
 from tests.shapes import creature, icosphere
 
 

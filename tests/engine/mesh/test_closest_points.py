@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from engine import MeshError, SurfacePoints, TriangleMesh, closest_points
-from engine.closest_points import ClosestPoints, closest_in_triangles
+from engine import MeshError, SurfacePoints, TriangleMesh
+from engine.mesh import closest_points
+from engine.mesh.closest_points import ClosestPoints, closest_in_triangles
 from tests.shapes import cylinder, icosphere, plane, rotation, subdivided, torus
 
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from engine.edge_chains import edge_chains
+from engine.mesh.connectivity.edge_chains import edge_chains
 
 
 def test_chains_end_at_ends_and_junctions():
