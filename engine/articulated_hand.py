@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from .procrustes import nearest_rotations
+from .geometry.procrustes import nearest_rotations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
-from .procrustes import nearest_rotations
+from .geometry.procrustes import nearest_rotations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,15 +10,15 @@ import numpy as np
 from scipy.sparse import diags_array
 
 from .elastic import ElasticSurface
+from .geometry.symmetric_factor import symmetric_factor
 from .mesh.closest_points import ClosestPoints
 from .normal_equations import NormalEquations
 from .runtime.progress import Progress, Steps
-from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .laplacian import LaplaceBeltrami
+    from .geometry.laplacian import LaplaceBeltrami
     from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["DeformableSurface"]

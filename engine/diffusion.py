@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .eigenpairs import Spectrum
+    from .geometry.eigenpairs import Spectrum
 
 __all__ = ["DiffusionMetric", "automatic_time", "diffusion_distances", "heat_kernel"]
 

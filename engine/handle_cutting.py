@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from .handles import genus, shortest_handle_loop_steps
+from .geometry.handle_loops import genus, shortest_handle_loop_steps
 from .hole_filling import fill_holes
 from .mesh.connectivity.boundary_loops import boundary_loops
 from .mesh.connectivity.halfedges import group_half_edges, pair_half_edges

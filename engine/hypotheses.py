@@ -16,8 +16,8 @@ import numpy as np
 
 from .branch_and_bound import BoundedMatching, distinct_matchings_steps
 from .descriptors import squared_differences, weighted_correlation
+from .geometry.orientation import orientation_agreement, signed_areas
 from .hierarchy import Refined, level_sizes, refine_steps
-from .orientation import orientation_agreement, signed_areas
 from .pair import Pair
 from .runtime.progress import Progress, Steps, within
 

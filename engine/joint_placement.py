@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .geometry.procrustes import nearest_rotations
 from .joint_carriers import carriers_of, moved_areas, nearest_on_bones
-from .procrustes import nearest_rotations
 from .runtime.errors import RigError
 
 if TYPE_CHECKING:

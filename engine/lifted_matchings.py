@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .functional_maps import PointMaps, nearest_both_ways
-from .orientation import signed_areas
+from .geometry.orientation import signed_areas
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

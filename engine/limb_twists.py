@@ -12,8 +12,8 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from .extremities import spread_extremities
-from .orientation import tangent_gradient
-from .procrustes import nearest_rotations
+from .geometry.orientation import tangent_gradient
+from .geometry.procrustes import nearest_rotations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

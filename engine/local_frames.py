@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags_array
 
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
+from .geometry.symmetric_factor import symmetric_factor
 from .runtime.errors import MeshError
-from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

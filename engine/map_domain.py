@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .functional_maps import SampledBasis
-from .orientation import tangent_gradient
+from .geometry.orientation import tangent_gradient
 from .spectral_descriptors import automatic_energies, wave_kernel_signatures
 
 if TYPE_CHECKING:

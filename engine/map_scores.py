@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .orientation import orientation_agreement
+from .geometry.orientation import orientation_agreement
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,9 +10,9 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
+from .geometry.symmetric_factor import symmetric_factor
 from .local_frames import surface_frames
-from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

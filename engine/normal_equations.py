@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import coo_array, csc_array
 
-from .symmetric_factor import symmetric_factor
+from .geometry.symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ import numpy as np
 
 from .descriptors import bin_difference, distance_histograms, earth_movers_distance, squared_differences
 from .diffusion import DiffusionMetric, automatic_time
-from .orientation import orientation_agreement, signed_areas
+from .geometry.orientation import orientation_agreement, signed_areas
 from .problem import MatchingProblem
 from .sign_sequences import SignSequence, consistent_sequences
 from .spectral_descriptors import (

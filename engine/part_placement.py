@@ -11,10 +11,10 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from .deformable import DeformableSurface
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
+from .geometry.procrustes import nearest_rotations
 from .mesh.closest_points import ClosestPoints, FoundPoints
 from .mesh.triangle_mesh import TriangleMesh
-from .procrustes import nearest_rotations
 from .registration import FINE, LAST, Stage, register_steps
 from .runtime.progress import Steps, within
 

@@ -10,8 +10,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .extremity_search import beam_matchings
+from .geometry.orientation import signed_areas
 from .lifted_matchings import squared_differences
-from .orientation import signed_areas
 from .runtime.progress import Progress
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from .deformable import DeformableSurface
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
 from .lifting import lift_steps
 from .mesh.closest_points import ClosestPoints
 from .mesh.surface_points import SurfacePoints

@@ -10,14 +10,14 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array, vstack
 
 from .elastic import ElasticSurface
+from .geometry.symmetric_factor import symmetric_factor
 from .mesh.closest_points import ClosestPoints, FoundPoints, facing
-from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from .geometry.laplacian import LaplaceBeltrami
     from .homes import Homes
-    from .laplacian import LaplaceBeltrami
     from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["PosedRegistration"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from .procrustes import nearest_rotations
+from .geometry.procrustes import nearest_rotations
 from .runtime.parallel_map import beside_steps
 from .runtime.progress import Progress, Steps, within
 

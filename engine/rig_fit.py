@@ -14,9 +14,9 @@ from .clean_surface import StandIn
 from .cleaning import clean
 from .digit_fit import with_digits
 from .fitted_rig import FittedRig
+from .geometry.laplacian import laplace_beltrami
 from .homes import Homes
 from .joined_surface import joined_steps, separate_limbs
-from .laplacian import laplace_beltrami
 from .mesh.closest_points import ClosestPoints, FoundPoints, facing
 from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints

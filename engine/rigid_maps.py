@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from .functional_maps import PointMaps
-from .procrustes import nearest_rotations
+from .geometry.procrustes import nearest_rotations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

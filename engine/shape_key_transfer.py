@@ -9,10 +9,10 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.csgraph import connected_components
 
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
+from .geometry.symmetric_factor import symmetric_factor
 from .runtime.errors import MatchError
 from .runtime.progress import Progress
-from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

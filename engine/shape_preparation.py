@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from .eigenpairs import Spectrum, eigenpairs_steps
-from .laplacian import LaplaceBeltrami
+from .geometry.eigenpairs import Spectrum, eigenpairs_steps
+from .geometry.laplacian import LaplaceBeltrami
 from .runtime.parallel_map import shared_steps
 
 if TYPE_CHECKING:

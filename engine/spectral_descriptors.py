@@ -12,7 +12,7 @@ from .runtime.errors import SettingsError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .eigenpairs import Spectrum
+    from .geometry.eigenpairs import Spectrum
 
 __all__ = [
     "automatic_energies",

@@ -16,7 +16,7 @@ from .runtime.progress import Progress, Steps, run
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .geodesics import GeodesicSolver
+    from .geometry.geodesics import GeodesicSolver
     from .mesh.triangle_mesh import TriangleMesh
     from .shape import Shape
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
+from .geometry.symmetric_factor import symmetric_factor
 from .local_frames import surface_frames
 from .runtime.errors import MatchError
-from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

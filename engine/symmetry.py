@@ -10,9 +10,9 @@ import numpy as np
 
 from .branch_and_bound import Exclusion, branch_and_bound_steps
 from .descriptors import squared_differences, weighted_correlation
+from .geometry.orientation import orientation_agreement, signed_areas
 from .hierarchy import level_sizes, refine_steps
 from .mesh.surface_points import SurfacePoints
-from .orientation import orientation_agreement, signed_areas
 from .pair import Pair
 from .runtime.errors import MatchError
 from .runtime.progress import Progress, Steps, run, within

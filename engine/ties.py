@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
+from .geometry.geodesic_ball import distances_to_others, vicinity
 from .mesh.surface_points import SurfacePoints
-from .vicinity import distances_to_others, vicinity
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
 from .mesh.triangle_mesh import TriangleMesh
 from .runtime.errors import MeshError, RigError
 from .skin_weights import with_rows

@@ -10,13 +10,13 @@ import numpy as np
 from scipy.sparse import diags_array
 
 from .elastic import ElasticSurface
-from .laplacian import laplace_beltrami
+from .geometry.laplacian import laplace_beltrami
+from .geometry.symmetric_factor import symmetric_factor
 from .local_frames import surface_frames
 from .mesh.surface_points import SurfacePoints
 from .runtime.errors import MatchError
 from .runtime.progress import Progress
 from .surroundings import Surroundings
-from .symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

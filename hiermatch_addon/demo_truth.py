@@ -10,7 +10,7 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 from ..engine import TriangleMesh
-from ..engine.geodesics import GeodesicSolver
+from ..engine.geometry.geodesics import GeodesicSolver
 from .access import mesh_of
 from .demo_pair import REST_ATTRIBUTE
 from .mesh_io import read_mesh

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..engine.regions import nearest_regions
+from ..engine.geometry.voronoi_labels import nearest_regions
 from . import colors, writing
 from .access import mesh_of
 from .contents import Content

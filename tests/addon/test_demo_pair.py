@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine import TriangleMesh
-from hiermatch.engine.geodesics import GeodesicSolver
+from hiermatch.engine.geometry.geodesics import GeodesicSolver
 from hiermatch.hiermatch_addon import demo_pair, demo_truth
 from hiermatch.hiermatch_addon.mesh_io import add_vertex_group, read_mesh
 from mathutils.bvhtree import BVHTree

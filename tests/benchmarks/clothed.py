@@ -29,7 +29,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine import MatchSettings, TriangleMesh, match
-from engine.geodesics import GeodesicSolver
+from engine.geometry.geodesics import GeodesicSolver
 from tests.benchmarks.known_shapes import LOST, KnownShapes
 
 HEIGHTS = 0.008, 0.012, 0.016

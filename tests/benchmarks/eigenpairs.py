@@ -24,9 +24,9 @@ from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import eigsh
 
 from engine import TriangleMesh
-from engine.eigenpairs import eigenpairs, eigenpairs_steps
-from engine.intrinsic_delaunay import intrinsic_delaunay
-from engine.laplacian import laplace_beltrami
+from engine.geometry.eigenpairs import eigenpairs, eigenpairs_steps
+from engine.geometry.intrinsic_delaunay import intrinsic_delaunay
+from engine.geometry.laplacian import laplace_beltrami
 from tests.benchmarks.geodesics import read_off
 from tests.shapes import creature, icosphere, irregular, subdivided
 

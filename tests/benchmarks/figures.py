@@ -28,7 +28,7 @@ from tools.source_extension import registered_extension
 registered_extension()
 
 from hiermatch.engine import Level, MatchSettings, Shape, SurfacePoints, TriangleMesh, match  # noqa: E402
-from hiermatch.engine.geodesics import GeodesicSolver  # noqa: E402
+from hiermatch.engine.geometry.geodesics import GeodesicSolver  # noqa: E402
 from hiermatch.engine.settings import SETUPS  # noqa: E402
 from hiermatch.hiermatch_addon import demo_truth, mesh_io  # noqa: E402
 

@@ -31,7 +31,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
-from engine.geodesics import GeodesicSolver
+from engine.geometry.geodesics import GeodesicSolver
 from tests.benchmarks.game_models import Archive
 from tests.benchmarks.remeshed import Remeshed, compared, remeshed, said
 from tests.shapes import rotation, subdivided

@@ -21,7 +21,7 @@ import numpy as np
 import potpourri3d
 
 from engine import TriangleMesh
-from engine.geodesics import GeodesicSolver
+from engine.geometry.geodesics import GeodesicSolver
 from tests.benchmarks.common import read_off
 from tests.shapes import creature, icosphere, irregular, plane, subdivided
 

@@ -30,7 +30,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from engine import MatchSettings, TriangleMesh, match
-from engine.geodesics import GeodesicSolver
+from engine.geometry.geodesics import GeodesicSolver
 from tests.benchmarks.known_shapes import LOST, KnownShapes
 
 ENDS = 5

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
-from engine.geodesics import GeodesicSolver
+from engine.geometry.geodesics import GeodesicSolver
 from engine.shape import Shape
 
 PLACES = 300

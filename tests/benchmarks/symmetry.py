@@ -26,9 +26,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine import symmetry_map
-from engine.geodesics import GeodesicSolver
+from engine.geometry.geodesics import GeodesicSolver
+from engine.geometry.sampling import farthest_point_sampling
 from engine.mesh.triangle_mesh import TriangleMesh
-from engine.sampling import farthest_point_sampling
 from engine.settings import MatchSettings
 from engine.symmetry import find_symmetry
 from tests.bodies import mirrored_body

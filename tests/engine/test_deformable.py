@@ -6,7 +6,7 @@ import pytest
 
 from engine import TriangleMesh
 from engine.deformable import DeformableSurface
-from engine.laplacian import laplace_beltrami
+from engine.geometry.laplacian import laplace_beltrami
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 TIMES = np.array([1e-3, 3e-3])

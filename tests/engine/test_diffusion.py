@@ -6,7 +6,7 @@ import pytest
 
 from engine import HierMatchError, TriangleMesh
 from engine.diffusion import DiffusionMetric, automatic_time, diffusion_distances, heat_kernel
-from engine.eigenpairs import Spectrum, eigenpairs
+from engine.geometry.eigenpairs import Spectrum, eigenpairs
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from engine import TriangleMesh
 from engine.elastic import ElasticSurface
-from engine.laplacian import laplace_beltrami
+from engine.geometry.laplacian import laplace_beltrami
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 NEAR = 0.1

@@ -8,7 +8,7 @@ import pytest
 
 from engine import MatchSettings, Shape, SurfacePoints, TriangleMesh, match
 from engine.dense_match import densify
-from engine.eigenpairs import Spectrum
+from engine.geometry.eigenpairs import Spectrum
 from engine.proxy import Proxy
 from engine.refinement import refine_map
 from engine.runtime.progress import run

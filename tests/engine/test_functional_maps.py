@@ -3,7 +3,6 @@ import numpy as np
 import pytest
 
 from engine import MatchError, TriangleMesh
-from engine.eigenpairs import eigenpairs
 from engine.functional_maps import (
     FunctionalMaps,
     PointMaps,
@@ -15,6 +14,7 @@ from engine.functional_maps import (
     refine_bijective_steps,
     spectral_sizes,
 )
+from engine.geometry.eigenpairs import eigenpairs
 from engine.runtime.progress import run
 from tests.shapes import creature, permuted
 

@@ -6,10 +6,10 @@ import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, match
 from engine.cleaning import clean
+from engine.geometry.handle_loops import genus, shortest_handle_loop_steps
 from engine.handle_cutting import cut_along, evened_steps
-from engine.handles import genus, shortest_handle_loop_steps
 from engine.runtime.progress import run
-from tests.engine.test_handles import with_handles
+from tests.engine.geometry.test_handle_loops import with_handles
 from tests.messes import bridged
 from tests.shapes import compacted, creature, icosphere, torus
 

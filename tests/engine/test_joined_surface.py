@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
 from engine.cleaning import clean
-from engine.handles import genus
+from engine.geometry.handle_loops import genus
 from engine.joined_surface import separate_limbs, with_limbs_steps
 from engine.mesh.closest_points import ClosestPoints
 from engine.mesh.surface_points import SurfacePoints

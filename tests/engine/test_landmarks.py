@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, match
+from engine.geometry.geodesic_ball import vicinity
 from engine.landmarks import locate_landmarks
 from engine.shape_preparation import finer_shapes
-from engine.vicinity import vicinity
 from tests.bodies import mirrored_body
 from tests.shapes import icosphere
 

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh, run
 from engine.deformable import DeformableSurface
-from engine.laplacian import laplace_beltrami
+from engine.geometry.laplacian import laplace_beltrami
 from engine.limb_twists import rolled_back, untwisted
 from tests.bodies import fish
 from tests.shapes import icosphere, rotation

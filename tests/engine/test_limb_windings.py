@@ -6,7 +6,7 @@ import pytest
 
 from engine import Progress, TriangleMesh, run
 from engine.deformable import DeformableSurface
-from engine.laplacian import laplace_beltrami
+from engine.geometry.laplacian import laplace_beltrami
 from engine.limb_twists import Untwisted, Winding
 from engine.limb_windings import local_costs, wound_steps
 from engine.registration import Registration, register_steps

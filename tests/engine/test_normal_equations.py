@@ -6,7 +6,7 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import TriangleMesh
-from engine.laplacian import laplace_beltrami
+from engine.geometry.laplacian import laplace_beltrami
 from engine.mesh.closest_points import FoundPoints
 from engine.normal_equations import NormalEquations
 from tests.shapes import creature

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.laplacian import laplace_beltrami
+from engine.geometry.laplacian import laplace_beltrami
 from engine.mesh.closest_points import ClosestPoints, facing
 from engine.posed_registration import PosedRegistration
 from tests.shapes import creature, icosphere, plane

@@ -8,9 +8,9 @@ import pytest
 
 from engine import Progress, TriangleMesh, run
 from engine.deformable import DeformableSurface
-from engine.eigenpairs import eigenpairs_steps
 from engine.elastic import ElasticSurface
-from engine.laplacian import laplace_beltrami
+from engine.geometry.eigenpairs import eigenpairs_steps
+from engine.geometry.laplacian import laplace_beltrami
 from engine.mesh.closest_points import ClosestPoints, FoundPoints
 from engine.mesh.surface_points import SurfacePoints
 from engine.registration import (

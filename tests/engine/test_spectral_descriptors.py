@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import HierMatchError, TriangleMesh
-from engine.eigenpairs import eigenpairs
+from engine.geometry.eigenpairs import eigenpairs
 from engine.spectral_descriptors import (
     automatic_energies,
     automatic_times,

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine import TriangleMesh
-from engine.geodesics import geodesic_distances
-from engine.orientation import orientation_agreement, signed_areas, tangent_gradient
+from engine.geometry.geodesics import geodesic_distances
+from engine.geometry.orientation import orientation_agreement, signed_areas, tangent_gradient
 from tests.shapes import icosphere, plane, rotation
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.linalg import block_diag, eigh, qr
 
-from .elimination import ShiftedFactor, elimination_order
-from .runtime.progress import Progress, Steps, within
+from ..runtime.progress import Progress, Steps, within
+from .schur_elimination import ShiftedFactor, elimination_order
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

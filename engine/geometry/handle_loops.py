@@ -9,15 +9,15 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
-from .mesh.connectivity.boundary_loops import boundary_loops
-from .mesh.connectivity.halfedges import group_half_edges, pair_half_edges
-from .mesh.connectivity.neighbour_means import neighbour_means
-from .runtime.progress import Progress, Steps
+from ..mesh.connectivity.boundary_loops import boundary_loops
+from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from ..mesh.connectivity.neighbour_means import neighbour_means
+from ..runtime.progress import Progress, Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["genus", "shortest_handle_loop_steps"]
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import shortest_path
 
+from engine.geometry.sampling import FarthestPointSampler, farthest_point_sampling
 from engine.runtime.errors import MatchError
-from engine.sampling import FarthestPointSampler, farthest_point_sampling
 
 
 def random_graph(seed, n=14, extra=12):

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["IntrinsicTriangulation", "corner_cotangents", "intrinsic_delaunay", "mollified_lengths", "triangle_lengths"]
 

@@ -5,8 +5,8 @@ import numpy as np
 from scipy.sparse import eye_array
 
 from engine import TriangleMesh
-from engine.laplacian import laplace_beltrami
-from engine.symmetric_factor import symmetric_factor
+from engine.geometry.laplacian import laplace_beltrami
+from engine.geometry.symmetric_factor import symmetric_factor
 from tests.shapes import icosphere
 
 

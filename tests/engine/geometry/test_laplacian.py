@@ -6,8 +6,8 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import TriangleMesh
-from engine.intrinsic_delaunay import triangle_lengths
-from engine.laplacian import LaplaceBeltrami, laplace_beltrami
+from engine.geometry.intrinsic_delaunay import triangle_lengths
+from engine.geometry.laplacian import LaplaceBeltrami, laplace_beltrami
 from tests.shapes import creature, cylinder, icosphere, irregular, permuted, plane, plane_with_hole, rotation, torus
 
 SHAPES = {

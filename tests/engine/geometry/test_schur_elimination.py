@@ -7,8 +7,8 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from engine import TriangleMesh
-from engine.elimination import ShiftedFactor, elimination_order, nested_dissection
-from engine.laplacian import laplace_beltrami
+from engine.geometry.laplacian import laplace_beltrami
+from engine.geometry.schur_elimination import ShiftedFactor, elimination_order, nested_dissection
 from tests.shapes import cylinder, icosphere, irregular, plane, torus
 
 

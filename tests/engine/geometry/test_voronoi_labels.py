@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from engine import MeshError, TriangleMesh
-from engine.geodesics import geodesic_distances
-from engine.regions import NO_REGION, nearest_regions
+from engine.geometry.geodesics import geodesic_distances
+from engine.geometry.voronoi_labels import NO_REGION, nearest_regions
 from tests.shapes import icosphere
 
 

@@ -8,7 +8,12 @@ from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
 from engine import TriangleMesh
-from engine.intrinsic_delaunay import corner_cotangents, intrinsic_delaunay, mollified_lengths, triangle_lengths
+from engine.geometry.intrinsic_delaunay import (
+    corner_cotangents,
+    intrinsic_delaunay,
+    mollified_lengths,
+    triangle_lengths,
+)
 from tests.shapes import creature, cylinder, icosphere, irregular, permuted, plane, plane_with_hole, torus
 
 

@@ -16,7 +16,7 @@ from .intrinsic_delaunay import corner_cotangents, intrinsic_delaunay
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["LaplaceBeltrami", "laplace_beltrami"]
 

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
+from ..runtime.errors import SettingsError
+from ..runtime.progress import Progress, Steps, run, within
 from .block_krylov import EigenPairs, lowest_eigenpairs_steps
 from .laplacian import LaplaceBeltrami, laplace_beltrami
-from .runtime.errors import SettingsError
-from .runtime.progress import Progress, Steps, run, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Spectrum", "eigenpairs", "eigenpairs_steps"]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from .runtime.errors import MatchError
+from ..runtime.errors import MatchError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.handles import genus, shortest_handle_loop_steps
+from engine.geometry.handle_loops import genus, shortest_handle_loop_steps
 from engine.runtime.progress import run
 from tests.messes import bridged
 from tests.shapes import (

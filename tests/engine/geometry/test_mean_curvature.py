@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.geodesics import geodesic_distances
-from engine.integral_invariants import smoothed_mean_curvature
+from engine.geometry.geodesics import geodesic_distances
+from engine.geometry.mean_curvature import smoothed_mean_curvature
 from tests.shapes import cylinder, icosphere, plane
 
 

@@ -12,7 +12,7 @@ from scipy.sparse import coo_array, csr_array
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["CornerTables", "corner_tables"]
 

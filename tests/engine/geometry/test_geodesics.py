@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import HierMatchError, MeshError, TriangleMesh
-from engine.geodesics import GeodesicSolver, geodesic_distances
+from engine.geometry.geodesics import GeodesicSolver, geodesic_distances
 from tests.shapes import (
     cone,
     creature,

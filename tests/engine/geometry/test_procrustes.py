@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from engine.procrustes import nearest_rotations
+from engine.geometry.procrustes import nearest_rotations
 
 SMALL = 1e-12
 

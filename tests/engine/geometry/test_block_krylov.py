@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array, diags_array, kron
 
-from engine import block_krylov
-from engine.block_krylov import lowest_eigenpairs_steps
+from engine.geometry import block_krylov
+from engine.geometry.block_krylov import lowest_eigenpairs_steps
 from engine.runtime.progress import run
 
 

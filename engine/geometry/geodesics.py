@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
+from ..runtime.errors import MeshError
 from .corner_tables import corner_tables
-from .runtime.errors import MeshError
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["GeodesicSolver", "geodesic_distances"]
 

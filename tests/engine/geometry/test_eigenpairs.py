@@ -10,8 +10,8 @@ from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import eigsh
 
 from engine import HierMatchError, TriangleMesh
-from engine.eigenpairs import eigenpairs, eigenpairs_steps
-from engine.laplacian import LaplaceBeltrami, laplace_beltrami
+from engine.geometry.eigenpairs import eigenpairs, eigenpairs_steps
+from engine.geometry.laplacian import LaplaceBeltrami, laplace_beltrami
 from tests.shapes import creature, cylinder, icosphere, irregular, permuted, plane, rotation
 
 
