@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .clean_surface import CleanSurface, SurfacePart
     from .part_pairs import Contact
+    from .repair.clean_surface import CleanSurface, SurfacePart
 
 __all__ = ["FollowedMap", "follow_steps"]
 

@@ -10,8 +10,6 @@ import numpy as np
 from scipy.sparse import csr_array, vstack
 
 from .bone_fit import BoneTransforms, fit_bones, skinned
-from .clean_surface import StandIn
-from .cleaning import clean
 from .digit_fit import with_digits
 from .fitted_rig import FittedRig
 from .geometry.laplacian import laplace_beltrami
@@ -22,6 +20,8 @@ from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints
 from .posed_registration import PosedRegistration
 from .proxy import proxy_steps
+from .repair.clean_surface import StandIn
+from .repair.cleaning import clean
 from .runtime.errors import RigError
 from .runtime.progress import Progress, Steps, run, within
 from .stunted_digits import stunted_digits, with_stiff_digits
@@ -30,9 +30,9 @@ from .whole_maps import whole_maps_steps
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .clean_surface import CleanSurface
     from .mesh.triangle_mesh import TriangleMesh
     from .proxy import Proxy
+    from .repair.clean_surface import CleanSurface
     from .skeleton import Skeleton
 
 __all__ = ["fit_rig", "fit_rig_steps"]

@@ -16,9 +16,9 @@ from .runtime.progress import Progress, Steps, within
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .clean_surface import CleanSurface
     from .followers import FollowedMap
     from .mesh.surface_points import SurfacePoints
+    from .repair.clean_surface import CleanSurface
 
 __all__ = ["WholeMap", "WholeMaps", "whole_maps_steps"]
 

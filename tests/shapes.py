@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import Delaunay
 
-from engine.surface_nets import surface_net
+from engine.repair.surface_nets import surface_net
 
 
 def plane(count=20, size=1.0, jitter=0.0, seed=0):

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from hiermatch.engine.cleaning_notes import CleaningCounts, cleaning_notes
+from hiermatch.engine.repair.cleaning_notes import CleaningCounts, cleaning_notes
 from hiermatch.hiermatch_addon import translated_text, translations
 from hiermatch.hiermatch_addon.panel_text import wrap_text
 from hiermatch.hiermatch_addon.registration import CLASSES

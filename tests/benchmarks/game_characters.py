@@ -23,7 +23,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from engine import MatchSettings, TriangleMesh, match
-from engine.cleaning import clean
+from engine.repair.cleaning import clean
 from tests.benchmarks.iqm_models import read_character, read_frames
 
 CHARACTERS = {

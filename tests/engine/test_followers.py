@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from engine import SurfacePoints, TriangleMesh, part_placement, run
-from engine.cleaning import clean
 from engine.followers import follow_steps
+from engine.repair.cleaning import clean
 from tests.messes import cut_along_seam, partly_turned, together
 from tests.shapes import bent, compacted, creature, icosphere, permuted, plane, posed, rotation
 

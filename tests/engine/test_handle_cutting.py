@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, match
-from engine.cleaning import clean
 from engine.geometry.handle_loops import genus, shortest_handle_loop_steps
 from engine.handle_cutting import cut_along, evened_steps
+from engine.repair.cleaning import clean
 from engine.runtime.progress import run
 from tests.engine.geometry.test_handle_loops import with_handles
 from tests.messes import bridged

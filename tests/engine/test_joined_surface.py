@@ -6,12 +6,12 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
-from engine.cleaning import clean
 from engine.geometry.handle_loops import genus
 from engine.joined_surface import separate_limbs, with_limbs_steps
 from engine.mesh.closest_points import ClosestPoints
 from engine.mesh.surface_points import SurfacePoints
 from engine.reflection import reflected_surface
+from engine.repair.cleaning import clean
 from engine.runtime.progress import run
 from tests.limbs import modular_creature
 from tests.messes import together

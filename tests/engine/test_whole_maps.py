@@ -6,8 +6,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import SurfacePoints, TriangleMesh, run
-from engine.cleaning import clean
 from engine.quality import map_confidence
+from engine.repair.cleaning import clean
 from engine.whole_maps import whole_maps_steps
 from tests.messes import together
 from tests.shapes import icosphere

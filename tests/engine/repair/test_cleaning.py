@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import TriangleMesh
-from engine.cleaning import clean
+from engine.repair.cleaning import clean
 from tests.bodies import mirrored_body
 from tests.messes import cut_along_seam, in_pieces, partly_turned, together, with_fin, without_disc, without_faces
 from tests.shapes import creature, cylinder, icosphere, irregular, permuted, plane, rotation, torus

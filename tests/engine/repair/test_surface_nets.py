@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.surface_nets import surface_net
+from engine.repair.surface_nets import surface_net
 
 
 def grid(*counts):

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..mesh.connectivity.boundary_loops import BoundaryLoops
+from ..mesh.connectivity.halfedges import triangle_slots
+from ..mesh.connectivity.nonmanifold_vertices import several_fans
 from .hole_filling import small_holes
-from .mesh.connectivity.boundary_loops import BoundaryLoops
-from .mesh.connectivity.halfedges import triangle_slots
-from .mesh.connectivity.nonmanifold_vertices import several_fans
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.solid_indicator import solid_indicator
+from engine.repair.solid_indicator import solid_indicator
 from tests.messes import together, without_disc
 from tests.shapes import creature, icosphere, rotation
 

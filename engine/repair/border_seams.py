@@ -11,12 +11,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from .mesh.connectivity.halfedges import triangle_slots
+from ..mesh.connectivity.halfedges import triangle_slots
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.connectivity.halfedges import EdgeGroups
+    from ..mesh.connectivity.halfedges import EdgeGroups
 
 __all__ = ["seam_partners"]
 

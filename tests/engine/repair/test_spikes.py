@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.cleaning import clean
-from engine.spikes import find_spikes, pulled_in
+from engine.repair.cleaning import clean
+from engine.repair.spikes import find_spikes, pulled_in
 from tests.shapes import creature, icosphere, permuted, rotation
 
 

@@ -3,7 +3,7 @@
 
 from dataclasses import fields
 
-from engine.cleaning_notes import CleaningCounts, cleaning_notes
+from engine.repair.cleaning_notes import CleaningCounts, cleaning_notes
 
 
 def test_nothing_is_said_of_a_clean_mesh():

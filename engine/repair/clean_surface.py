@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .mesh.closest_points import ClosestPoints, facing
-from .mesh.surface_points import SurfacePoints
-from .mesh.triangle_mesh import TriangleMesh
-from .reflection import reflected_mesh
+from ..mesh.closest_points import ClosestPoints, facing
+from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..reflection import reflected_mesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.border_seams import seam_partners
-from engine.cleaning import clean
 from engine.mesh.connectivity.halfedges import group_half_edges
+from engine.repair.border_seams import seam_partners
+from engine.repair.cleaning import clean
 from tests.messes import halves_apart, partly_turned, together, without_faces
 from tests.shapes import compacted, creature, cylinder, plane
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.hole_filling import fill_holes, small_holes
 from engine.mesh.connectivity.boundary_loops import boundary_loops
 from engine.mesh.connectivity.halfedges import group_half_edges
+from engine.repair.hole_filling import fill_holes, small_holes
 from tests.messes import without_disc
 from tests.shapes import cylinder, icosphere
 

@@ -10,12 +10,12 @@ import numpy as np
 from scipy.fft import fftfreq, irfftn, next_fast_len, rfftfreq, rfftn
 from scipy.sparse import csc_array
 
-from .mesh.area_samples import area_samples
+from ..mesh.area_samples import area_samples
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["SolidIndicator", "solid_indicator"]
 

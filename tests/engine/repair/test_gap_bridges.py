@@ -4,7 +4,7 @@
 import numpy as np
 from scipy.ndimage import label
 
-from engine.gap_bridges import bridged
+from engine.repair.gap_bridges import bridged
 
 
 def blocks(*rows, wide=8):

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..mesh.connectivity.boundary_loops import boundary_loops
+from ..mesh.connectivity.halfedges import EdgeGroups, group_half_edges, pair_half_edges, repeated_triangles
+from ..mesh.connectivity.mesh_orientation import inward_components, orient_consistently, turn_triangles
+from ..mesh.connectivity.nonmanifold_vertices import split_fans
+from ..mesh.connectivity.triangle_components import triangle_components
+from ..mesh.connectivity.vertex_welding import weld_boundaries
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.errors import MeshError
 from .border_seams import seam_partners
 from .clean_surface import CleanSurface, SurfacePart
 from .cleaning_notes import CleaningCounts, cleaning_notes
 from .hole_filling import fill_holes, small_holes
-from .mesh.connectivity.boundary_loops import boundary_loops
-from .mesh.connectivity.halfedges import EdgeGroups, group_half_edges, pair_half_edges, repeated_triangles
-from .mesh.connectivity.mesh_orientation import inward_components, orient_consistently, turn_triangles
-from .mesh.connectivity.nonmanifold_vertices import split_fans
-from .mesh.connectivity.triangle_components import triangle_components
-from .mesh.connectivity.vertex_welding import weld_boundaries
-from .mesh.triangle_mesh import TriangleMesh
 from .pinched_gaps import pinched_gaps
-from .runtime.errors import MeshError
 from .spikes import find_spikes, pulled_in
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.connectivity.boundary_loops import BoundaryLoops
+    from ..mesh.connectivity.boundary_loops import BoundaryLoops
 
 __all__ = ["fill_holes", "small_holes"]
 
