@@ -21,8 +21,8 @@ from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, Set
 from .runtime.progress import Progress, run
 from .runtime.worker import use_processes
 from .settings import MatchSettings
-from .shape import Shape
 from .shape_key_transfer import carry_offsets_steps
+from .shapes.shape import Shape
 from .skeleton import Skeleton
 from .skin_weights import carried as carry_weights
 from .symmetrising import Symmetriser

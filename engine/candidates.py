@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from .deformable import DeformableSurface
     from .map_domain import MapDomain
     from .registration import Stage
-    from .shape import Shape
+    from .shapes.shape import Shape
     from .ties import Ties
 
     _Common = tuple["Follower", MapDomain, MapDomain]

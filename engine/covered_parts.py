@@ -23,7 +23,7 @@ from .part_search import part_placements_steps
 from .runtime.errors import MatchError
 from .runtime.parallel_map import shared_steps
 from .runtime.progress import Steps, within
-from .shape import Shape
+from .shapes.shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .landmarks import Landmarks
     from .map_hypotheses import LandmarkStart
     from .map_search import RoughSearch
     from .registration import Registration
-    from .shape import Shape
+    from .shapes.landmarks import Landmarks
+    from .shapes.shape import Shape
 
 __all__ = ["EIGENPAIRS", "RegisteredPair", "are_distinct", "registered_pair_steps"]
 

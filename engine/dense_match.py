@@ -10,9 +10,6 @@ import numpy as np
 
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .functional_maps import nearest_both_ways
-from .handle_cutting import evened_steps
-from .joined_surface import with_limbs_steps
-from .landmarks import placed_at_vertices
 from .lifting import lift_steps
 from .map_hypotheses import LandmarkStart
 from .mesh.surface_map import SurfaceMap
@@ -21,13 +18,16 @@ from .pieces_only import piece_of, with_pieces_only
 from .pinning import pinned
 from .polishing import Polish, finer_surfaces_steps
 from .quality import MatchQuality, assess_maps, with_pieces
-from .reflection import reflected_mesh, reflected_points
 from .registration import POLISH
 from .runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from .runtime.progress import Progress, Steps, run, within
 from .runtime.worker import call_helpers
-from .shape import Shape
-from .shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
+from .shapes.enclosing_surface import with_limbs_steps
+from .shapes.genus_reduction import evened_steps
+from .shapes.landmarks import placed_at_vertices
+from .shapes.reflection import reflected_mesh, reflected_points
+from .shapes.shape import Shape
+from .shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
 from .whole_maps import whole_maps_steps
 
 if TYPE_CHECKING:
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from .deformable import DeformableSurface
     from .dense_map import RegisteredPair
     from .mesh.triangle_mesh import TriangleMesh
-    from .prepared_surface import PreparedSurface
     from .registration import Registration, Stage
+    from .shapes.prepared_surface import PreparedSurface
     from .whole_maps import WholeMap
 
 __all__ = ["MEASURED", "DenseMatch", "dense_match_steps", "densify", "densify_steps"]

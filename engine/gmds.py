@@ -19,15 +19,15 @@ from .relaxation import descend
 from .runtime.errors import MatchError
 from .runtime.progress import Progress, Steps, within
 from .settling import Settled, Stress, joined, settle_steps
-from .surface_distances import SurfaceDistances, symmetric_roots
+from .shapes.surface_distances import SurfaceDistances, symmetric_roots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from .shape import Shape
-    from .surface_distances import PointDistances
+    from .shapes.shape import Shape
+    from .shapes.surface_distances import PointDistances
 
 __all__ = ["GmdsLevel", "GmdsResult", "Norm", "gmds_steps"]
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh.triangle_mesh import TriangleMesh
-    from .proxy import Proxy
+    from .shapes.proxy import Proxy
 
 __all__ = ["lift_steps"]
 

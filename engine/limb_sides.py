@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .extremities import limb_tips, mean_distances
 from .map_hypotheses import LandmarkStart
 from .runtime.parallel_map import shared_steps
-from .surface_distances import measured_steps
+from .shapes.extremities import limb_tips, mean_distances
+from .shapes.surface_distances import measured_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .functional_maps import PointMaps
     from .runtime.progress import Steps
-    from .shape import Shape
+    from .shapes.shape import Shape
 
 __all__ = ["exchanged_limbs", "repaired_start_steps"]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .surface_distances import squared_offsets
+from .shapes.surface_distances import squared_offsets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -17,7 +17,7 @@ from .spectral_descriptors import automatic_energies, wave_kernel_signatures
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .shape import Shape
+    from .shapes.shape import Shape
 
 __all__ = ["MapDomain"]
 

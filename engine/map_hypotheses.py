@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .shape import Shape
+    from .shapes.shape import Shape
 
 __all__ = [
     "LandmarkStart",

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from .extremities import spread_extremities
 from .extremity_search import beam_matchings
 from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
 from .lifted_matchings import LiftedMatchings
 from .map_scores import map_orientation, spectral_terms
 from .runtime.parallel_map import beside_steps, shared_steps
 from .runtime.progress import Progress, Steps, within
+from .shapes.extremities import spread_extremities
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

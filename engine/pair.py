@@ -12,6 +12,7 @@ from .descriptors import bin_difference, distance_histograms, earth_movers_dista
 from .diffusion import DiffusionMetric, automatic_time
 from .geometry.orientation import orientation_agreement, signed_areas
 from .problem import MatchingProblem
+from .shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 from .sign_sequences import SignSequence, consistent_sequences
 from .spectral_descriptors import (
     eigenfunction_descriptor,
@@ -19,13 +20,12 @@ from .spectral_descriptors import (
     multiplets,
     wave_kernel_signatures,
 )
-from .surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .settings import MatchSettings
-    from .shape import Shape
+    from .shapes.shape import Shape
 
 __all__ = ["Pair"]
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .runtime.progress import Steps
-    from .shape import Shape
+    from .shapes.shape import Shape
 
 __all__ = ["PartPlacement", "part_placements_steps"]
 

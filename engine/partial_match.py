@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .covered_parts import continued, covered_parts_steps
-from .joined_surface import with_limbs_steps
 from .pieces_only import share_of, with_piece_only
 from .repair.clean_surface import StandIn
 from .runtime.errors import MatchError
 from .runtime.progress import within
-from .shape import Shape
 from .shape_matching import matched_steps
+from .shapes.enclosing_surface import with_limbs_steps
+from .shapes.shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

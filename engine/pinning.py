@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .geometry.geodesic_ball import distances_to_others, vicinity
-from .landmarks import placed_at_vertices
 from .mesh.surface_points import SurfacePoints
+from .shapes.landmarks import placed_at_vertices
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,16 +10,16 @@ import numpy as np
 from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS, RegisteredPair
 from .dense_match import dense_match_steps
-from .joined_surface import joined_shapes_steps, with_limbs_steps
-from .landmarks import locate_landmarks
 from .mesh.surface_points import SurfacePoints
 from .pieces_only import piece_of, with_pieces_only
-from .reflection import reflected_mesh
 from .registration import FINE, Stage, register_steps, restarted_steps
 from .runtime.errors import MatchError
 from .runtime.progress import run, within
-from .shape import Shape
-from .shape_preparation import finer_shapes
+from .shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
+from .shapes.landmarks import locate_landmarks
+from .shapes.reflection import reflected_mesh
+from .shapes.shape import Shape
+from .shapes.shape_preparation import finer_shapes
 from .ties import Ties
 
 if TYPE_CHECKING:

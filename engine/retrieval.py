@@ -17,7 +17,7 @@ from .pair import Pair
 from .runtime.errors import MatchError, SettingsError
 from .runtime.progress import Progress, Steps, run, within
 from .settings import MatchSettings
-from .shape import Shape
+from .shapes.shape import Shape
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,16 +14,16 @@ from .digit_fit import with_digits
 from .fitted_rig import FittedRig
 from .geometry.laplacian import laplace_beltrami
 from .homes import Homes
-from .joined_surface import joined_steps, separate_limbs
 from .mesh.closest_points import ClosestPoints, FoundPoints, facing
 from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints
 from .posed_registration import PosedRegistration
-from .proxy import proxy_steps
 from .repair.clean_surface import StandIn
 from .repair.cleaning import clean
 from .runtime.errors import RigError
 from .runtime.progress import Progress, Steps, run, within
+from .shapes.enclosing_surface import joined_steps, separate_limbs
+from .shapes.proxy import proxy_steps
 from .stunted_digits import stunted_digits, with_stiff_digits
 from .whole_maps import whole_maps_steps
 
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh.triangle_mesh import TriangleMesh
-    from .proxy import Proxy
     from .repair.clean_surface import CleanSurface
+    from .shapes.proxy import Proxy
     from .skeleton import Skeleton
 
 __all__ = ["fit_rig", "fit_rig_steps"]

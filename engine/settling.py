@@ -14,13 +14,13 @@ from scipy.sparse.csgraph import connected_components
 from .local_stress import LocalStress, PairStress
 from .mesh.surface_points import SurfacePoints
 from .runtime.progress import Progress, Steps
-from .surface_distances import symmetric_roots
+from .shapes.surface_distances import symmetric_roots
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .mesh.triangle_mesh import TriangleMesh
-    from .surface_distances import PointDistances
+    from .shapes.surface_distances import PointDistances
 
 __all__ = ["Settled", "Stress", "joined", "settle_steps"]
 

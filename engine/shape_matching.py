@@ -12,9 +12,7 @@ from scipy.optimize import linear_sum_assignment
 
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .dense_match import MEASURED, DenseMatch, dense_match_steps
-from .handle_cutting import evened_steps
 from .hierarchy import refine_steps
-from .landmarks import locate_landmarks, placed_at_vertices
 from .map_hypotheses import LandmarkStart, map_domains
 from .map_search import RoughSearch
 from .mesh.surface_points import SurfacePoints
@@ -22,17 +20,19 @@ from .pair import Pair
 from .result import CoarseMatch, MatchResult
 from .runtime.errors import MatchError
 from .runtime.progress import within
-from .shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
+from .shapes.genus_reduction import evened_steps
+from .shapes.landmarks import locate_landmarks, placed_at_vertices
+from .shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
+from .shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .solvers import Answer, at_samples, moved, solve_steps
-from .surface_distances import SurfaceDistances, to_all_vertices_steps
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .landmarks import Landmarks
     from .runtime.progress import Steps
     from .settings import MatchSettings
-    from .shape import Shape
+    from .shapes.landmarks import Landmarks
+    from .shapes.shape import Shape
 
 __all__ = ["Clock", "MatchTask", "matched_steps"]
 

@@ -12,12 +12,12 @@ from .flat import flat_candidates, flat_steps
 from .gmds import gmds_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
-from .landmarks import placed_at_vertices
 from .mesh.surface_points import SurfacePoints
 from .result import Level
 from .runtime.progress import Steps, within
 from .settling import Stress, settle_steps
-from .surface_distances import symmetric_roots
+from .shapes.landmarks import placed_at_vertices
+from .shapes.surface_distances import symmetric_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,8 +14,8 @@ from .runtime.progress import Steps, within
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .landmarks import Landmarks
-    from .shape import Shape
+    from .shapes.landmarks import Landmarks
+    from .shapes.shape import Shape
 
 __all__ = ["Steered", "agrees", "landmark_distance", "steered_hypotheses_steps"]
 

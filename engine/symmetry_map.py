@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from .dense_match import densify_steps
 from .runtime.progress import run, within
-from .shape import Shape
+from .shapes.shape import Shape
 from .symmetry import find_symmetry_steps
 
 if TYPE_CHECKING:

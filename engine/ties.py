@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .deformable import DeformableSurface
-    from .landmarks import LandmarkPlaces
     from .mesh.triangle_mesh import TriangleMesh
-    from .proxy import Proxy
+    from .shapes.landmarks import LandmarkPlaces
+    from .shapes.proxy import Proxy
 
 __all__ = ["Ties"]
 

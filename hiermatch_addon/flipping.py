@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..engine import Shape, densify_steps
 from ..engine.runtime.progress import within
-from ..engine.surface_distances import SurfaceDistances, to_all_vertices_steps
+from ..engine.shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .access import mesh_of, view_layer_of
 from .answer_writing import following, mapped_contents_steps, restored
 from .contents import contents_steps

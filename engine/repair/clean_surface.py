@@ -12,7 +12,7 @@ import numpy as np
 from ..mesh.closest_points import ClosestPoints, facing
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..reflection import reflected_mesh
+from ..shapes.reflection import reflected_mesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -29,7 +29,7 @@ from engine import MatchSettings, TriangleMesh, run
 from engine.branch_and_bound import branch_and_bound, distinct_matchings_steps
 from engine.pair import Pair
 from engine.problem import MatchingProblem
-from engine.shape import Shape
+from engine.shapes.shape import Shape
 from tests.shapes import creature
 
 PAIRS = "cat0:cat1,cat0:cat8,michael0:michael3,tr_reg_000:tr_reg_001"

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
-from engine.surface_distances import squared_offsets
+from engine.shapes.surface_distances import squared_offsets
 from tests.shapes import creature
 
 

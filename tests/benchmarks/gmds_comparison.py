@@ -26,7 +26,7 @@ import numpy as np
 
 from engine import MatchSettings, SurfacePoints, match, run
 from engine.gmds import gmds_steps
-from engine.surface_distances import SurfaceDistances
+from engine.shapes.surface_distances import SurfaceDistances
 from tests.benchmarks.common import creature_pairs, data_pairs
 
 PAIRS = (

@@ -18,7 +18,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from engine import TriangleMesh
-from engine.surface_distances import squared_offsets
+from engine.shapes.surface_distances import squared_offsets
 from tests.benchmarks.common import known, read_off
 
 SAMPLES = 400

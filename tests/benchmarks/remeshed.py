@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
 from engine.geometry.geodesics import GeodesicSolver
-from engine.shape import Shape
+from engine.shapes.shape import Shape
 
 PLACES = 300
 FAR, WRONG = 15.0, 0.03

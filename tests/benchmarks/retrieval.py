@@ -24,7 +24,7 @@ import numpy as np
 from engine.mesh.triangle_mesh import TriangleMesh
 from engine.retrieval import RetrievalSettings, retrieve
 from engine.runtime.progress import run
-from engine.shape import Shape
+from engine.shapes.shape import Shape
 from tests.benchmarks.symmetry import read_off
 from tests.bodies import mirrored_body, relative_of_creature
 

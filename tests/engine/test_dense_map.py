@@ -12,9 +12,9 @@ from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
 from engine.dense_match import dense_match_steps
 from engine.elastic import ElasticSurface
 from engine.functional_maps import PointMaps
-from engine.landmarks import LandmarkPlaces, Landmarks
 from engine.map_hypotheses import LandmarkStart, assessed_everywhere, map_hypotheses_steps
 from engine.registration import SOFT, register_steps
+from engine.shapes.landmarks import LandmarkPlaces, Landmarks
 from engine.steering import Steered
 from engine.ties import Ties
 from tests.bodies import fish, mirrored_body

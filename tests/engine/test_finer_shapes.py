@@ -9,10 +9,10 @@ import pytest
 from engine import MatchSettings, Shape, SurfacePoints, TriangleMesh, match
 from engine.dense_match import densify
 from engine.geometry.eigenpairs import Spectrum
-from engine.proxy import Proxy
 from engine.refinement import refine_map
 from engine.runtime.progress import run
-from engine.shape_preparation import finer_shapes, finer_shapes_steps
+from engine.shapes.proxy import Proxy
+from engine.shapes.shape_preparation import finer_shapes, finer_shapes_steps
 from tests.shapes import creature, cylinder, subdivided
 
 QUICK = MatchSettings(points=24, samples=128)

@@ -6,7 +6,7 @@ import pytest
 
 from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
 from engine.gmds import gmds_steps
-from engine.surface_distances import EmbeddedDistances, SurfaceDistances
+from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances
 from tests.shapes import creature, icosphere, plane
 
 

@@ -6,12 +6,12 @@ import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, densify, match
 from engine.joined_match import matched_with_pieces_steps
-from engine.joined_surface import separate_limbs
 from engine.mesh.surface_points import SurfacePoints
 from engine.refinement import point_distortions, refine_map
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
 from engine.shape_matching import MatchTask
+from engine.shapes.enclosing_surface import separate_limbs
 from tests.limbs import modular_creature
 from tests.messes import together
 from tests.shapes import creature, cylinder, icosphere

@@ -8,7 +8,7 @@ from engine.mesh.triangle_mesh import TriangleMesh
 from engine.retrieval import RetrievalSettings, retrieve, retrieve_steps
 from engine.runtime.errors import MatchError, SettingsError
 from engine.runtime.progress import run
-from engine.shape import Shape
+from engine.shapes.shape import Shape
 from tests.bodies import relative_of_creature
 from tests.shapes import icosphere, permuted, rotation, torus
 

@@ -7,7 +7,7 @@ import pytest
 from engine import Progress, Shape, SurfacePoints, TriangleMesh, run
 from engine.local_stress import PairStress
 from engine.settling import Stress, joined, settle_steps
-from engine.surface_distances import EmbeddedDistances, SurfaceDistances
+from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances
 from tests.shapes import creature, plane, plane_with_hole
 
 

@@ -8,7 +8,7 @@ from engine.mesh.triangle_mesh import TriangleMesh
 from engine.runtime.errors import MatchError
 from engine.runtime.progress import run
 from engine.settings import MatchSettings
-from engine.shape import Shape
+from engine.shapes.shape import Shape
 from engine.symmetry import find_symmetry, find_symmetry_steps
 from tests.bodies import mirrored_body
 from tests.shapes import creature, icosphere, permuted, plane, rotation

@@ -8,8 +8,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from engine import TriangleMesh
 from engine.lifting import lift_steps
-from engine.proxy import Proxy
 from engine.runtime.progress import run
+from engine.shapes.proxy import Proxy
 from engine.torn_patches import NearVertices, with_patches_mended
 from tests.shapes import icosphere, plane
 

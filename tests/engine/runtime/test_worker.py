@@ -333,7 +333,7 @@ import time
 from outer.inner.engine import TriangleMesh, Shape, run
 from outer.inner.engine.runtime import worker as helpers
 from outer.inner.engine.runtime.parallel_map import shared_steps
-from outer.inner.engine.shape_preparation import Wanted, _prepared_steps
+from outer.inner.engine.shapes.shape_preparation import Wanted, _prepared_steps
 from tests.shapes import creature
 helpers.use_processes(2); helpers.call_helpers(); (helper,) = helpers.present_helpers()
 while not helper.is_ready: time.sleep(0.01)

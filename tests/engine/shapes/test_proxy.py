@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from engine import TriangleMesh, run
 from engine.geometry.eigenpairs import eigenpairs_steps
-from engine.proxy import Proxy, proxy_steps
+from engine.shapes.proxy import Proxy, proxy_steps
 from tests.bodies import mirrored_body
 from tests.shapes import (
     compacted,

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.dual_triangulation import dual_triangulation, manifold_part
-from engine.surface_cells import SurfaceCells
+from engine.shapes.remeshing.dual_triangulation import dual_triangulation, manifold_part
+from engine.shapes.remeshing.surface_cells import SurfaceCells
 from tests.shapes import cylinder, icosphere, plane, plane_with_hole, torus
 
 

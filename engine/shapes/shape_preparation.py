@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from .geometry.eigenpairs import Spectrum, eigenpairs_steps
-from .geometry.laplacian import LaplaceBeltrami
-from .runtime.parallel_map import shared_steps
+from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
+from ..geometry.laplacian import LaplaceBeltrami
+from ..runtime.parallel_map import shared_steps
 
 if TYPE_CHECKING:
-    from .runtime.progress import Steps
+    from ..runtime.progress import Steps
     from .shape import Shape
 
 __all__ = ["Wanted", "finer_shapes", "finer_shapes_steps", "prepared_shapes_steps"]

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.sizing_field import vertex_density
-from engine.surface_cells import SurfaceCells, grid_labels
+from engine.shapes.remeshing.sizing_field import vertex_density
+from engine.shapes.remeshing.surface_cells import SurfaceCells, grid_labels
 from tests.shapes import icosphere, plane, torus
 
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .mesh.surface_points import SurfacePoints
-from .runtime.errors import MatchError
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.errors import MatchError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
     from .prepared_surface import PreparedSurface
     from .shape import Shape
 

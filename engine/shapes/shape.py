@@ -11,21 +11,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from .geometry.eigenpairs import Spectrum, eigenpairs_steps
-from .geometry.geodesics import GeodesicSolver
-from .geometry.laplacian import LaplaceBeltrami, laplace_beltrami
-from .geometry.mean_curvature import smoothed_mean_curvature
-from .geometry.orientation import tangent_gradient
-from .geometry.sampling import FarthestPointSampler
+from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
+from ..geometry.geodesics import GeodesicSolver
+from ..geometry.laplacian import LaplaceBeltrami, laplace_beltrami
+from ..geometry.mean_curvature import smoothed_mean_curvature
+from ..geometry.orientation import tangent_gradient
+from ..geometry.sampling import FarthestPointSampler
+from ..runtime.progress import Progress, Steps, run
 from .prepared_surface import PreparedSurface, prepared_steps
 from .proxy import Proxy
 from .reflection import reflected_surface
-from .runtime.progress import Progress, Steps, run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Shape"]
 

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh, run
-from engine.extremities import limb_tips, mean_distances, spread_extremities
+from engine.shapes.extremities import limb_tips, mean_distances, spread_extremities
 from tests.bodies import mirrored_body, relative_of_creature
 from tests.shapes import icosphere
 

@@ -10,20 +10,20 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from .geometry.handle_loops import genus, shortest_handle_loop_steps
-from .mesh.connectivity.boundary_loops import boundary_loops
-from .mesh.connectivity.halfedges import group_half_edges, pair_half_edges
-from .mesh.connectivity.nonmanifold_vertices import split_fans
-from .mesh.triangle_mesh import TriangleMesh
+from ..geometry.handle_loops import genus, shortest_handle_loop_steps
+from ..mesh.connectivity.boundary_loops import boundary_loops
+from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from ..mesh.connectivity.nonmanifold_vertices import split_fans
+from ..mesh.triangle_mesh import TriangleMesh
+from ..repair.hole_filling import fill_holes
+from ..runtime.progress import Steps, within
 from .proxy import Proxy, proxy_steps
-from .repair.hole_filling import fill_holes
-from .runtime.progress import Steps, within
 from .shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .repair.clean_surface import SurfacePart
+    from ..repair.clean_surface import SurfacePart
 
 __all__ = ["cut_along", "evened_steps"]
 

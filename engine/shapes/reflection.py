@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .mesh.surface_points import SurfacePoints
-from .mesh.triangle_mesh import TriangleMesh
+from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from .prepared_surface import PreparedSurface

@@ -8,8 +8,8 @@ import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, match
 from engine.geometry.geodesic_ball import vicinity
-from engine.landmarks import locate_landmarks
-from engine.shape_preparation import finer_shapes
+from engine.shapes.landmarks import locate_landmarks
+from engine.shapes.shape_preparation import finer_shapes
 from tests.bodies import mirrored_body
 from tests.shapes import icosphere
 

@@ -7,12 +7,12 @@ from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
 from engine.geometry.handle_loops import genus
-from engine.joined_surface import separate_limbs, with_limbs_steps
 from engine.mesh.closest_points import ClosestPoints
 from engine.mesh.surface_points import SurfacePoints
-from engine.reflection import reflected_surface
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
+from engine.shapes.enclosing_surface import separate_limbs, with_limbs_steps
+from engine.shapes.reflection import reflected_surface
 from tests.limbs import modular_creature
 from tests.messes import together
 from tests.shapes import creature, icosphere, permuted, rotation

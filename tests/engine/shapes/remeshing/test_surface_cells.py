@@ -6,7 +6,7 @@ import pytest
 from scipy.sparse.csgraph import connected_components
 
 from engine import TriangleMesh
-from engine.surface_cells import SurfaceCells, grid_labels, nearest_members
+from engine.shapes.remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
 from tests.shapes import icosphere, permuted, plane, plane_with_hole, torus
 
 

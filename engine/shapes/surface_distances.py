@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from scipy.sparse import csr_array
 
-from .descriptors import squared_differences
-from .mesh.surface_points import SurfacePoints
-from .runtime.parallel_map import shared_steps
-from .runtime.progress import Progress, Steps, run
+from ..descriptors import squared_differences
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.parallel_map import shared_steps
+from ..runtime.progress import Progress, Steps, run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .geometry.geodesics import GeodesicSolver
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..geometry.geodesics import GeodesicSolver
+    from ..mesh.triangle_mesh import TriangleMesh
     from .shape import Shape
 
 __all__ = [

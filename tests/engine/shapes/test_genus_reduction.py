@@ -6,9 +6,9 @@ import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, match
 from engine.geometry.handle_loops import genus, shortest_handle_loop_steps
-from engine.handle_cutting import cut_along, evened_steps
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
+from engine.shapes.genus_reduction import cut_along, evened_steps
 from tests.engine.geometry.test_handle_loops import with_handles
 from tests.messes import bridged
 from tests.shapes import compacted, creature, icosphere, torus

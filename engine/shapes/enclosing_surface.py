@@ -9,28 +9,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .mesh.area_samples import even_samples
-from .mesh.closest_points import ClosestPoints, facing
-from .mesh.connectivity.halfedges import group_half_edges, pair_half_edges
-from .mesh.connectivity.mesh_orientation import enclosed_volumes
-from .mesh.connectivity.triangle_components import triangle_components
-from .mesh.triangle_mesh import TriangleMesh
+from ..mesh.area_samples import even_samples
+from ..mesh.closest_points import ClosestPoints, facing
+from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from ..mesh.connectivity.mesh_orientation import enclosed_volumes
+from ..mesh.connectivity.triangle_components import triangle_components
+from ..mesh.triangle_mesh import TriangleMesh
+from ..repair.clean_surface import StandIn
+from ..repair.cleaning import clean
+from ..repair.cleaning_notes import cleaning_notes
+from ..repair.gap_bridges import bridged
+from ..repair.solid_indicator import solid_indicator
+from ..repair.surface_nets import surface_net
+from ..runtime.errors import MeshError
+from ..runtime.progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
-from .repair.clean_surface import StandIn
-from .repair.cleaning import clean
-from .repair.cleaning_notes import cleaning_notes
-from .repair.gap_bridges import bridged
-from .repair.solid_indicator import solid_indicator
-from .repair.surface_nets import surface_net
-from .runtime.errors import MeshError
-from .runtime.progress import Progress, Steps, within
 from .shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.surface_map import SurfaceMap
-    from .repair.clean_surface import CleanSurface, SurfacePart
+    from ..mesh.surface_map import SurfaceMap
+    from ..repair.clean_surface import CleanSurface, SurfacePart
 
 __all__ = ["joined_shapes_steps", "joined_steps", "separate_limbs", "with_limbs_steps"]
 

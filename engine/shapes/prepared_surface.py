@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .mesh.closest_points import ClosestPoints
-from .mesh.surface_points import SurfacePoints
-from .mesh.triangle_mesh import TriangleMesh
+from ..mesh.closest_points import ClosestPoints
+from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..repair.cleaning import clean
+from ..runtime.errors import MatchError
+from ..runtime.progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
-from .repair.cleaning import clean
-from .runtime.errors import MatchError
-from .runtime.progress import Progress, Steps, within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .repair.clean_surface import CleanSurface
+    from ..repair.clean_surface import CleanSurface
 
 __all__ = ["PreparedSurface", "prepared_steps"]
 

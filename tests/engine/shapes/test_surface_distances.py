@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import Shape, SurfacePoints, TriangleMesh, run
-from engine.surface_distances import EmbeddedDistances, SurfaceDistances, squared_offsets, symmetric_roots
+from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances, squared_offsets, symmetric_roots
 from tests.shapes import icosphere, plane, plane_with_hole, torus
 
 

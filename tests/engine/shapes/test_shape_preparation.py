@@ -10,7 +10,7 @@ from engine import Shape, TriangleMesh
 from engine.map_domain import MapDomain
 from engine.runtime.blas_threads import one_thread
 from engine.runtime.progress import run
-from engine.shape_preparation import Wanted, prepared_shapes_steps
+from engine.shapes.shape_preparation import Wanted, prepared_shapes_steps
 from tests.shapes import creature, icosphere, irregular
 
 WANTED = Wanted(40, 12, 20)

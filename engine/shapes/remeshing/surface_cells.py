@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ...mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["SurfaceCells", "grid_labels", "nearest_members"]
 

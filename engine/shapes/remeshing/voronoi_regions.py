@@ -10,15 +10,15 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from ...runtime.progress import Progress, Steps
 from .dual_triangulation import DualTriangulation, dual_triangulation
-from .runtime.progress import Progress, Steps
 from .sizing_field import vertex_density
 from .surface_cells import SurfaceCells, nearest_members
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ...mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["VoronoiRegions", "spread_regions_steps"]
 

@@ -10,15 +10,15 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.csgraph import connected_components
 
-from .dual_triangulation import manifold_part
-from .geometry.symmetric_factor import symmetric_factor
-from .mesh.closest_points import ClosestPoints
-from .mesh.edge_splitting import split_longest_edges
-from .mesh.surface_points import SurfacePoints
-from .mesh.triangle_mesh import TriangleMesh
-from .runtime.progress import Progress, Steps, within
-from .surface_cells import SurfaceCells, grid_labels, nearest_members
-from .voronoi_regions import VoronoiRegions, spread_regions_steps
+from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.closest_points import ClosestPoints
+from ..mesh.edge_splitting import split_longest_edges
+from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.progress import Progress, Steps, within
+from .remeshing.dual_triangulation import manifold_part
+from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
+from .remeshing.voronoi_regions import VoronoiRegions, spread_regions_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,8 +6,8 @@ import pytest
 
 from engine import TriangleMesh
 from engine.runtime.progress import run
-from engine.surface_cells import SurfaceCells, grid_labels
-from engine.voronoi_regions import VoronoiRegions, spread_regions_steps
+from engine.shapes.remeshing.surface_cells import SurfaceCells, grid_labels
+from engine.shapes.remeshing.voronoi_regions import VoronoiRegions, spread_regions_steps
 from tests.shapes import icosphere, plane, torus
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import MatchError, SurfacePoints, TriangleMesh, run
-from engine.prepared_surface import prepared_steps
+from engine.shapes.prepared_surface import prepared_steps
 from tests.messes import in_pieces, partly_turned, together, without_disc
 from tests.shapes import compacted, creature, cylinder, icosphere, permuted, subdivided
 
