@@ -3,6 +3,7 @@
 
 from .dense_match import DenseMatch, densify, densify_steps
 from .fitted_rig import FittedRig
+from .hierarchical.settings import MatchSettings
 from .joint_placement import PlacedJoints, place_joints
 from .local_frames import LocalFrames, bone_frames, surface_frames
 from .matching import match, match_steps
@@ -20,7 +21,6 @@ from .rig_fit import fit_rig, fit_rig_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .runtime.progress import Progress, run
 from .runtime.worker import use_processes
-from .settings import MatchSettings
 from .shape_key_transfer import carry_offsets_steps
 from .shapes.shape import Shape
 from .skeleton import Skeleton

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from .functional_maps import SampledBasis
 from .geometry.orientation import tangent_gradient
-from .spectral_descriptors import automatic_energies, wave_kernel_signatures
+from .hierarchical.spectral_descriptors import automatic_energies, wave_kernel_signatures
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

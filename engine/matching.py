@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .hierarchical.settings import MatchSettings
 from .joined_match import matched_with_pieces_steps
 from .partial_match import has_border, part_matched_steps
 from .runtime.blas_threads import one_thread
@@ -15,7 +16,6 @@ from .runtime.errors import MatchError
 from .runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from .runtime.progress import Progress, Steps, run, within
 from .runtime.worker import call_helpers
-from .settings import MatchSettings
 from .shape_matching import MatchTask, matched_steps
 from .shapes.prepared_surface import prepared_steps
 from .shapes.shape import Shape

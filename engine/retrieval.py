@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .descriptors import distance_histograms, earth_movers_distance, squared_differences
-from .hierarchy import level_sizes, refine_steps
-from .hypotheses import coarse_steps
+from .hierarchical.descriptors import distance_histograms, earth_movers_distance, squared_differences
+from .hierarchical.hierarchy import level_sizes, refine_steps
+from .hierarchical.sampled_pair import Pair
+from .hierarchical.settings import MatchSettings
+from .hierarchical.sparse_hypotheses import coarse_steps
 from .mesh.surface_points import SurfacePoints
-from .pair import Pair
 from .runtime.errors import MatchError, SettingsError
 from .runtime.progress import Progress, Steps, run, within
-from .settings import MatchSettings
 from .shapes.shape import Shape
 
 if TYPE_CHECKING:

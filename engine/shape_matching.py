@@ -12,11 +12,12 @@ from scipy.optimize import linear_sum_assignment
 
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .dense_match import MEASURED, DenseMatch, dense_match_steps
-from .hierarchy import refine_steps
+from .hierarchical.hierarchy import refine_steps
+from .hierarchical.sampled_pair import Pair
+from .hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
 from .map_hypotheses import LandmarkStart, map_domains
 from .map_search import RoughSearch
 from .mesh.surface_points import SurfacePoints
-from .pair import Pair
 from .result import CoarseMatch, MatchResult
 from .runtime.errors import MatchError
 from .runtime.progress import within
@@ -24,13 +25,12 @@ from .shapes.genus_reduction import evened_steps
 from .shapes.landmarks import locate_landmarks, placed_at_vertices
 from .shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from .shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
-from .solvers import Answer, at_samples, moved, solve_steps
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from .hierarchical.settings import MatchSettings
     from .runtime.progress import Steps
-    from .settings import MatchSettings
     from .shapes.landmarks import Landmarks
     from .shapes.shape import Shape
 

@@ -12,9 +12,9 @@ from .symmetry import find_symmetry_steps
 
 if TYPE_CHECKING:
     from .dense_match import DenseMatch
+    from .hierarchical.settings import MatchSettings
     from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps
-    from .settings import MatchSettings
 
 __all__ = ["symmetry_map", "symmetry_map_steps"]
 

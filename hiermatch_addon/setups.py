@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Final
 
 from ..engine import MatchSettings
-from ..engine.settings import SETUPS
+from ..engine.hierarchical.settings import SETUPS
 from .properties import set_settings, setting_of, to_identifier
 
 if TYPE_CHECKING:

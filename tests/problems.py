@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.problem import MatchingProblem
+from engine.hierarchical.problem import MatchingProblem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from engine.branch_and_bound import Exclusion
+    from engine.hierarchical.exact.branch_and_bound import Exclusion
 
 
 def random_distances(rng: np.random.Generator, count: int, kind: str = "table") -> NDArray[np.float64]:

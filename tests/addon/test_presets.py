@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from hiermatch.engine import MatchSettings
-from hiermatch.engine.settings import SETUPS
+from hiermatch.engine.hierarchical.settings import SETUPS
 from hiermatch.hiermatch_addon.panels import HIERMATCH_PT_match
 from hiermatch.hiermatch_addon.preset_menu import (
     MATCH_NAMES,

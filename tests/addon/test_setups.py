@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 import pytest
-from hiermatch.engine.settings import SETUPS
+from hiermatch.engine.hierarchical.settings import SETUPS
 from hiermatch.hiermatch_addon.properties import OPTION_NAMES, setting_of
 from hiermatch.hiermatch_addon.setups import current_setup
 

@@ -26,9 +26,9 @@ from scipy.optimize import Bounds, LinearConstraint, milp, quadratic_assignment
 from scipy.sparse import coo_array
 
 from engine import MatchSettings, TriangleMesh, run
-from engine.branch_and_bound import branch_and_bound, distinct_matchings_steps
-from engine.pair import Pair
-from engine.problem import MatchingProblem
+from engine.hierarchical.exact.branch_and_bound import branch_and_bound, distinct_matchings_steps
+from engine.hierarchical.problem import MatchingProblem
+from engine.hierarchical.sampled_pair import Pair
 from engine.shapes.shape import Shape
 from tests.shapes import creature
 

@@ -23,8 +23,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from engine import MatchSettings, Shape, match, run
-from engine.flat import flat_candidates, flat_steps
-from engine.pair import Pair
+from engine.hierarchical.compared.flat import flat_candidates, flat_steps
+from engine.hierarchical.sampled_pair import Pair
 from tests.benchmarks.common import creature_pairs, data_pairs
 
 SIZES = "6,8,10,12,14,16,18,20,22,24,26,28,30,32,36,40,48,64,96,128,192,256,384,512"

@@ -25,7 +25,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from engine import MatchSettings, SurfacePoints, match, run
-from engine.gmds import gmds_steps
+from engine.hierarchical.compared.gmds import gmds_steps
 from engine.shapes.surface_distances import SurfaceDistances
 from tests.benchmarks.common import creature_pairs, data_pairs
 

@@ -28,8 +28,8 @@ from scipy.spatial import cKDTree
 from engine import symmetry_map
 from engine.geometry.geodesics import GeodesicSolver
 from engine.geometry.sampling import farthest_point_sampling
+from engine.hierarchical.settings import MatchSettings
 from engine.mesh.triangle_mesh import TriangleMesh
-from engine.settings import MatchSettings
 from engine.symmetry import find_symmetry
 from tests.bodies import mirrored_body
 from tests.shapes import creature

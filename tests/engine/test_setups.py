@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, match
-from engine.pair import Pair
+from engine.hierarchical.sampled_pair import Pair
+from engine.hierarchical.settings import SETUPS
 from engine.runtime.progress import run
-from engine.settings import SETUPS
 from tests.shapes import creature
 
 QUICK = {"points": 24, "samples": 160}

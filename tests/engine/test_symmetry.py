@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
+from engine.hierarchical.settings import MatchSettings
 from engine.mesh.triangle_mesh import TriangleMesh
 from engine.runtime.errors import MatchError
 from engine.runtime.progress import run
-from engine.settings import MatchSettings
 from engine.shapes.shape import Shape
 from engine.symmetry import find_symmetry, find_symmetry_steps
 from tests.bodies import mirrored_body

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The methods that the paper compares with: flat quadratic matching, GMDS, stress descent."""

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The stress of one point while all others rest, and where in some triangles it is least."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...shapes.surface_distances import squared_offsets
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["LocalStress", "PairStress", "minimum_in_triangle"]
+
+_NEWTON_STEPS = 3
+_RIDGE = 1e-9  # of the curvature, added in all directions so that a flat direction can be divided by
+_LARGEST = 100.0  # difference in units; the product of two of its powers must not be too large for a number
+_TINY = 1e-30  # against division by zero, where everything is zero
+_ENTRIES = ((0, 0), (0, 1), (1, 1))
+_NEAREST = 1e-3  # distances below this part of a triangle's side have no direction to move along
+
+
+@dataclass(frozen=True)
+class PairStress:
+    """What a difference r of two distances costs: weight |r / unit|^exponent.
+
+    Attributes
+    ----------
+    weight : float
+        lambda, not negative.
+    exponent : float
+        At least 2.
+    unit : float
+        Positive; for exponents above 2 about the largest difference, as those beyond a hundred units cost no more.
+    """
+
+    weight: float = 1.0
+    exponent: float = 2.0
+    unit: float = 1.0
+
+    def cost(self, residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Evaluate differences of any shape."""
+        if self.exponent == 2:
+            return self.weight * np.square(residuals / self.unit)
+        return self.weight * self._limited(residuals) ** self.exponent
+
+    def curvature(self, residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Second derivative by the difference; the first is this times the difference over (exponent - 1)."""
+        scale = self.weight * self.exponent * (self.exponent - 1) / self.unit**2
+        if self.exponent == 2:
+            return np.full(residuals.shape, scale)
+        return scale * self._limited(residuals) ** (self.exponent - 2)
+
+    def _limited(self, residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.minimum(np.abs(residuals) / self.unit, _LARGEST)
+
+
+@dataclass(frozen=True, eq=False)
+class LocalStress:
+    """Stress of places in triangles, each for one of k points while the others rest.
+
+    Parameters
+    ----------
+    pair : PairStress
+        What the pairs cost.  Each pair counts twice, as in the whole stress.
+    owner : (q,) array of int
+        For each triangle, the point that may go there.
+    wanted : (k, q) array of float
+        Wanted distance of that point to each point.
+    squares : (3, k, q) array of float
+        Squared distances from each point to the corners of the triangles.
+    sides : (q, 3) array of float
+        Squared lengths of the sides 01, 02, 12.
+    linear : (q, 3) array of float
+        Linear term of that point at the corners.
+    """
+
+    pair: PairStress
+    owner: NDArray[np.int64]
+    wanted: NDArray[np.float64]
+    squares: NDArray[np.float64]
+    sides: NDArray[np.float64]
+    linear: NDArray[np.float64]
+
+    def residuals(self, barycentric: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Distances and their differences from the wanted ones, both (k, q), at coordinates (q, 3) in the triangles."""
+        squares = sum(self.squares[c] * barycentric[:, c] for c in range(3)) - squared_offsets(barycentric, self.sides)
+        distances = np.sqrt(np.maximum(squares, _NEAREST**2 * self.sides.max(axis=1) + _TINY))
+        difference = distances - self.wanted
+        difference[self.owner, np.arange(len(self.owner))] = 0
+        return distances, difference
+
+    def value(self, barycentric: NDArray[np.float64], difference: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Stress (q,) at coordinates (q, 3) with these differences of distances (k, q)."""
+        return (self.linear * barycentric).sum(axis=1) + 2 * self.pair.cost(difference).sum(axis=0)
+
+    def derivatives(
+        self, barycentric: NDArray[np.float64], distances: NDArray[np.float64], difference: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Gradient (2, q) by the last two coordinates, and Hessian (3, q: 11, 12, 22) with linearised distances."""
+        _, s, t = barycentric.T
+        first, second, third = self.sides.T
+        at_0, at_1, at_2 = self.squares
+        along = np.stack(
+            [
+                at_1 - at_0 - first * (1 - 2 * s - t) - (third - second) * t,
+                at_2 - at_0 - second * (1 - s - 2 * t) - (third - first) * s,
+            ]
+        )
+        along /= 2 * distances
+        along[:, self.owner, np.arange(len(self.owner))] = 0
+        curvature = self.pair.curvature(difference)
+        slope = curvature * difference / (self.pair.exponent - 1)
+        gradient = 2 * np.einsum("jq,cjq->cq", slope, along)
+        gradient += self.linear.T[1:] - self.linear.T[0]
+        hessian = 2 * np.stack([np.einsum("jq,jq,jq->q", curvature, along[a], along[b]) for a, b in _ENTRIES])
+        return gradient, hessian
+
+    def minimise(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Minimise in every triangle by some Gauss-Newton steps from its centroid.
+
+        Returns
+        -------
+        barycentric : (q, 3) array of float
+            The best coordinates on the way.
+        value : (q,) array of float
+            The stress there.
+        """
+        barycentric = np.full(self.sides.shape, 1 / 3)
+        best, least = barycentric, np.full(len(barycentric), np.inf)
+        for step in range(_NEWTON_STEPS + 1):
+            distances, difference = self.residuals(barycentric)
+            value = self.value(barycentric, difference)
+            better = value < least
+            best, least = np.where(better[:, None], barycentric, best), np.where(better, value, least)
+            if step < _NEWTON_STEPS:
+                gradient, hessian = self.derivatives(barycentric, distances, difference)
+                barycentric = minimum_in_triangle(gradient, hessian, barycentric)
+        return best, least
+
+
+def minimum_in_triangle(
+    gradient: NDArray[np.float64], hessian: NDArray[np.float64], barycentric: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Minimise convex quadratic functions over a triangle, exactly.
+
+    Parameters
+    ----------
+    gradient : (2, q) array of float
+        Derivatives by the last two barycentric coordinates at `barycentric`.
+    hessian : (3, q) array of float
+        Second derivatives 11, 12 and 22; positive semidefinite.
+    barycentric : (q, 3) array of float
+        Where the gradient was taken.
+
+    Returns
+    -------
+    (q, 3) array of float
+        The minima.
+    """
+    ridge = _RIDGE * (hessian[0] + hessian[2]) + _TINY
+    a, b, c = hessian[0] + ridge, hessian[1], hessian[2] + ridge
+    here = barycentric.T[1:]
+    # f(x) = x H x / 2 + h x in the last two coordinates
+    h = gradient - np.stack([a * here[0] + b * here[1], b * here[0] + c * here[1]])
+    determinant = np.maximum(a * c - b * b, np.square(ridge))
+    free = np.stack([b * h[1] - c * h[0], b * h[0] - a * h[1]]) / determinant
+    zero = np.zeros_like(a)
+    part = np.clip((a - b + h[0] - h[1]) / (a - 2 * b + c), 0, 1)  # of the way from (1, 0) to (0, 1)
+    edges = np.stack(
+        [
+            np.stack([zero, np.clip(-h[1] / c, 0, 1)]),
+            np.stack([np.clip(-h[0] / a, 0, 1), zero]),
+            np.stack([1 - part, part]),
+        ]
+    )
+    s, t = edges.transpose(1, 0, 2)
+    on_edges = (a * s * s + c * t * t) / 2 + b * s * t + h[0] * s + h[1] * t
+    edge = on_edges.argmin(axis=0)
+    inside = (free >= 0).all(axis=0) & (free.sum(axis=0) <= 1)
+    s, t = np.where(inside, free, edges[edge, :, np.arange(len(edge))].T)
+    return np.stack([np.maximum(1 - s - t, 0), s, t], axis=1)

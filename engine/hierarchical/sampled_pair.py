@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Two sampled shapes, and all terms of the distortion between their samples."""
+
+from __future__ import annotations
+
+import copy
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..geometry.orientation import orientation_agreement, signed_areas
+from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
+from .descriptors import bin_difference, distance_histograms, earth_movers_distance, squared_differences
+from .diffusion import DiffusionMetric, automatic_time
+from .problem import MatchingProblem
+from .sign_sequences import SignSequence, consistent_sequences
+from .spectral_descriptors import (
+    eigenfunction_descriptor,
+    heat_kernel_signatures,
+    multiplets,
+    wave_kernel_signatures,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..shapes.shape import Shape
+    from .settings import MatchSettings
+
+__all__ = ["Pair"]
+
+# Weight of the orientation term beside the descriptors.  Its mean square difference of signed areas is about 0.5
+# between unrelated places, the descriptors' earth mover's distance some hundredths.
+_ORIENTATION_WEIGHT = 0.1
+
+# Mean of the linear term between all samples, to which descriptors without a unit of length are scaled: what the earth
+# mover's distance of geodesic histograms has on ordinary shapes.
+_TYPICAL_DIFFERENCE = 0.1
+
+# Root mean square distance between samples to which diffusion distances, whose size depends on the time, are scaled:
+# about that of geodesic distances in units of sqrt(area).
+_TYPICAL_DISTANCE = 1.0
+
+# Eigenvalues that differ by less than this part may have changed places.
+_NEAR = 0.1
+
+
+class Pair:
+    """Two sampled shapes, and the terms of the distortion between their samples.
+
+    Parameters
+    ----------
+    source, target : Shape
+        The shapes X and Y, sampled; with their spectra if `needs_spectrum` says so.
+    settings : MatchSettings
+        Metric, descriptor and weights.
+    landmarks : int
+        How many of the first samples of X are known to correspond to the first of Y, one to one.
+
+    Attributes
+    ----------
+    source_distances : (S, S) array of float
+        d_X between the samples of X.
+    target_distances : (T, T) array of float
+        d_Y between the samples of Y.
+    target_metric : PointDistances
+        d_Y between points anywhere on Y.
+    linear : (S, T) array of float
+        d_F between every sample of X and every sample of Y, weighted.
+    """
+
+    def __init__(self, source: Shape, target: Shape, settings: MatchSettings, landmarks: int = 0) -> None:
+        self.source, self.target, self.settings, self.landmarks = source, target, settings, landmarks
+        self.source_distances, self.target_distances, self.target_metric = _metric(source, target, settings)
+        self._descriptor = settings.linear_weight * self._sign_free(settings.descriptor)
+        self.linear = self._descriptor
+
+    @staticmethod
+    def needs_spectrum(settings: MatchSettings) -> bool:
+        """Say whether the shapes need eigenpairs of the Laplace-Beltrami operator."""
+        return settings.metric == "diffusion" or settings.descriptor != "histogram"
+
+    def _sign_free(self, descriptor: str) -> NDArray[np.float64]:
+        """Compare the samples by a descriptor; in place of eigenfunctions, by histograms, which need no signs."""
+        if descriptor in ("heat_kernel", "wave_kernel"):
+            make = heat_kernel_signatures if descriptor == "heat_kernel" else wave_kernel_signatures
+            return _scaled(_signature_difference(*(make(s.spectrum)[s.samples] for s in (self.source, self.target))))
+        bins, reach = self.settings.histogram_bins, max(self.source_distances.max(), self.target_distances.max())
+        first = distance_histograms(self.source_distances, self.source.cell_areas, bins, reach)
+        second = distance_histograms(self.target_distances, self.target.cell_areas, bins, reach)
+        if self.settings.comparison == "bin_to_bin":
+            return _scaled(bin_difference(first, second))
+        return earth_movers_distance(first, second, reach / bins)
+
+    def variants(self, count: int) -> list[Pair]:
+        """Return the pair, or for eigenfunctions the pair with each of the most consistent sign sequences.
+
+        Parameters
+        ----------
+        count : int
+            How many, at most.
+        """
+        if self.settings.descriptor != "eigenfunctions":
+            return [self]
+        k = self.settings.eigenfunctions
+        source, target = (eigenfunction_descriptor(s.spectrum, k)[s.samples] for s in (self.source, self.target))
+        first = self.source.spectrum.zero_count
+        groups = [group.tolist() for group in multiplets(self.source.spectrum.values[first : first + k], _NEAR)]
+        sequences = consistent_sequences(source, target, self._descriptor, groups, count)
+        return [self._with(source, target, sequence) for sequence in sequences]
+
+    def _with(self, source: NDArray[np.float64], target: NDArray[np.float64], sequence: SignSequence) -> Pair:
+        variant = copy.copy(self)
+        difference = np.sqrt(squared_differences(source, sequence.apply(target)))
+        variant.linear = self.settings.linear_weight * _scaled(difference)
+        return variant
+
+    def problem(
+        self, points: int, candidates: int | None = None, extra: NDArray[np.float64] | None = None
+    ) -> MatchingProblem:
+        """Match the first `points` samples of X to the first `candidates` samples of Y (all by default).
+
+        `extra`, (points, T), is added to the linear term.
+
+        Matches that contradict a landmark are forbidden in a problem of some candidates, which is meant for an exact
+        search.  Among all candidates, where the relaxed solver could not work with infinity, they cost more than could
+        ever be gained by them.
+        """
+        linear = self.linear[:points, :candidates]
+        linear = linear if extra is None else linear + extra
+        source, target = self.source_distances[:points, :points], self.target_distances[:candidates, :candidates]
+        weight = self.settings.quadratic_weight
+        if self.landmarks:
+            farthest = max(float(source.max()), float(target.max()))
+            most = 1 + float(np.abs(linear).max()) + 2 * points * weight * farthest**2
+            linear = np.where(self._contradicting(*linear.shape), most if candidates is None else np.inf, linear)
+        return MatchingProblem(linear, source, target, weight)
+
+    def _contradicting(self, points: int, candidates: int) -> NDArray[np.bool_]:
+        """Find the matches of a landmark with anything but its partner, and of other points with a partner."""
+        rows, columns = np.arange(points)[:, None], np.arange(candidates)
+        of_landmark = (rows < self.landmarks) | (columns < self.landmarks)
+        forbidden: NDArray[np.bool_] = of_landmark & (rows != columns)
+        return forbidden
+
+    def keeps_landmarks(self, assignment: NDArray[np.int64]) -> bool:
+        """Say whether an assignment (n,) of sample numbers takes every landmark to its partner."""
+        count = min(self.landmarks, len(assignment))
+        return bool((assignment[:count] == np.arange(count)).all())
+
+    def orientation_term(self, coarse: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
+        """Penalise matches that do not keep (sign 1) or do not mirror (sign -1) the surface, (S, T).
+
+        Seen from corresponding points, the directions to the coarse points turn the same way.  The term compares the
+        signed areas of all pairs of these directions; it is what tells the front of a flat body from its back, which
+        distances cannot.
+        """
+        first = signed_areas(self.source.directions[:, : len(coarse)])
+        second = sign * signed_areas(self.target.directions[:, coarse])
+        return _ORIENTATION_WEIGHT * squared_differences(first, second) / first.shape[1]
+
+    def orientation(self, assignment: NDArray[np.int64]) -> float:
+        """Mean agreement of orientation at the matched points, see `orientation_agreement`."""
+        count = len(assignment)
+        return float(
+            orientation_agreement(
+                self.source.directions[:count, :count], self.target.directions[np.ix_(assignment, assignment)]
+            ).mean()
+        )
+
+
+def _metric(
+    source: Shape, target: Shape, settings: MatchSettings
+) -> tuple[NDArray[np.float64], NDArray[np.float64], PointDistances]:
+    """Distances between the samples of each shape in the chosen metric, and the metric on the whole target."""
+    if settings.metric == "geodesic":
+        return source.sample_distances, target.sample_distances, SurfaceDistances(target)
+    # One time, and one scale, for both shapes.
+    time = settings.diffusion_time or (automatic_time(source.spectrum) + automatic_time(target.spectrum)) / 2
+    first, second = (
+        DiffusionMetric(shape.spectrum, time).distances(shape.samples)[:, shape.samples] for shape in (source, target)
+    )
+    scale = _TYPICAL_DISTANCE / np.sqrt((np.square(first).mean() + np.square(second).mean()) / 2)
+    spectrum = target.spectrum
+    decay = np.exp(-spectrum.values * spectrum.area * time)
+    places = spectrum.functions * (decay * scale * np.sqrt(spectrum.area))
+    return first * scale, second * scale, EmbeddedDistances(target.mesh, places)
+
+
+def _scaled(difference: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale differences without a unit to those of histograms, so that one lambda serves all descriptors."""
+    mean = difference.mean()
+    return difference * (_TYPICAL_DIFFERENCE / mean) if mean > 0 else difference
+
+
+def _signature_difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Compare kernel signatures (s, d) and (t, d) by their logarithms, because they span decades: (s, t)."""
+    smallest = np.finfo(float).tiny
+    return bin_difference(*(np.log(np.maximum(signature, smallest)) for signature in (first, second)))

@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Several coarse matchings followed up, and the choice between them.
+
+A nearly symmetric shape has many matchings of almost equal distortion: the true one, its mirror image, and for people
+the turn by 180 degrees that swaps left with right and front with back.  The exact optimum of the coarse problem is
+often one of the wrong ones, so its best distinct solutions are all refined, and the choice is made where more points
+can speak.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from ..geometry.orientation import orientation_agreement, signed_areas
+from ..runtime.progress import Progress, Steps, within
+from .descriptors import squared_differences, weighted_correlation
+from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
+from .hierarchy import Refined, level_sizes, refine_steps
+from .sampled_pair import Pair
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Coarse", "Hypothesis", "assess", "choose_steps", "coarse_candidates", "coarse_steps", "two_answers"]
+
+Result = TypeVar("Result")
+
+_DISTINCT = 0.2  # two coarse matchings are distinct if half the points lie farther apart than this, in sqrt(area)
+_SCREEN_POINTS = 20  # all hypotheses are refined up to this many points,
+_DECISION_POINTS = 64  # the best of them up to this many, unless a dense map is to decide,
+_KEPT = 4  # which are so many of each orientation,
+_KEPT_DENSE = 2  # and fewer if a dense map is to decide:
+_DENSE_SHARE = 2  # it has starts of its own, so that one in so many coarse matchings is enough.
+_DISTINCT_SHARE = 0.1  # part of the points that has to differ (by half of _DISTINCT) for two refined ones to be kept
+_CURVATURE_WEIGHT = 6.0
+_SYMMETRIES = 2  # so many self-matchings of the source, beside the identity, are tried for the mirror image
+_STRAINED = 0.7  # excess of score and strain of landmarks where a matching contradicts them
+_EXACT = 0.01  # differences of distances, in sqrt(area), below which all are the same
+_LANDMARKS = 20  # the first matched points, to which the orientation of the others is measured
+
+
+@dataclass(frozen=True, eq=False)
+class Coarse:
+    """An exactly matched coarse problem.
+
+    Attributes
+    ----------
+    pair : Pair
+        The pair, with the signs of eigenfunctions under which it was matched.
+    matching : BoundedMatching
+        The matching of the first samples.
+    """
+
+    pair: Pair
+    matching: BoundedMatching
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """One refined matching.
+
+    Attributes
+    ----------
+    coarse : Coarse
+        Where it started.
+    levels : list of Refined
+        The levels since then.
+    cost : float
+        Distortion of the last level.
+    orientation : float
+        Mean agreement of orientation over the whole surface, -1 to 1.
+    score : float
+        Smaller is more credible; comparable between hypotheses of one pair.
+    """
+
+    coarse: Coarse
+    levels: list[Refined]
+    cost: float
+    orientation: float
+    score: float
+
+    @property
+    def assignment(self) -> NDArray[np.int64]:
+        """The matching of the last level, (j,)."""
+        return self.levels[-1].assignment
+
+
+@dataclass(frozen=True, eq=False)
+class _Lead:
+    """A coarse matching on its way to a hypothesis, with the orientation that it is to have."""
+
+    coarse: Coarse
+    orientation_term: NDArray[np.float64]  # (S, T)
+    levels: list[Refined]
+    cost: float
+
+    @property
+    def assignment(self) -> NDArray[np.int64]:
+        """The matching of the last level, (j,)."""
+        return self.levels[-1].assignment
+
+
+def coarse_candidates(pair: Pair) -> int:
+    """Count the samples of the target that are offered to the coarse points."""
+    settings = pair.settings
+    if settings.constraint == "bijective":
+        return min(settings.coarse_points, settings.points)
+    return min(settings.coarse_candidates, pair.target.sample_count)
+
+
+def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
+    """Match the coarse points exactly.
+
+    Returns
+    -------
+    list of Coarse
+        The best matchings that are distinct from each other; with eigenfunctions as descriptors, the best matching
+        for each of the most consistent sign sequences.
+    """
+    settings = pair.settings
+    points = min(settings.coarse_points, settings.points)
+    candidates = coarse_candidates(pair)
+    count = -(-settings.hypotheses // _DENSE_SHARE) if settings.dense else settings.hypotheses
+    variants = pair.variants(count)
+    each = -(-count // len(variants))
+    found = []
+    for number, variant in enumerate(variants):
+        search = distinct_matchings_steps(
+            variant.problem(points, candidates), each, _DISTINCT, node_limit=settings.node_limit
+        )
+        matchings = yield from within(search, number / len(variants), (number + 1) / len(variants))
+        found += [Coarse(variant, matching) for matching in matchings]
+    return found
+
+
+def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
+    """Follow up coarse matchings, each with either orientation, and choose.
+
+    Returns
+    -------
+    list of Hypothesis
+        One or two, see `two_answers`.
+    """
+    settings = coarse[0].pair.settings
+    points = min(settings.points, _SCREEN_POINTS if settings.dense else _DECISION_POINTS)
+    sizes = level_sizes(len(coarse[0].matching.assignment), points)
+    screen = [size for size in sizes if size <= _SCREEN_POINTS] or sizes[:1]
+    further = sizes[len(screen) :]
+    leads: list[_Lead] = []
+    for sign in (1, -1):
+        screened = []
+        for number, start in enumerate(coarse):
+            here = Progress(0.25 * ((sign < 0) + number / len(coarse)), "Comparing matchings")
+            term = start.pair.orientation_term(start.matching.assignment, sign)
+            levels = yield from _at(here, refine_steps(start.pair, start.matching.assignment, screen, term))
+            cost = start.pair.problem(screen[-1], extra=term[: screen[-1]]).cost(levels[-1].assignment)
+            screened.append(_Lead(start, term, levels, cost))
+        leads += _best_distinct(screened, _KEPT_DENSE if settings.dense else _KEPT)
+    hypotheses: list[Hypothesis] = []
+    for number, lead in enumerate(leads):
+        here = Progress(0.5 + 0.35 * number / len(leads), "Comparing matchings")
+        hypotheses.append((yield from _at(here, _follow_steps(lead, further))))
+    hypotheses.sort(key=lambda hypothesis: hypothesis.score)
+    if not coarse[0].pair.landmarks:  # which no symmetry of the source would respect
+        missing = [sign for sign in (1, -1) if not any(h.orientation * sign > 0 for h in hypotheses)]
+        steps = _reflected_steps(hypotheses, sizes, missing if settings.dense else [-1, 1])
+        hypotheses += yield from _at(Progress(0.85, "Comparing matchings"), steps)
+    return two_answers(hypotheses)
+
+
+def two_answers(hypotheses: list[Hypothesis]) -> list[Hypothesis]:
+    """Choose the most credible matching of either orientation, the one that keeps it first.
+
+    With landmarks, both take each to its partner, but one that does so against all else is left out: so landmarks on
+    one side of a symmetric body decide what the sides correspond to.
+    """
+    ranked = sorted(hypotheses, key=lambda hypothesis: hypothesis.score)
+    keeping = [h for h in ranked if h.orientation > 0][:1]
+    mirroring = [h for h in ranked if h.orientation <= 0][:1]
+    both = keeping + mirroring
+    if not ranked[0].coarse.pair.landmarks:
+        return both
+    strains = [h.score + _landmark_strain(h) for h in both]
+    return [h for h, strain in zip(both, strains, strict=True) if strain < min(strains) + _STRAINED]
+
+
+def _landmark_strain(hypothesis: Hypothesis) -> float:
+    """Measure how badly landmarks fit the other points: logarithm of their root mean square difference of distances."""
+    pair, assignment = hypothesis.coarse.pair, hypothesis.assignment
+    count = min(pair.landmarks, len(assignment))
+    source = pair.source.sample_distances[:count, : len(assignment)]
+    target = pair.target.sample_distances[np.ix_(assignment[:count], assignment)]
+    return float(np.log(_EXACT + np.sqrt(np.square(source - target).mean())))
+
+
+def _follow_steps(lead: _Lead, further: list[int]) -> Steps[Hypothesis]:
+    """Refine a lead to its last level, and there once more without the orientation term.
+
+    So the result is a minimum of the distortion alone.
+    """
+    pair = lead.coarse.pair
+    more = yield from refine_steps(pair, lead.assignment, further, lead.orientation_term)
+    levels = lead.levels + more
+    last = yield from refine_steps(pair, levels[-1].assignment, [len(levels[-1].assignment)])
+    return assess(lead.coarse, levels[:-1] + last)
+
+
+def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int], wanted: list[int]) -> Steps[list[Hypothesis]]:
+    """Make matchings of the wanted orientations, from the best of the other one, by the symmetries of the source.
+
+    A symmetry of the source, followed by a matching, is another matching.  So where only one of the true and the
+    mirrored one is among the best coarse matchings, the other is found from it.
+    """
+    if not wanted:
+        return []
+    pair = hypotheses[0].coarse.pair
+    mirror = Pair(pair.source, pair.source, pair.settings)
+    problem = mirror.problem(sizes[0], min(pair.settings.coarse_candidates, len(hypotheses[0].assignment)))
+    # The best self-matching is the identity.
+    selves = yield from distinct_matchings_steps(
+        problem, 1 + _SYMMETRIES, _DISTINCT, node_limit=pair.settings.node_limit
+    )
+    found = []
+    for sign in wanted:
+        best = next((h for h in hypotheses if h.orientation * sign < 0), None)
+        if best is None:
+            continue
+        for symmetry in selves[1:]:
+            start = best.assignment[symmetry.assignment]
+            term = best.coarse.pair.orientation_term(start, sign)
+            levels = yield from refine_steps(best.coarse.pair, start, sizes[:1], term)
+            found.append((yield from _follow_steps(_Lead(best.coarse, term, levels, 0.0), sizes[1:])))
+    return found
+
+
+def _at(here: Progress, steps: Steps[Result]) -> Steps[Result]:
+    """Report one fixed progress for every step of a short computation."""
+    return (yield from within(steps, here.fraction, here.fraction, here.label))
+
+
+def _best_distinct(leads: list[_Lead], most: int) -> list[_Lead]:
+    """Keep the best few, leaving out those that have become the same as a better one."""
+    kept: list[_Lead] = []
+    for lead in sorted(leads, key=lambda lead: lead.cost):
+        target = lead.coarse.pair.target
+        moves = [target.sample_distances[lead.assignment, other.assignment] for other in kept]
+        if all((move > _DISTINCT / 2).mean() > _DISTINCT_SHARE for move in moves):
+            kept.append(lead)
+        if len(kept) == most:
+            break
+    return kept
+
+
+def assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
+    """Carry a matching to all samples, and see how well the surfaces agree there.
+
+    Two things are asked of the lifted map: that it keeps the distances to the matched points, and that the surface
+    bends the same way at both ends, outwards to outwards.  The second is extrinsic, so no isometry can fool it: it
+    separates the true matching from the 180-degree turn of a person.
+    """
+    assignment = levels[-1].assignment
+    count = len(assignment)
+    pair = coarse.pair
+    source, target = pair.source, pair.target
+    known, offered = source.sample_distances[:, :count], target.sample_distances[:, assignment]
+    misfit = squared_differences(known, offered) / count
+    landmarks = min(count, _LANDMARKS)
+    here, there = source.directions[:, :landmarks], target.directions[:, assignment[:landmarks]]
+    first, second = signed_areas(here), signed_areas(there)
+    # The sides must agree as the matching itself says, whichever it says.
+    sign = 1 if pair.orientation(assignment) >= 0 else -1
+    sides = squared_differences(first, sign * second) / first.shape[1]
+    lifted = (misfit + 0.01 * sides).argmin(axis=1)
+    residual = float(misfit[np.arange(len(lifted)), lifted].mean())
+    agreements = [
+        weighted_correlation(x, y[lifted], source.cell_areas)
+        for x, y in zip(source.curvatures, target.curvatures, strict=True)
+    ]
+    orientation = float(orientation_agreement(here, there[lifted]).mean())
+    score = float(np.log(max(residual, float(np.finfo(float).tiny))) - _CURVATURE_WEIGHT * np.mean(agreements))
+    cost = pair.problem(count).cost(assignment)
+    return Hypothesis(coarse, levels, cost, orientation, score)

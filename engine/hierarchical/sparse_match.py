@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ways to match a pair: hierarchical, and the flat one and generalised multidimensional scaling beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..mesh.surface_points import SurfacePoints
+from ..result import Level
+from ..runtime.progress import Steps, within
+from ..shapes.landmarks import placed_at_vertices
+from ..shapes.surface_distances import symmetric_roots
+from .compared.flat import flat_candidates, flat_steps
+from .compared.gmds import gmds_steps
+from .compared.stress_descent import Stress, settle_steps
+from .hierarchy import Refined, level_sizes, refine_steps
+from .sparse_hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from .sampled_pair import Pair
+
+__all__ = ["Answer", "at_samples", "moved", "solve_steps"]
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A matching, on the part of the target that is used.
+
+    Attributes
+    ----------
+    coarse : Coarse
+        The exact first step.
+    candidates : int
+        How many samples of the target were offered there.
+    orientation : float
+        Mean agreement of orientation, -1 to 1.
+    points : SurfacePoints
+        Images of the first k samples of the source, on ``Shape.mesh`` of the target.
+    distances : (k, k) array of float
+        Distances between the images.
+    linear : float
+        Sum of the descriptor differences, at the samples nearest to the images.
+    levels : tuple of Level
+        The hierarchy, on the whole target.
+    """
+
+    coarse: Coarse
+    candidates: int
+    orientation: float
+    points: SurfacePoints
+    distances: NDArray[np.float64]
+    linear: float
+    levels: tuple[Level, ...]
+
+    @property
+    def quadratic(self) -> float:
+        """Sum over ordered pairs of the squared differences of distances."""
+        wanted = self.coarse.pair.source_distances[: len(self.points), : len(self.points)]
+        return float(np.square(self.distances - wanted).sum())
+
+    @property
+    def distortion(self) -> float:
+        """The distortion, equation 2."""
+        return self.linear + self.coarse.pair.settings.quadratic_weight * self.quadratic
+
+
+def solve_steps(pair: Pair, lap: Callable[[str], None]) -> Steps[list[Answer]]:
+    """Match a pair by the solver that its settings name.
+
+    Parameters
+    ----------
+    pair : Pair
+        The two shapes.
+    lap : callable
+        Is told the name of each stage when it ends.
+
+    Returns
+    -------
+    list of Answer
+        The one that keeps the orientation and the one that mirrors it, as far as they were found.
+    """
+    if pair.settings.solver == "flat":
+        answers = yield from _flat_steps(pair)
+        lap("flat")
+        return answers
+    coarse = yield from within(coarse_steps(pair), 0.0, 0.2, "Matching the coarse points exactly")
+    lap("coarse")
+    hypotheses = yield from within(choose_steps(coarse), 0.2, 0.6)
+    if pair.settings.solver == "gmds":
+        answers = yield from within(_gmds_steps(hypotheses), 0.6, 1.0)
+        lap("gmds")
+        return answers
+    answers = yield from within(_finished_steps(hypotheses), 0.6, 0.8)
+    lap("hierarchy")
+    if pair.settings.settle and not pair.settings.dense:
+        answers = yield from within(_settled_steps(answers), 0.8, 1.0)
+        lap("settling")
+    return answers
+
+
+def _finished_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
+    """Go on from the level at which the hypotheses were compared to the finest."""
+    answers = []
+    for number, hypothesis in enumerate(hypotheses):
+        pair = hypothesis.coarse.pair
+        sizes = level_sizes(len(hypothesis.assignment), pair.settings.points)[1:]
+        finer = refine_steps(pair, hypothesis.assignment, sizes)
+        levels = yield from within(finer, number / len(hypotheses), (number + 1) / len(hypotheses))
+        answers.append(_at_samples(hypothesis, hypothesis.levels + levels, coarse_candidates(pair)))
+    return answers
+
+
+def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
+    settings = pair.settings
+    candidates = flat_candidates(settings.points, pair.target.sample_count)
+    hypotheses = []
+    for variant in pair.variants(2):
+        found = yield from within(
+            flat_steps(variant, settings.points, candidates, count=2, node_limit=settings.node_limit), 0.0, 1.0
+        )
+        hypotheses += [assess(Coarse(variant, matching), [Refined(matching.assignment, 0)]) for matching in found]
+    return [_at_samples(hypothesis, hypothesis.levels, candidates) for hypothesis in two_answers(hypotheses)]
+
+
+def _gmds_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
+    answers = []
+    for number, hypothesis in enumerate(hypotheses):
+        pair = hypothesis.coarse.pair
+        target, points = pair.target, pair.settings.points
+        at_coarse = hypothesis.levels[0].assignment
+        found = yield from within(
+            gmds_steps(
+                pair.source,
+                target,
+                points,
+                start=SurfacePoints.at_vertices(target.original, target.vertices[target.samples[at_coarse]]),
+                wanted=pair.source_distances[:points, :points],
+                distances=pair.target_metric,
+            ),
+            number / len(hypotheses),
+            (number + 1) / len(hypotheses),
+        )
+        levels = tuple(Level(level.points, level.sweeps, level.stress, level.target_points) for level in found.levels)
+        placed = target.surface.on_mesh(found.target_points)
+        distances = found.distances
+        if pair.landmarks:
+            placed, distances = yield from _at_landmarks_steps(pair, placed)
+        answers.append(
+            Answer(
+                hypothesis.coarse,
+                coarse_candidates(pair),
+                hypothesis.orientation,
+                placed,
+                distances,
+                _linear(pair, placed),
+                levels,
+            )
+        )
+    return answers
+
+
+def _at_landmarks_steps(pair: Pair, points: SurfacePoints) -> Steps[tuple[SurfacePoints, NDArray[np.float64]]]:
+    """Put the images of landmarks where they belong, and measure the distances between all images anew."""
+    rows, target = np.arange(pair.landmarks), pair.target
+    placed = placed_at_vertices(points, target.mesh, rows, target.samples[: pair.landmarks])
+    yield from pair.target_metric.prepare_steps(placed)
+    return placed, symmetric_roots(pair.target_metric.squares_between(placed))
+
+
+def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) -> Answer:
+    pair = hypothesis.coarse.pair
+    target, assignment = pair.target, levels[-1].assignment
+
+    def places(numbers: NDArray[np.int64]) -> SurfacePoints:
+        """Put samples of the target, by their numbers, on its mesh."""
+        return SurfacePoints.at_vertices(target.mesh, target.samples[numbers])
+
+    return Answer(
+        hypothesis.coarse,
+        candidates,
+        hypothesis.orientation,
+        places(assignment),
+        pair.target_distances[np.ix_(assignment, assignment)],
+        pair.problem(len(assignment)).linear_cost(assignment),
+        tuple(
+            Level(
+                len(level.assignment),
+                level.iterations,
+                pair.problem(len(level.assignment)).cost(level.assignment),
+                target.surface.on_original(places(level.assignment)),
+            )
+            for level in levels
+        ),
+    )
+
+
+def at_samples(answer: Answer, levels: list[Refined]) -> Answer:
+    """Replace the matching of an answer by another one of the same samples, found in these levels."""
+    return _at_samples(assess(answer.coarse, levels), levels, answer.candidates)
+
+
+def moved(answer: Answer, points: SurfacePoints) -> Answer:
+    """Move the images of an answer to other points of the target; its metric was prepared for the nearest vertices."""
+    pair = answer.coarse.pair
+    distances = symmetric_roots(pair.target_metric.squares_by_nearest(points))
+    there = replace(answer, points=points, distances=distances, linear=_linear(pair, points))
+    on_original = pair.target.surface.on_original(points)
+    last = replace(answer.levels[-1], distortion=there.distortion, target_points=on_original)
+    return replace(there, levels=(*answer.levels[:-1], last))
+
+
+def _settled_steps(answers: list[Answer]) -> Steps[list[Answer]]:
+    """Let the points leave the samples and come to rest anywhere on the surface, where that lowers the distortion."""
+    settled = []
+    for number, answer in enumerate(answers):
+        steps = within(_one_settled_steps(answer), number / len(answers), (number + 1) / len(answers))
+        settled.append((yield from steps))
+    return settled
+
+
+def _one_settled_steps(answer: Answer) -> Steps[Answer]:
+    pair = answer.coarse.pair
+    wanted = pair.source_distances[: len(answer.points), : len(answer.points)]
+    stress = Stress(wanted, _holding(pair, len(answer.points)) if pair.landmarks else None)
+    settled = yield from settle_steps(pair.target_metric, answer.points, stress)
+    moved = replace(answer, points=settled.points, distances=settled.distances, linear=_linear(pair, settled.points))
+    if moved.distortion >= answer.distortion:
+        return answer
+    last = replace(
+        answer.levels[-1],
+        distortion=moved.distortion,
+        target_points=pair.target.surface.on_original(settled.points),
+    )
+    return replace(moved, levels=(*answer.levels[:-1], last))
+
+
+def _holding(pair: Pair, count: int) -> NDArray[np.float64]:
+    """Linear term (count, n) at the vertices of the target that lets no image of a landmark leave its place."""
+    farthest = max(float(pair.source_distances.max()), float(pair.target_distances.max()))
+    linear = np.zeros((count, pair.target.mesh.vertex_count))
+    linear[: pair.landmarks] = 1 + 2 * count * farthest**2
+    linear[np.arange(pair.landmarks), pair.target.samples[: pair.landmarks]] = 0
+    return linear
+
+
+def _linear(pair: Pair, points: SurfacePoints) -> float:
+    """Sum the descriptor differences, at the sample of the target nearest to each point."""
+    nearest = pair.target.sample_rows[:, points.nearest_vertices].argmin(axis=0)
+    return float(pair.linear[np.arange(len(points)), nearest].sum())

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Diffusion distances and heat kernels: the sums themselves, analytic kernels, and invariances."""
+
+import numpy as np
+import pytest
+
+from engine import HierMatchError, TriangleMesh
+from engine.geometry.eigenpairs import Spectrum, eigenpairs
+from engine.hierarchical.diffusion import DiffusionMetric, automatic_time, diffusion_distances, heat_kernel
+from tests.shapes import creature, icosphere, permuted, plane, rotation
+
+
+@pytest.fixture(scope="module")
+def spectrum():
+    return eigenpairs(TriangleMesh(*creature(0.0, 10)[:2]), 60)
+
+
+@pytest.fixture(scope="module")
+def sphere():
+    return TriangleMesh(*icosphere(16)), eigenpairs(TriangleMesh(*icosphere(16)), 100)
+
+
+def legendre_kernel(cosine, time):
+    """Heat kernel of the unit sphere, times its area."""
+    weights = [(2 * degree + 1) * np.exp(-degree * (degree + 1) * time) for degree in range(60)]
+    return np.polynomial.legendre.legval(cosine, weights)
+
+
+def test_it_is_the_sum_of_the_paper(spectrum):
+    time = 0.02
+    rows = DiffusionMetric(spectrum, time).distances([3, 50])
+    weights = np.exp(-2 * spectrum.values * spectrum.area * time) * spectrum.area
+    for row, source in zip(rows, (3, 50), strict=True):
+        differences = spectrum.functions - spectrum.functions[source]
+        np.testing.assert_allclose(row, np.sqrt((differences**2) @ weights), atol=1e-6)
+
+
+@pytest.mark.parametrize("time", [0.01, 0.05, 0.3])
+def test_heat_kernel_of_a_sphere(sphere, time):
+    mesh, spectrum = sphere
+    cosines = mesh.vertices[[0, 30]] @ mesh.vertices.T
+    exact = legendre_kernel(cosines, 4 * np.pi * time)
+    np.testing.assert_allclose(heat_kernel(spectrum, time, [0, 30]), exact, atol=0.02 * exact.max())
+
+
+@pytest.mark.parametrize("time", [0.01, 0.1])
+def test_diffusion_distances_of_a_sphere(sphere, time):
+    mesh, spectrum = sphere
+    cosines = mesh.vertices[[0, 30]] @ mesh.vertices.T
+    kernel = legendre_kernel(cosines, 8 * np.pi * time)
+    exact = np.sqrt(2 * legendre_kernel(1.0, 8 * np.pi * time) - 2 * kernel)
+    np.testing.assert_allclose(DiffusionMetric(spectrum, time).distances([0, 30]), exact, atol=0.02 * exact.max())
+
+
+def test_heat_is_neither_lost_nor_found(spectrum):
+    heat = heat_kernel(spectrum, 0.01, np.arange(40)) @ spectrum.mass / spectrum.area
+    np.testing.assert_allclose(heat, 1, rtol=1e-9)
+    np.testing.assert_allclose(heat_kernel(spectrum, 50.0, [0, 7]), 1, rtol=1e-6)
+
+
+def test_it_is_a_metric(spectrum):
+    vertices = np.arange(0, len(spectrum.mass), 7)
+    square = diffusion_distances(spectrum, vertices)[:, vertices]
+    np.testing.assert_array_equal(np.diagonal(square), 0)
+    np.testing.assert_allclose(square, square.T, atol=1e-7)
+    assert square[~np.eye(len(square), dtype=bool)].min() > 0
+    detour = (square[:, :, None] + square[None, :, :]).min(axis=1)
+    assert (square <= detour + 1e-7).all()
+
+
+def test_distance_and_kernel_belong_together(spectrum):
+    # d_t^2(x, y) = h_2t(x, x) + h_2t(y, y) - 2 h_2t(x, y)
+    vertices = np.array([1, 100, 200])
+    kernel = heat_kernel(spectrum, 0.04, vertices)[:, vertices]
+    own = np.diagonal(kernel)
+    square = diffusion_distances(spectrum, vertices, 0.02)[:, vertices] ** 2
+    np.testing.assert_allclose(square, own[:, None] + own - 2 * kernel, atol=1e-6)
+
+
+def test_blocks_are_the_rows(spectrum, monkeypatch):
+    metric = DiffusionMetric(spectrum, 0.02)
+    sources = np.arange(0, 300, 11)
+    whole = metric.distances(sources)
+    monkeypatch.setattr("engine.hierarchical.diffusion._BLOCK", 5 * len(spectrum.mass))
+    blocks = list(metric.distances_in_blocks(sources))
+    assert [first for first, _ in blocks] == list(range(0, len(sources), 5))
+    np.testing.assert_allclose(np.concatenate([block for _, block in blocks]), whole, atol=1e-7)
+    assert metric.distances([]).shape == (0, len(spectrum.mass))
+
+
+def test_units_order_and_motion_do_not_matter():
+    vertices, triangles = creature(0.5, 10)[:2]
+    one = eigenpairs(TriangleMesh(vertices, triangles), 40)
+    moved, shuffled, new = permuted(vertices @ rotation([1, 0, 2], 1.0).T, triangles)
+    other = eigenpairs(TriangleMesh(100 * moved, shuffled), 40)
+    assert automatic_time(other) == pytest.approx(automatic_time(one), rel=1e-6)
+    rows = [diffusion_distances(one, [0, 9]), diffusion_distances(other, new[[0, 9]])[:, new]]
+    np.testing.assert_allclose(rows[0], rows[1], atol=1e-3 * rows[0].max())
+
+
+def test_poses_have_nearly_one_metric():
+    rows = [
+        diffusion_distances(eigenpairs(TriangleMesh(*creature(pose, 14)[:2]), 60), np.arange(0, 1000, 50), 0.02)
+        for pose in (0.0, 1.0)
+    ]
+    assert abs(rows[0] - rows[1]).mean() < 0.05 * rows[0].mean()
+
+
+def test_the_automatic_time(spectrum):
+    time = automatic_time(spectrum)
+    weights = np.exp(-2 * spectrum.values[1:] * spectrum.area * time)
+    assert weights.sum() == pytest.approx(8)
+    fewer = Spectrum(spectrum.values[:40], spectrum.functions[:, :40], spectrum.mass, complete=True)
+    assert automatic_time(fewer) == pytest.approx(time, rel=0.02)
+    assert DiffusionMetric(spectrum).time == time
+    two = Spectrum(spectrum.values[:2], spectrum.functions[:, :2], spectrum.mass, complete=True)
+    assert np.isfinite(automatic_time(two))
+
+
+def test_truncation_says_what_is_missing():
+    mesh = TriangleMesh(*creature(0.0, 12)[:2])
+    many, few = eigenpairs(mesh, 400), eigenpairs(mesh, 36)
+    sources = np.random.default_rng(0).choice(mesh.vertex_count, 200, p=mesh.vertex_areas / mesh.area)
+    for time in (0.003, 0.01, 0.03):
+        whole, part = (
+            ((DiffusionMetric(s, time).distances(sources) ** 2) @ mesh.vertex_areas).sum() for s in (many, few)
+        )
+        missing = 1 - part / whole
+        assert DiffusionMetric(few, time).truncation == pytest.approx(missing, rel=0.3, abs=1e-5)
+
+
+def test_loose_vertices_are_infinitely_far():
+    vertices, triangles = icosphere(5)
+    spectrum = eigenpairs(TriangleMesh(np.concatenate([vertices, [[9, 9, 9]]]), triangles), 20)
+    loose = len(vertices)
+    rows = diffusion_distances(spectrum, [0, loose])
+    assert rows[0, loose] == np.inf
+    assert rows[1, loose] == 0
+    assert np.isinf(rows[1, :loose]).all()
+    assert np.isfinite(rows[0, :loose]).all()
+
+
+@pytest.mark.parametrize("time", [0, -1, np.nan, np.inf])
+def test_bad_times(spectrum, time):
+    with pytest.raises(HierMatchError, match="time of diffusion"):
+        DiffusionMetric(spectrum, time)
+    with pytest.raises(HierMatchError, match="time of diffusion"):
+        heat_kernel(spectrum, time, [0])
+
+
+@pytest.mark.parametrize("sources", [[-1], [100_000], [0.5], [[0]]])
+def test_bad_sources(spectrum, sources):
+    with pytest.raises(HierMatchError):
+        DiffusionMetric(spectrum, 0.1).distances(sources)
+    with pytest.raises(HierMatchError):
+        heat_kernel(spectrum, 0.1, sources)
+
+
+def test_constant_functions_do_not_suffice():
+    with pytest.raises(HierMatchError, match="not constant"):
+        automatic_time(eigenpairs(TriangleMesh(*plane(5)), 1))

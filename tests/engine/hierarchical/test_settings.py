@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from dataclasses import fields
+
+import pytest
+
+from engine import MatchSettings, SettingsError
+from engine.hierarchical.settings import SETUPS
+
+FIELDS = {setting.name: setting for setting in fields(MatchSettings)}
+NUMBERS = [name for name, setting in FIELDS.items() if "minimum" in setting.metadata]
+CHOICES = [name for name, setting in FIELDS.items() if "choices" in setting.metadata]
+
+
+def test_defaults_are_valid_and_every_setting_is_described():
+    MatchSettings()
+    for setting in FIELDS.values():
+        assert setting.metadata["label"]
+        assert len(setting.metadata["description"]) > 20
+    for name in NUMBERS:
+        assert FIELDS[name].metadata["minimum"] <= FIELDS[name].default <= FIELDS[name].metadata["maximum"]
+    for name in CHOICES:
+        assert all(label and text for label, text in FIELDS[name].metadata["choices"].values())
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_values_outside_the_range_are_refused_by_the_name_that_the_user_sees(name):
+    about = FIELDS[name].metadata
+    for bad in (about["minimum"] - 1, about["maximum"] + 1, float("nan")):
+        with pytest.raises(SettingsError, match=about["label"]):
+            MatchSettings(**{name: bad})
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_unknown_words_are_refused_with_the_known_ones(name):
+    about = FIELDS[name].metadata
+    for word in about["choices"]:
+        assert getattr(MatchSettings(**{name: word}), name) == word
+    with pytest.raises(SettingsError, match=f"{about['label']} is 'nonsense'.*{next(iter(about['choices']))}"):
+        MatchSettings(**{name: "nonsense"})
+
+
+def test_the_four_setups_of_the_paper_are_valid_and_different():
+    made = {MatchSettings(**choices) for _, choices in SETUPS.values()}
+    assert len(made) == 4
+
+
+def test_fewer_candidates_than_coarse_points_are_refused():
+    with pytest.raises(SettingsError, match="at least as many Coarse Candidates"):
+        MatchSettings(coarse_points=12, coarse_candidates=11)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from dataclasses import replace
+
+import pytest
+
+from engine import MatchSettings, Shape, TriangleMesh
+from engine.hierarchical.sampled_pair import Pair
+from engine.hierarchical.sparse_hypotheses import choose_steps, coarse_steps
+from engine.runtime.progress import run
+from tests.shapes import creature
+
+SPARSE = MatchSettings(points=20, samples=100, coarse_points=8, coarse_candidates=16, hypotheses=5, dense=False)
+
+
+@pytest.fixture(scope="module")
+def shapes():
+    found = [Shape(TriangleMesh(*creature(pose, 10)[:2])) for pose in (0.0, 0.6)]
+    for shape in found:
+        run(shape.sample_steps(SPARSE.samples))
+    return found
+
+
+def test_half_as_many_coarse_matchings_are_followed_where_a_dense_map_decides(shapes):
+    many, few = (run(coarse_steps(Pair(*shapes, replace(SPARSE, dense=dense)))) for dense in (False, True))
+    assert len(many) == 5
+    assert len(few) == 3
+    for first, second in zip(many, few, strict=False):
+        assert first.matching.cost == pytest.approx(second.matching.cost)
+
+
+@pytest.mark.parametrize("followed", [1, 3])
+@pytest.mark.parametrize("dense", [False, True])
+def test_the_better_answer_of_either_orientation_is_chosen(shapes, dense, followed):
+    coarse = run(coarse_steps(Pair(*shapes, replace(SPARSE, dense=dense))))
+    keeping, mirroring = run(choose_steps(coarse[:followed]))
+    assert keeping.orientation > 0.3
+    assert mirroring.orientation < -0.3
