@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from .functional_maps import PointMaps
-from .limb_twists import rolled_back, untwisted
-from .limb_windings import wound_steps
 from .map_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
 from .map_search import MapLead
 from .mesh.closest_points import FoundPoints
 from .mesh.surface_points import SurfacePoints
-from .registration import (
+from .registration.axial_twists import rolled_back, untwisted
+from .registration.axial_windings import wound_steps
+from .registration.registration import (
     AGAIN,
     CLOSE,
     FINE,
@@ -37,11 +37,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .deformable import DeformableSurface
     from .map_domain import MapDomain
-    from .registration import Stage
+    from .registration.deformable import DeformableSurface
+    from .registration.positional_constraints import Ties
+    from .registration.registration import Stage
     from .shapes.shape import Shape
-    from .ties import Ties
 
     _Common = tuple["Follower", MapDomain, MapDomain]
     Trips = tuple[NDArray[np.float64], NDArray[np.float64]]

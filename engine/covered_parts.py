@@ -12,7 +12,6 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from .candidates import Follower
-from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS
 from .map_domain import MapDomain
 from .map_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
@@ -20,6 +19,7 @@ from .mesh.surface_points import SurfacePoints
 from .mesh.triangle_mesh import TriangleMesh
 from .missing_parts import with_partner
 from .part_search import part_placements_steps
+from .registration.deformable import DeformableSurface
 from .runtime.errors import MatchError
 from .runtime.parallel_map import shared_steps
 from .runtime.progress import Steps, within

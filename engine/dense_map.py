@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .candidates import Candidate, CloseFit, Follower
-from .deformable import DeformableSurface
 from .limb_sides import exchanged_limbs, repaired_start_steps
 from .map_hypotheses import MapHypothesis, map_hypotheses_steps, unrefined_hypotheses_steps, unrefined_hypothesis
+from .registration.deformable import DeformableSurface
+from .registration.positional_constraints import Ties
 from .runtime.progress import Steps, within
 from .steering import agrees, steered_hypotheses_steps
-from .ties import Ties
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from .map_hypotheses import LandmarkStart
     from .map_search import RoughSearch
-    from .registration import Registration
+    from .registration.registration import Registration
     from .shapes.landmarks import Landmarks
     from .shapes.shape import Shape
 

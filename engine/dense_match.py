@@ -10,15 +10,15 @@ import numpy as np
 
 from .dense_map import EIGENPAIRS, registered_pair_steps
 from .functional_maps import nearest_both_ways
-from .lifting import lift_steps
 from .map_hypotheses import LandmarkStart
 from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints
 from .pieces_only import piece_of, with_pieces_only
-from .pinning import pinned
-from .polishing import Polish, finer_surfaces_steps
 from .quality import MatchQuality, assess_maps, with_pieces
-from .registration import POLISH
+from .registration.fine_registration import Polish, finer_surfaces_steps
+from .registration.landmark_snapping import pinned
+from .registration.prolongation import lift_steps
+from .registration.registration import POLISH
 from .runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from .runtime.progress import Progress, Steps, run, within
 from .runtime.worker import call_helpers
@@ -33,10 +33,10 @@ from .whole_maps import whole_maps_steps
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .deformable import DeformableSurface
     from .dense_map import RegisteredPair
     from .mesh.triangle_mesh import TriangleMesh
-    from .registration import Registration, Stage
+    from .registration.deformable import DeformableSurface
+    from .registration.registration import Registration, Stage
     from .shapes.prepared_surface import PreparedSurface
     from .whole_maps import WholeMap
 

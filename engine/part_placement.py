@@ -10,12 +10,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from .deformable import DeformableSurface
 from .geometry.laplacian import laplace_beltrami
 from .geometry.procrustes import nearest_rotations
 from .mesh.closest_points import ClosestPoints, FoundPoints
 from .mesh.triangle_mesh import TriangleMesh
-from .registration import FINE, LAST, Stage, register_steps
+from .registration.deformable import DeformableSurface
+from .registration.registration import FINE, LAST, Stage, register_steps
 from .runtime.progress import Steps, within
 
 if TYPE_CHECKING:

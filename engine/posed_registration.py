@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array, vstack
 
-from .elastic import ElasticSurface
 from .geometry.symmetric_factor import symmetric_factor
 from .mesh.closest_points import ClosestPoints, FoundPoints, facing
+from .registration.elastic import ElasticSurface
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

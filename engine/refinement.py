@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .deformable import DeformableSurface
 from .dense_map import EIGENPAIRS, RegisteredPair
 from .dense_match import dense_match_steps
 from .mesh.surface_points import SurfacePoints
 from .pieces_only import piece_of, with_pieces_only
-from .registration import FINE, Stage, register_steps, restarted_steps
+from .registration.deformable import DeformableSurface
+from .registration.positional_constraints import Ties
+from .registration.registration import FINE, Stage, register_steps, restarted_steps
 from .runtime.errors import MatchError
 from .runtime.progress import run, within
 from .shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
@@ -20,7 +21,6 @@ from .shapes.landmarks import locate_landmarks
 from .shapes.reflection import reflected_mesh
 from .shapes.shape import Shape
 from .shapes.shape_preparation import finer_shapes
-from .ties import Ties
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags_array
 
-from .elastic import ElasticSurface
 from .geometry.laplacian import laplace_beltrami
 from .geometry.symmetric_factor import symmetric_factor
 from .local_frames import surface_frames
 from .mesh.surface_points import SurfacePoints
+from .registration.elastic import ElasticSurface
 from .runtime.errors import MatchError
 from .runtime.progress import Progress
 from .surroundings import Surroundings

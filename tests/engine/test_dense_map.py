@@ -10,13 +10,13 @@ from engine import Shape, SurfacePoints, TriangleMesh, dense_map, map_hypotheses
 from engine.candidates import Follower
 from engine.dense_map import EIGENPAIRS, are_distinct, registered_pair_steps
 from engine.dense_match import dense_match_steps
-from engine.elastic import ElasticSurface
 from engine.functional_maps import PointMaps
 from engine.map_hypotheses import LandmarkStart, assessed_everywhere, map_hypotheses_steps
-from engine.registration import SOFT, register_steps
+from engine.registration.elastic import ElasticSurface
+from engine.registration.positional_constraints import Ties
+from engine.registration.registration import SOFT, register_steps
 from engine.shapes.landmarks import LandmarkPlaces, Landmarks
 from engine.steering import Steered
-from engine.ties import Ties
 from tests.bodies import fish, mirrored_body
 from tests.shapes import icosphere, rotation
 
@@ -341,7 +341,7 @@ def test_confidence_is_lower_where_the_maps_were_apart(bodies, starts):
     ("few", "expected"), [(0, ([0.375, 0.625] * 2, 0.5)), (10**9, ([0.5] * 2, 0.0))], ids=["fine", "coarse"]
 )
 def test_strain_is_taken_for_as_sparse_and_directed_as_bodies_are_alike(few, expected, bodies, starts, monkeypatch):
-    monkeypatch.setattr("engine.registration._COARSE", few)
+    monkeypatch.setattr("engine.registration.registration._COARSE", few)
     x, y = bodies[:2]
     pair = run(registered_pair_steps(x, y, starts[:1], search=False))
     follow, candidate = Follower(x, y, pair.source, pair.target), pair.candidates[0]

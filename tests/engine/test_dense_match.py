@@ -18,8 +18,8 @@ from engine import (
     match_steps,
     polishing,
 )
-from engine.elastic import ElasticSurface
 from engine.missing_parts import round_trips
+from engine.registration.elastic import ElasticSurface
 from tests.bodies import mirrored_body
 from tests.messes import together
 from tests.shapes import creature, icosphere, permuted, rotation, subdivided

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .geometry.geodesic_ball import distances_to_others, vicinity
-from .mesh.surface_points import SurfacePoints
-from .shapes.landmarks import placed_at_vertices
+from ..geometry.geodesic_ball import distances_to_others, vicinity
+from ..mesh.surface_points import SurfacePoints
+from ..shapes.landmarks import placed_at_vertices
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.closest_points import ClosestPoints
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.closest_points import ClosestPoints
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["pinned"]
 

@@ -11,15 +11,15 @@ from scipy.ndimage import minimum_filter
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from .geometry.orientation import tangent_gradient
-from .geometry.procrustes import nearest_rotations
-from .shapes.extremities import spread_extremities
+from ..geometry.orientation import tangent_gradient
+from ..geometry.procrustes import nearest_rotations
+from ..shapes.extremities import spread_extremities
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..shapes.shape import Shape
     from .deformable import DeformableSurface
-    from .shapes.shape import Shape
 
 __all__ = ["Untwisted", "Winding", "rolled_back", "untwisted"]
 

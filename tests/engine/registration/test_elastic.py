@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import TriangleMesh
-from engine.elastic import ElasticSurface
 from engine.geometry.laplacian import laplace_beltrami
+from engine.registration.elastic import ElasticSurface
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 NEAR = 0.1

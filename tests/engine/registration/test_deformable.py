@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.deformable import DeformableSurface
 from engine.geometry.laplacian import laplace_beltrami
+from engine.registration.deformable import DeformableSurface
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 TIMES = np.array([1e-3, 3e-3])

@@ -5,8 +5,7 @@ import numpy as np
 
 from engine import SurfaceMap, SurfacePoints, TriangleMesh
 from engine.mesh.closest_points import ClosestPoints
-from engine.runtime.progress import run
-from engine.untangling import (
+from engine.registration.untangling import (
     flipped_triangles,
     follow_neighbours,
     heaviest_corners,
@@ -14,6 +13,7 @@ from engine.untangling import (
     torn_vertices,
     untangle_steps,
 )
+from engine.runtime.progress import run
 from tests.shapes import icosphere, permuted, plane
 
 

@@ -7,10 +7,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from engine import TriangleMesh
-from engine.lifting import lift_steps
+from engine.registration.prolongation import lift_steps
+from engine.registration.torn_patches import NearVertices, with_patches_mended
 from engine.runtime.progress import run
 from engine.shapes.proxy import Proxy
-from engine.torn_patches import NearVertices, with_patches_mended
 from tests.shapes import icosphere, plane
 
 AROUND, ACROSS = 121, 16

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from .geometry.procrustes import nearest_rotations
-from .runtime.parallel_map import beside_steps
-from .runtime.progress import Progress, Steps, within
+from ..geometry.procrustes import nearest_rotations
+from ..runtime.parallel_map import beside_steps
+from ..runtime.progress import Progress, Steps, within
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from ..mesh.closest_points import ClosestPoints, FoundPoints
     from .deformable import DeformableSurface
     from .elastic import ElasticSurface
-    from .mesh.closest_points import ClosestPoints, FoundPoints
-    from .ties import Ties
+    from .positional_constraints import Ties
 
     Find = Callable[[ClosestPoints, NDArray[np.float64]], FoundPoints]
     Guides = tuple[NDArray[np.float64], NDArray[np.float64]]

@@ -7,26 +7,26 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from ..geometry.laplacian import laplace_beltrami
+from ..mesh.closest_points import ClosestPoints
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.parallel_map import shared_steps
+from ..runtime.progress import within
+from ..shapes.proxy import Proxy, proxy_steps
 from .deformable import DeformableSurface
-from .geometry.laplacian import laplace_beltrami
-from .lifting import lift_steps
-from .mesh.closest_points import ClosestPoints
-from .mesh.surface_points import SurfacePoints
+from .positional_constraints import Ties
+from .prolongation import lift_steps
 from .registration import LAST, register_steps
-from .runtime.parallel_map import shared_steps
-from .runtime.progress import within
-from .shapes.proxy import Proxy, proxy_steps
-from .ties import Ties
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..runtime.progress import Steps
+    from ..shapes.landmarks import Landmarks
+    from ..shapes.prepared_surface import PreparedSurface
     from .registration import Stage
-    from .runtime.progress import Steps
-    from .shapes.landmarks import Landmarks
-    from .shapes.prepared_surface import PreparedSurface
 
 __all__ = ["FinerSurface", "Polish", "finer_surfaces_steps"]
 

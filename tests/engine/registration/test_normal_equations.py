@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 from engine import TriangleMesh
 from engine.geometry.laplacian import laplace_beltrami
 from engine.mesh.closest_points import FoundPoints
-from engine.normal_equations import NormalEquations
+from engine.registration.normal_equations import NormalEquations
 from tests.shapes import creature
 
 

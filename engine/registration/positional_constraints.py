@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from .geometry.geodesic_ball import distances_to_others, vicinity
-from .mesh.surface_points import SurfacePoints
+from ..geometry.geodesic_ball import distances_to_others, vicinity
+from ..mesh.surface_points import SurfacePoints
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..shapes.landmarks import LandmarkPlaces
+    from ..shapes.proxy import Proxy
     from .deformable import DeformableSurface
-    from .mesh.triangle_mesh import TriangleMesh
-    from .shapes.landmarks import LandmarkPlaces
-    from .shapes.proxy import Proxy
 
 __all__ = ["Ties"]
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from engine import Progress, TriangleMesh, run
-from engine.deformable import DeformableSurface
-from engine.elastic import ElasticSurface
 from engine.geometry.eigenpairs import eigenpairs_steps
 from engine.geometry.laplacian import laplace_beltrami
 from engine.mesh.closest_points import ClosestPoints, FoundPoints
 from engine.mesh.surface_points import SurfacePoints
-from engine.registration import (
+from engine.registration.deformable import DeformableSurface
+from engine.registration.elastic import ElasticSurface
+from engine.registration.registration import (
     AGAIN,
     CLOSE,
     FINE,
@@ -249,7 +249,7 @@ def test_progress_counts_the_rounds(bodies, near_truth, functions):
 @pytest.mark.parametrize(("few", "rounds"), [(0, 5), (10**9, 2)], ids=["fine", "coarse"])
 def test_only_surfaces_of_many_vertices_go_on_further(few, rounds, bodies, near_truth, monkeypatch):
     """They do so as in the last round: it is the same as asking for these rounds."""
-    monkeypatch.setattr("engine.registration._COARSE", few)
+    monkeypatch.setattr("engine.registration.registration._COARSE", few)
     source, target = bodies[:2]
     start = target.vertices[near_truth]
     stage = Stage((40, 1000), 0.1, 0.05, momentum=0.5)

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags_array
 
+from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.closest_points import ClosestPoints
+from ..runtime.progress import Progress, Steps
 from .elastic import ElasticSurface
-from .geometry.symmetric_factor import symmetric_factor
-from .mesh.closest_points import ClosestPoints
 from .normal_equations import NormalEquations
-from .runtime.progress import Progress, Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .geometry.laplacian import LaplaceBeltrami
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..geometry.laplacian import LaplaceBeltrami
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["DeformableSurface"]
 

@@ -9,13 +9,13 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, eye_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from .mesh.connectivity.adjacency import vertex_adjacency
+from ..mesh.connectivity.adjacency import vertex_adjacency
 from .untangling import follow_neighbours
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["NearVertices", "with_patches_mended"]
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from .geometry.symmetric_factor import symmetric_factor
-from .runtime.progress import Progress, Steps
+from ..geometry.symmetric_factor import symmetric_factor
+from ..runtime.progress import Progress, Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.closest_points import ClosestPoints
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.closest_points import ClosestPoints
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle_steps"]
 

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from engine import MatchError, SurfacePoints, TriangleMesh, run
-from engine.lifting import lift_steps
 from engine.mesh.closest_points import ClosestPoints
+from engine.registration.prolongation import lift_steps
+from engine.registration.untangling import flipped_triangles
 from engine.shapes.proxy import Proxy, proxy_steps
-from engine.untangling import flipped_triangles
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 PROXY = 1500

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import coo_array, csc_array
 
-from .geometry.symmetric_factor import symmetric_factor
+from ..geometry.symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.sparse import csr_array
 
-    from .mesh.closest_points import FoundPoints
+    from ..mesh.closest_points import FoundPoints
 
     Solve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 
-from .geometry.procrustes import nearest_rotations
-from .geometry.symmetric_factor import symmetric_factor
+from ..geometry.procrustes import nearest_rotations
+from ..geometry.symmetric_factor import symmetric_factor
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from .geometry.laplacian import LaplaceBeltrami
+    from ..geometry.laplacian import LaplaceBeltrami
 
 __all__ = ["ElasticSurface"]
 

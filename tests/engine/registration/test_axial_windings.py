@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from engine import Progress, TriangleMesh, run
-from engine.deformable import DeformableSurface
 from engine.geometry.laplacian import laplace_beltrami
-from engine.limb_twists import Untwisted, Winding
-from engine.limb_windings import local_costs, wound_steps
-from engine.registration import Registration, register_steps
+from engine.registration.axial_twists import Untwisted, Winding
+from engine.registration.axial_windings import local_costs, wound_steps
+from engine.registration.deformable import DeformableSurface
+from engine.registration.registration import Registration, register_steps
 from engine.runtime.parallel_map import here_steps
 from tests.shapes import icosphere
 

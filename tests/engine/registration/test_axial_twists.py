@@ -6,9 +6,9 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh, run
-from engine.deformable import DeformableSurface
 from engine.geometry.laplacian import laplace_beltrami
-from engine.limb_twists import rolled_back, untwisted
+from engine.registration.axial_twists import rolled_back, untwisted
+from engine.registration.deformable import DeformableSurface
 from tests.bodies import fish
 from tests.shapes import icosphere, rotation
 

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..runtime.progress import Steps, within
 from .registration import FINE
-from .runtime.progress import Steps, within
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from ..mesh.closest_points import FoundPoints
+    from .axial_twists import Untwisted
     from .deformable import DeformableSurface
-    from .limb_twists import Untwisted
-    from .mesh.closest_points import FoundPoints
     from .registration import Registration, Stage
 
 __all__ = ["local_costs", "wound_steps"]

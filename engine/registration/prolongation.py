@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array
 
-from .mesh.closest_points import ClosestPoints
-from .mesh.connectivity.adjacency import vertex_adjacency
-from .mesh.surface_points import SurfacePoints
-from .runtime.errors import MatchError
-from .runtime.progress import Progress, Steps, within
+from ..mesh.closest_points import ClosestPoints
+from ..mesh.connectivity.adjacency import vertex_adjacency
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.errors import MatchError
+from ..runtime.progress import Progress, Steps, within
 from .torn_patches import NearVertices, with_patches_mended
 from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
-    from .shapes.proxy import Proxy
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..shapes.proxy import Proxy
 
 __all__ = ["lift_steps"]
 
