@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The engine of HierMatch: NumPy and SciPy only, no Blender."""
 
-from .dense_match import DenseMatch, densify, densify_steps
+from .dense.densify import DenseMatch, densify, densify_steps
+from .dense.quality import MatchQuality
 from .fitted_rig import FittedRig
 from .hierarchical.settings import MatchSettings
 from .joint_placement import PlacedJoints, place_joints
@@ -13,7 +14,6 @@ from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints
 from .mesh.triangle_mesh import TriangleMesh
 from .morphing import in_between
-from .quality import MatchQuality
 from .rest_pose import RestPose, rest_pose
 from .result import CoarseMatch, Level, MatchResult
 from .retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps

@@ -11,13 +11,13 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from .candidates import Follower
-from .dense_map import EIGENPAIRS
-from .map_domain import MapDomain
-from .map_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
+from .dense.dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
+from .dense.dense_registration import EIGENPAIRS
+from .dense.missing_parts import with_partner
+from .dense.registered_hypotheses import Follower
+from .dense.spectral_domain import MapDomain
 from .mesh.surface_points import SurfacePoints
 from .mesh.triangle_mesh import TriangleMesh
-from .missing_parts import with_partner
 from .part_search import part_placements_steps
 from .registration.deformable import DeformableSurface
 from .runtime.errors import MatchError

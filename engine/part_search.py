@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .extremity_search import beam_matchings
+from .dense.extremity_search import beam_matchings
+from .dense.lifted_matchings import squared_differences
 from .geometry.orientation import signed_areas
-from .lifted_matchings import squared_differences
 from .runtime.progress import Progress
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .covered_parts import continued, covered_parts_steps
-from .pieces_only import share_of, with_piece_only
+from .dense.components.masked_maps import share_of, with_piece_only
 from .repair.clean_surface import StandIn
 from .runtime.errors import MatchError
 from .runtime.progress import within

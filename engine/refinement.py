@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .dense_map import EIGENPAIRS, RegisteredPair
-from .dense_match import dense_match_steps
+from .dense.components.masked_maps import piece_of, with_pieces_only
+from .dense.dense_registration import EIGENPAIRS, RegisteredPair
+from .dense.densify import dense_match_steps
 from .mesh.surface_points import SurfacePoints
-from .pieces_only import piece_of, with_pieces_only
 from .registration.deformable import DeformableSurface
 from .registration.positional_constraints import Ties
 from .registration.registration import FINE, Stage, register_steps, restarted_steps
@@ -25,7 +25,7 @@ from .shapes.shape_preparation import finer_shapes
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .dense_match import DenseMatch
+    from .dense.densify import DenseMatch
     from .mesh.surface_map import SurfaceMap
     from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps

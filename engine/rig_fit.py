@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, vstack
 
 from .bone_fit import BoneTransforms, fit_bones, skinned
+from .dense.components.extended_maps import whole_maps_steps
 from .digit_fit import with_digits
 from .fitted_rig import FittedRig
 from .geometry.laplacian import laplace_beltrami
@@ -25,7 +26,6 @@ from .runtime.progress import Progress, Steps, run, within
 from .shapes.enclosing_surface import joined_steps, separate_limbs
 from .shapes.proxy import proxy_steps
 from .stunted_digits import stunted_digits, with_stiff_digits
-from .whole_maps import whole_maps_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

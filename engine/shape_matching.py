@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .dense_map import EIGENPAIRS, registered_pair_steps
-from .dense_match import MEASURED, DenseMatch, dense_match_steps
+from .dense.dense_hypotheses import LandmarkStart, map_domains
+from .dense.dense_registration import EIGENPAIRS, registered_pair_steps
+from .dense.densify import MEASURED, DenseMatch, dense_match_steps
+from .dense.initial_maps import RoughSearch
 from .hierarchical.hierarchy import refine_steps
 from .hierarchical.sampled_pair import Pair
 from .hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
-from .map_hypotheses import LandmarkStart, map_domains
-from .map_search import RoughSearch
 from .mesh.surface_points import SurfacePoints
 from .result import CoarseMatch, MatchResult
 from .runtime.errors import MatchError

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .dense_match import densify_steps
+from .dense.densify import densify_steps
 from .runtime.progress import run, within
 from .shapes.shape import Shape
 from .symmetry import find_symmetry_steps
 
 if TYPE_CHECKING:
-    from .dense_match import DenseMatch
+    from .dense.densify import DenseMatch
     from .hierarchical.settings import MatchSettings
     from .mesh.triangle_mesh import TriangleMesh
     from .runtime.progress import Steps

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags_array
 
+from .dense.components.similarity_field import Surroundings
 from .geometry.laplacian import laplace_beltrami
 from .geometry.symmetric_factor import symmetric_factor
 from .local_frames import surface_frames
@@ -16,7 +17,6 @@ from .mesh.surface_points import SurfacePoints
 from .registration.elastic import ElasticSurface
 from .runtime.errors import MatchError
 from .runtime.progress import Progress
-from .surroundings import Surroundings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from engine import Shape, TriangleMesh
-from engine.map_domain import MapDomain
+from engine.dense.spectral_domain import MapDomain
 from engine.runtime.progress import run
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, Shape, SurfacePoints, TriangleMesh, match
-from engine.dense_match import densify
+from engine.dense.densify import densify
 from engine.geometry.eigenpairs import Spectrum
 from engine.refinement import refine_map
 from engine.runtime.progress import run

@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from engine import MatchSettings, Shape, TriangleMesh, dense_match, match
+from engine import MatchSettings, Shape, TriangleMesh, match
+from engine.dense import densify as dense_match
 from engine.registration import fine_registration as polishing
 from engine.runtime.progress import run
 from tests.shapes import creature, subdivided

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import Shape, TriangleMesh
-from engine.map_domain import MapDomain
+from engine.dense.spectral_domain import MapDomain
 from engine.runtime.blas_threads import one_thread
 from engine.runtime.progress import run
 from engine.shapes.shape_preparation import Wanted, prepared_shapes_steps

@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which parts of two meshes belong together: by size, shape and place, and where they touch what is mapped already."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from .similarity_field import Surroundings
+
+__all__ = ["Contact", "PartPair", "contact_with", "paired_parts"]
+
+_LARGEST_OFFSET = 1.5
+"""How far from where it is expected a partner may be, in sums of the two radii."""
+
+_BLUR = 0.01
+"""How exactly the place of a part can be known from its surroundings, in units of the root of the main part's area."""
+
+_LARGEST_RATIO = 2.0
+"""By what factor the radii of partners may differ, once the scale of the surroundings is allowed for."""
+
+_LARGEST_DEFORMATION = 0.3
+"""How much the widths of partners along their main axes may differ, in radii."""
+
+_TOUCHING = 0.2
+"""How much farther than its nearest vertex, in radii, those of a part may be that touch its surroundings."""
+
+_SWUNG = 0.25
+"""What a part that has swung about where it touches counts as out of place, against one that was moved so far."""
+
+_BENT, _LARGEST_LENGTHENING = 2.0, 1.25
+"""How many times as much a large part may be deformed that is as long for its area, up to this factor: a leg with its
+knee."""
+
+_JOINT, _LARGEST_ELSEWHERE = 0.3, 3.0
+"""Part of the sum of the radii by which a large part may touch its surroundings elsewhere to count as much as the
+largest offset, and what that counts at most."""
+
+_WORN, _WORN_POINTS = 0.3, 300
+"""Root mean square distance, in radii, up to which a large part may lie on another one when every point of it goes with
+what is nearest, as clothes do; and at how many points that is measured."""
+
+_LYING = 0.2
+"""Root mean square distance from its surroundings, in radii, up to which a large part lies on them everywhere."""
+
+_TINY = np.finfo(float).tiny
+
+_NOT_POSSIBLE = 20.0
+"""No pair costs more than that of leaving a part alone, so that as many as possible are made."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """Where a part is next to its surroundings: the vertices that touch (v,), their middle (3,), and the distance."""
+
+    vertices: NDArray[np.int64]
+    place: NDArray[np.float64]
+    gap: float
+
+
+@dataclass(frozen=True, eq=False)
+class PartPair:
+    """Parts that belong together.
+
+    Attributes
+    ----------
+    part, partner : int
+        Their positions in the sequences that were given.
+    rotations : list of (3, 3) array of float
+        How the part may be turned: as its surroundings are, and as it may have swung about where it touches them.
+    ratio : float
+        By how much the partner is larger.
+    radius : float
+        Root mean square distance of the partner from its centre.
+    centres : pair of (3,) arrays of float
+        Centres of both.
+    touching : (v,) array of int
+        Vertices of the part that touch its surroundings.
+    joint : (3,) array of float
+        Where these are expected on Y.
+    """
+
+    part: int
+    partner: int
+    rotations: list[NDArray[np.float64]]
+    ratio: float
+    radius: float
+    centres: tuple[NDArray[np.float64], NDArray[np.float64]]
+    touching: NDArray[np.int64]
+    joint: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class _Extents:
+    """Centres (p, 3), areas (p,), root mean square radii (p,) and widths along the main axes in radii (p, 3)."""
+
+    centres: NDArray[np.float64]
+    areas: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    widths: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, parts: Sequence[TriangleMesh]) -> _Extents:
+        """Integrate over the surfaces of parts."""
+        centres, moments = np.empty((len(parts), 3)), np.empty((len(parts), 3, 3))
+        areas = np.array([part.area for part in parts])
+        for index, part in enumerate(parts):
+            shares = part.triangle_areas / part.area
+            corners = part.vertices[part.triangles]
+            middles = corners.mean(axis=1)
+            centres[index] = shares @ middles
+            away, middles = corners - centres[index], middles - centres[index]
+            moments[index] = np.einsum("m,mci,mcj->ij", shares, away, away) / 12
+            moments[index] += np.einsum("m,mi,mj->ij", shares, middles, middles) * 9 / 12
+        spreads = np.sqrt(np.linalg.eigvalsh(moments).clip(min=0))
+        radii = np.linalg.norm(spreads, axis=1)
+        return cls(centres, areas, radii, spreads / radii[:, None])
+
+
+def _length(part: TriangleMesh) -> float:
+    """Length along edges from one end of a part to the other, in the root of its area: it stays where a part bends."""
+    n, (tails, heads) = part.vertex_count, part.edges.T
+    graph = coo_array((part.edge_lengths, (tails, heads)), shape=(n, n)).tocsr()
+    end, length = 0, 0.0
+    for _ in range(2):
+        distances = dijkstra(graph, directed=False, indices=end)
+        distances[~np.isfinite(distances)] = 0
+        end = int(distances.argmax())
+        length = float(distances[end])
+    return max(length / np.sqrt(part.area), _TINY)
+
+
+def contact_with(distances: NDArray[np.float64], part: TriangleMesh) -> Contact:
+    """Find where a part is next to its surroundings by the distances (n,) of its vertices from there."""
+    touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * _radius(part))
+    return Contact(touching, part.vertices[touching].mean(axis=0), float(distances.min()))
+
+
+def paired_parts(
+    here: tuple[Sequence[TriangleMesh], Sequence[Contact]],
+    there: tuple[Sequence[TriangleMesh], Sequence[Contact]],
+    around: Surroundings,
+    unit: float,
+    large: NDArray[np.bool_],
+) -> list[PartPair]:
+    """Find which parts of X and Y belong together.
+
+    A part is expected where its surroundings have moved it, or somewhere around where it touches them: a forearm that
+    is a part of its own swings about the elbow.  Or every point of it goes with what it lies on, as trousers do.
+
+    Parameters
+    ----------
+    here, there : pair of sequences of TriangleMesh and of Contact
+        The parts of X and of Y, and where each is next to the surroundings.
+    around : Surroundings
+        What is mapped already, and how space moves around it.
+    unit : float
+        Root of the area of the main part of Y.
+    large : (p,) array of bool
+        For each part of X, whether it matters where it touches its surroundings: left legs are like right ones in all
+        else, and cross them, but hang on other hips.  Of small parts it is not known so well.
+
+    Returns
+    -------
+    list of PartPair
+        Each part is in one pair at most; the sum of the differences is the least for as many pairs as there can be.
+    """
+    (x_parts, contacts), (y_parts, its_contacts) = here, there
+    if not x_parts or not y_parts:
+        return []
+    x, y = _Extents.of(x_parts), _Extents.of(y_parts)
+    distances, _ = around.nearest(x.centres)
+    similarities = around.similarities(x.centres, np.maximum(x.radii, distances))
+    expected, radii = similarities(x.centres), similarities.scales * x.radii
+    sums = radii[:, None] + y.radii + _BLUR * unit
+    moved = np.linalg.norm(expected[:, None] - y.centres, axis=2) / sums
+
+    places = np.array([contact.place for contact in contacts])
+    near = around.similarities(places, np.maximum([contact.gap for contact in contacts], x.radii / 2))
+    joints, arms = near(places), near.scales * np.linalg.norm(x.centres - places, axis=1)
+    away = np.stack([cKDTree(part.vertices).query(joints)[0] for part in y_parts], axis=1) / sums
+    reaching = np.abs(np.linalg.norm(joints[:, None] - y.centres, axis=2) - arms[:, None]) / sums
+    offset = np.minimum(moved, away + reaching + _SWUNG * moved)
+
+    size = np.abs(np.log(radii[:, None] / y.radii)) / np.log(_LARGEST_RATIO)
+    areas = similarities.scales**2 * x.areas
+    size = np.maximum(size, np.abs(np.log(areas[:, None] / y.areas)) / np.log(_LARGEST_RATIO**2))
+    shape = np.abs(x.widths[:, None] - y.widths).max(axis=2) / _LARGEST_DEFORMATION
+    difference = offset / _LARGEST_OFFSET + size + shape
+    possible = (offset <= _LARGEST_OFFSET) & (size <= 1) & (shape <= np.where(large, _BENT, 1.0)[:, None])
+    for i, j in np.argwhere(possible & (shape > 1)):
+        longer = np.log(_length(x_parts[i]) / _length(y_parts[j]))
+        possible[i, j] = np.abs(longer) < np.log(_LARGEST_LENGTHENING)
+    worn, lying = _worn(x_parts, y_parts, around, large)
+    difference, possible = np.minimum(difference, worn), (possible & ~lying[:, None]) | np.isfinite(worn)
+    apart = np.linalg.norm(joints[:, None] - [contact.place for contact in its_contacts], axis=2)
+    elsewhere = apart / (_JOINT * (radii[:, None] + y.radii) + _BLUR * unit)
+    costs = difference + np.where(large[:, None], np.minimum(elsewhere, _LARGEST_ELSEWHERE), 0)
+    rows, columns = linear_sum_assignment(np.where(possible, costs, _NOT_POSSIBLE))
+    return [
+        PartPair(
+            int(i),
+            int(j),
+            [
+                similarities.rotations[i],
+                _swung(near.rotations[i], x.centres[i] - places[i], y.centres[j] - joints[i]),
+            ],
+            float(y.radii[j] / x.radii[i]),
+            float(y.radii[j]),
+            (x.centres[i], y.centres[j]),
+            contacts[i].vertices,
+            joints[i],
+        )
+        for i, j in zip(rows, columns, strict=True)
+        if possible[i, j]
+    ]
+
+
+def _worn(
+    parts: Sequence[TriangleMesh], partners: Sequence[TriangleMesh], around: Surroundings, large: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Compare large parts with partners as every point goes with what is nearest: the difference, (p, q), or infinity.
+
+    And tell which of them lie on their surroundings everywhere, (p,): where these go is known, so nothing else will do.
+    """
+    difference, lying = np.full((len(parts), len(partners)), np.inf), np.zeros(len(parts), bool)
+    trees = [cKDTree(partner.vertices) for partner in partners]
+    for i in np.flatnonzero(large):
+        part = parts[i]
+        distances = around.nearest(part.vertices)[0]
+        lying[i] = np.sqrt(np.square(distances).mean()) < _LYING * _radius(part)
+        carry = around.similarities(part.vertices, distances)
+        places = carry(part.vertices)
+        tree, area = cKDTree(places), float(np.median(carry.scales)) ** 2 * part.area  # between fingers places are torn
+        size = np.abs(np.log([area / partner.area for partner in partners])) / np.log(_LARGEST_RATIO)
+        for j in np.flatnonzero(size <= 1):
+            ahead = trees[j].query(places[_some(part)])[0]
+            back, radius = tree.query(partners[j].vertices[_some(partners[j])])[0], _radius(partners[j])
+            away = np.sqrt((np.square(ahead).mean() + np.square(back).mean()) / 2) / radius
+            difference[i, j] = size[j] + away / _WORN if away < _WORN else np.inf
+    return difference, lying
+
+
+def _some(part: TriangleMesh) -> NDArray[np.int64]:
+    """Choose some vertices, evenly numbered."""
+    return np.linspace(0, part.vertex_count - 1, min(part.vertex_count, _WORN_POINTS)).astype(np.int64)
+
+
+def _radius(part: TriangleMesh) -> float:
+    """Root mean square distance of the vertices from their centre."""
+    return float(np.sqrt(np.square(part.vertices - part.vertices.mean(axis=0)).sum(axis=1).mean()))
+
+
+def _swung(rotation: NDArray[np.float64], arm: NDArray[np.float64], there: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn an arm (3,) as a rotation does, and then the shortest way to the direction where it is there (3,)."""
+    turned = rotation @ arm
+    lengths = np.linalg.norm(turned) * np.linalg.norm(there)
+    axis = np.cross(turned, there)
+    sine = np.linalg.norm(axis)
+    if not sine > 0:
+        return rotation
+    angle = np.arctan2(sine / lengths, turned @ there / lengths)
+    swung: NDArray[np.float64] = Rotation.from_rotvec(angle * axis / sine).as_matrix() @ rotation
+    return swung

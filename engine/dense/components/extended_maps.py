@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From maps of the main parts of two meshes, there and back, to maps of all their vertices, and their confidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...runtime.progress import Progress, Steps, within
+from ..missing_parts import round_trips
+from ..quality import closeness, map_confidence, trip_confidence
+from .component_maps import follow_steps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.surface_points import SurfacePoints
+    from ...repair.clean_surface import CleanSurface
+    from .component_maps import FollowedMap
+
+__all__ = ["WholeMap", "WholeMaps", "whole_maps_steps"]
+
+
+@dataclass(frozen=True, eq=False)
+class WholeMap:
+    """A map of all vertices of a mesh.
+
+    Attributes
+    ----------
+    points : SurfacePoints
+        For each vertex of X, a point of ``y.original``.
+    confidence : (n,) array of float
+        For each, from 0 to 1, how far to trust it.
+    alone : float
+        Part of the surface of X that is in separate pieces without one of Y.
+    share : float
+        Mean confidence of the whole surface, as a part of that of its main part.
+    """
+
+    points: SurfacePoints
+    confidence: NDArray[np.float64]
+    alone: float
+    share: float
+
+
+class WholeMaps(NamedTuple):
+    """The maps of all vertices of X, and of Y."""
+
+    there: WholeMap
+    back: WholeMap
+
+
+def whole_maps_steps(
+    x: CleanSurface,
+    y: CleanSurface,
+    there: SurfacePoints,
+    back: SurfacePoints,
+    *,
+    likeness: float | None = None,
+    doubts: tuple[NDArray[np.float64] | float, NDArray[np.float64] | float] = (0.0, 0.0),
+) -> Steps[WholeMaps]:
+    """Extend maps of the main parts to all vertices of the meshes.
+
+    Parameters
+    ----------
+    x, y : CleanSurface
+        The meshes.
+    there, back : SurfacePoints
+        For each vertex of ``x.mesh`` a point of ``y.mesh``, and the other way round.
+    likeness : float, optional
+        How credible the maps are as a whole, see `map_confidence`.
+    doubts : pair of arrays of float, optional
+        How far the images of the vertices of ``x.mesh`` and of ``y.mesh`` may err, see `map_confidence`.
+
+    Returns
+    -------
+    WholeMaps
+        Both maps.
+
+    Notes
+    -----
+    What is of the main part is trusted as its map is.  A piece that found one of the other mesh may be laid onto it
+    anyhow, or onto the wrong one: it is trusted as far as the way there and back leads home.  What follows its
+    surroundings is trusted as far as these are, and as it is near to them.
+    """
+    main_there = map_confidence(x.mesh, y.mesh, there, back, likeness=likeness, doubt=doubts[0])
+    yield Progress(0.1, "Mapping every vertex")
+    main_back = map_confidence(y.mesh, x.mesh, back, there, likeness=likeness, doubt=doubts[1])
+    yield Progress(0.2, "Mapping every vertex")
+    forward = yield from within(follow_steps(x, y, there), 0.2, 0.6)
+    yield Progress(0.6, "Mapping every vertex")
+    backward = yield from within(follow_steps(y, x, back), 0.6, 1.0)
+    likely = closeness(likeness)
+    forth = _judged(x, forward, backward, main_there, likely)
+    return WholeMaps(forth, _judged(y, backward, forward, main_back, likely))
+
+
+def _judged(
+    x: CleanSurface, forward: FollowedMap, backward: FollowedMap, main: NDArray[np.float64], likely: float
+) -> WholeMap:
+    """Say how far to trust a map of all vertices, by that of the main part, (k,), and by the way back."""
+    confidence = forward.confidence * main[forward.surroundings]
+    share = 1.0
+    if len(x.pieces) > 1:
+        laid = (x.vertex_parts > 0) & (forward.partners[x.vertex_parts] > 0)
+        trips = round_trips(x.original, forward.points, backward.points) / np.sqrt(x.original.area)
+        confidence[laid] = likely * trip_confidence(trips[laid])
+        known = main @ x.mesh.vertex_areas / x.mesh.area
+        whole = confidence @ x.original.vertex_areas / x.original.area
+        share = float(whole / known) if known > 0 else 1.0
+    return WholeMap(forward.points, confidence, forward.alone, share)

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Maps that were made with only a piece of a surface: what they say of the rest, and which piece that was."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeVar
+
+from ...mesh.surface_map import SurfaceMap
+from ..quality import of_covered_part
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from ...result import MatchResult
+    from ..densify import DenseMatch
+
+__all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]
+
+Maps = TypeVar("Maps", "DenseMatch", "MatchResult")
+
+_LEAST_LEFT = 0.1
+"""Part of a surface without a partner from which on it is left out: less does little harm, and may be a mistake."""
+
+
+def with_piece_only(maps: Maps, covered: NDArray[np.bool_], share: float, *, of_source: bool) -> Maps:
+    """Say of maps what was left out when they were made.
+
+    Parameters
+    ----------
+    maps : DenseMatch or MatchResult
+        Maps between all vertices.
+    covered : (n,) array of bool
+        Which vertices of the original source, or of the target, took part.
+    share : float
+        What part of the area they have.
+    of_source : bool
+        Whether they are of the source.
+
+    Returns
+    -------
+    DenseMatch or MatchResult
+        The maps without confidence at all other vertices, which count as not covered.
+    """
+    there, back, quality = maps.source_to_target, maps.target_to_source, maps.quality
+    if there is None or back is None or quality is None:
+        return maps
+    quality = of_covered_part(quality, share, of_source=of_source)
+    if of_source:
+        there = SurfaceMap(there.points, there.confidence * covered, there.image_vertex_count)
+    else:
+        back = SurfaceMap(back.points, back.confidence * covered, back.image_vertex_count)
+    return replace(maps, source_to_target=there, target_to_source=back, quality=quality)
+
+
+def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: NDArray[np.int64]) -> NDArray[np.bool_] | None:
+    """Tell which vertices of a mesh (n,) have a partner by an earlier map.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The original mesh.
+    found : SurfaceMap or None
+        The map from it, with confidence zero where there is no partner.
+    needed : (k,) array of int
+        Vertices that have to be among them, as far as there are such.
+
+    Returns
+    -------
+    (n,) array of bool or None
+        None if nearly all have one, if nothing is known, or if needed ones have none.
+    """
+    if found is None:
+        return None
+    covered = found.confidence > 0
+    existing = needed[(needed >= 0) & (needed < len(covered))]
+    if not covered[existing].all() or share_of(mesh, covered) > 1 - _LEAST_LEFT:
+        return None
+    return covered
+
+
+def with_pieces_only(
+    maps: DenseMatch,
+    meshes: tuple[TriangleMesh, TriangleMesh],
+    pieces: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None],
+) -> DenseMatch:
+    """Say of maps what was left out of either mesh, see `with_piece_only`; of None nothing was."""
+    for mesh, covered, of_source in zip(meshes, pieces, (True, False), strict=True):
+        if covered is not None:
+            maps = with_piece_only(maps, covered, share_of(mesh, covered), of_source=of_source)
+    return maps
+
+
+def share_of(mesh: TriangleMesh, covered: NDArray[np.bool_]) -> float:
+    """Say what part of the area of a mesh some of its vertices, (n,), have."""
+    return float(mesh.vertex_areas @ covered / mesh.vertex_areas.sum())

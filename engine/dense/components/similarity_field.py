@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How space around a surface moves with it: local similarities fitted to a map of the surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.surface_points import SurfacePoints
+    from ...mesh.triangle_mesh import TriangleMesh
+
+__all__ = ["Similarities", "Surroundings"]
+
+_NEIGHBOURS = 32
+"""Places on the surface that a similarity is fitted to."""
+
+_FEWEST = 4 * _NEIGHBOURS
+"""No coarser set of places is made of fewer than these."""
+
+_LARGEST_STRETCH = 4.0
+"""By what factor the scale may differ from place to place: more is a place where the map has collapsed."""
+
+_CHUNK = 20_000
+"""Points treated at once, which bounds the memory."""
+
+
+@dataclass(frozen=True, eq=False)
+class Similarities:
+    """Maps :math:`p -> t + s R (p - c)`, one for each point.
+
+    Attributes
+    ----------
+    rotations : (k, 3, 3) array of float
+        R: orthogonal, with a reflection if the map of the surface has one.
+    scales : (k,) array of float
+        s.
+    sources, targets : (k, 3) array of float
+        c and t.
+    """
+
+    rotations: NDArray[np.float64]
+    scales: NDArray[np.float64]
+    sources: NDArray[np.float64]
+    targets: NDArray[np.float64]
+
+    def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Apply each to a point, (k, 3)."""
+        turned = np.einsum("kij,kj->ki", self.rotations, points - self.sources)
+        return self.targets + self.scales[:, None] * turned
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Places on the surface (k, 3), their images, the normals at both, and the area each stands for."""
+
+    spacing: float
+    positions: NDArray[np.float64]
+    images: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    image_normals: NDArray[np.float64]
+    areas: NDArray[np.float64]
+    tree: cKDTree
+
+
+class Surroundings:
+    """Moving least squares around a mapped surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    other : TriangleMesh
+        The surface that it is mapped to.
+    images : SurfacePoints
+        For each vertex of the one, a point of the other.
+
+    Notes
+    -----
+    Around each point that similarity is taken which moves places on the surface nearby most closely to their images,
+    in the sense of least squares [1]_; normals count like points one distance above the surface.  The further away a
+    point, the coarser and wider the set of places: it follows the limb, not each ripple of the map.
+
+    References
+    ----------
+    .. [1] S. Schaefer, T. McPhail, J. Warren, "Image deformation using moving least squares", SIGGRAPH 2006.
+    """
+
+    def __init__(self, mesh: TriangleMesh, other: TriangleMesh, images: SurfacePoints) -> None:
+        image_normals = _unit(images.interpolate(other.vertex_normals))
+        self._levels = [
+            _places(
+                float(np.sqrt(mesh.area / mesh.vertex_count)),
+                (mesh.vertices, images.positions, mesh.vertex_normals, image_normals),
+                mesh.vertex_areas,
+            )
+        ]
+        while (coarser := _coarser(self._levels[-1])) is not None:
+            self._levels.append(coarser)
+        a, b, c = (images.positions[corner] for corner in mesh.triangles.T)
+        facing = image_normals[mesh.triangles].sum(axis=1)
+        self._handedness = -1.0 if np.einsum("md,md->", np.cross(b - a, c - a), facing) < 0 else 1.0
+        self._mean_scale = float(np.sqrt(other.area / mesh.area))
+
+    def nearest(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Find the nearest vertex of the surface to points (k, 3): distances (k,) and vertices (k,)."""
+        distances, vertices = np.empty(len(points)), np.empty(len(points), np.int64)
+        order = _neighbours_together(points)
+        distances[order], vertices[order] = self._levels[0].tree.query(points[order])
+        return distances, vertices
+
+    def similarities(self, points: NDArray[np.float64], reach: NDArray[np.float64]) -> Similarities:
+        """Fit a similarity around each point.
+
+        Parameters
+        ----------
+        points : (k, 3) array of float
+            Points in space.
+        reach : (k,) array of float
+            How wide the surroundings are that each should follow: its distance from the surface, or the size of what
+            it is the centre of.
+
+        Returns
+        -------
+        Similarities
+            One for each point.
+        """
+        k = len(points)
+        result = Similarities(np.empty((k, 3, 3)), np.empty(k), np.empty((k, 3)), np.empty((k, 3)))
+        spacings = np.array([level.spacing for level in self._levels])
+        levels = (np.searchsorted(spacings, reach / 2, side="right") - 1).clip(min=0)
+        order = _neighbours_together(points)
+        for number, level in enumerate(self._levels):
+            chosen = order[levels[order] == number]
+            for start in range(0, len(chosen), _CHUNK):
+                part = chosen[start : start + _CHUNK]
+                self._fit(result, part, points[part], reach[part], level)
+        return result
+
+    def _fit(
+        self,
+        result: Similarities,
+        part: NDArray[np.int64],
+        points: NDArray[np.float64],
+        reach: NDArray[np.float64],
+        places: _Places,
+    ) -> None:
+        """Fit the similarities of some points."""
+        count = min(_NEIGHBOURS, len(places.positions))
+        distances, near = places.tree.query(points, count)
+        distances, near = distances.reshape(-1, count), near.reshape(-1, count)
+        width = np.maximum(reach, places.spacing)[:, None]
+        # Relative to the width, so that the unit of length does not matter.
+        weights = places.areas[near] / ((distances / width) ** 2 + 0.25) ** 2
+        total = weights.sum(axis=1, keepdims=True)
+        # Places without an area, at needles, are no reason to know nothing.
+        weights = np.where(total > 0, weights / np.where(total > 0, total, 1), 1 / count)
+        centre = np.einsum("kn,knd->kd", weights, places.positions[near])
+        target = np.einsum("kn,knd->kd", weights, places.images[near])
+        x, y = places.positions[near] - centre[:, None], places.images[near] - target[:, None]
+        x_spread, y_spread = (np.sqrt(np.einsum("kn,knd,knd->k", weights, side, side)) for side in (x, y))
+        scale = y_spread / np.where(x_spread > 0, x_spread, 1)
+        scale = scale.clip(self._mean_scale / _LARGEST_STRETCH, self._mean_scale * _LARGEST_STRETCH)
+        # Without units; where all places fell together the normals are what is left.
+        x, y = (
+            side / np.where(spread > 0, spread, 1)[:, None, None] for side, spread in ((x, x_spread), (y, y_spread))
+        )
+        moments = np.einsum("kn,kni,knj->kij", weights, y, x)
+        moments += np.einsum("kn,kni,knj->kij", weights, places.image_normals[near], places.normals[near])
+        left, _, right = np.linalg.svd(moments)
+        sign = np.ones((len(points), 3))
+        sign[:, 2] = self._handedness * np.sign(np.linalg.det(left @ right))
+        result.rotations[part] = (left * sign[:, None]) @ right
+        result.scales[part], result.sources[part], result.targets[part] = scale, centre, target
+
+
+def _places(spacing: float, vectors: tuple[NDArray[np.float64], ...], areas: NDArray[np.float64]) -> _Places:
+    """Put places together with their search tree."""
+    tree = cKDTree(vectors[0], balanced_tree=False, compact_nodes=False)
+    return _Places(spacing, vectors[0], vectors[1], vectors[2], vectors[3], areas, tree)
+
+
+def _coarser(places: _Places) -> _Places | None:
+    """Average places in the cells of a grid, twice as far apart; none if too few would be left."""
+    spacing = 2 * places.spacing
+    cells = np.floor((places.positions - places.positions.min(axis=0)) / spacing).astype(np.int64)
+    sides = cells.max(axis=0) + 1
+    _, number = np.unique((cells[:, 0] * sides[1] + cells[:, 1]) * sides[2] + cells[:, 2], return_inverse=True)
+    number = number.ravel()
+    count = int(number.max()) + 1
+    if count < _FEWEST:
+        return None
+    # A least area, so that cells of needles only have a mean as well.
+    areas: NDArray[Any] = np.maximum(places.areas, 1e-9 * places.areas.mean())
+    totals: NDArray[Any] = np.bincount(number, areas, count)
+    vectors = (places.positions, places.images, places.normals, places.image_normals)
+    means = tuple(
+        np.stack([np.bincount(number, areas * axis, count) for axis in values.T], axis=1) / totals[:, None]
+        for values in vectors
+    )
+    return _places(spacing, means, totals)
+
+
+def _neighbours_together(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Order points (k, 3) by the cells of a grid: searches that follow each other then read the same memory."""
+    if not len(points):
+        return np.empty(0, np.int64)
+    low = points.min(axis=0)
+    side = max(float((points.max(axis=0) - low).max()), np.finfo(float).tiny)
+    cells = ((points - low) / side * 63).astype(np.int64)
+    return np.argsort((cells[:, 0] * 64 + cells[:, 1]) * 64 + cells[:, 2], kind="stable")
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From two registered surfaces to maps between all vertices of the meshes they stand for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..mesh.surface_map import SurfaceMap
+from ..mesh.surface_points import SurfacePoints
+from ..registration.fine_registration import Polish, finer_surfaces_steps
+from ..registration.landmark_snapping import pinned
+from ..registration.prolongation import lift_steps
+from ..registration.registration import POLISH
+from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
+from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.worker import call_helpers
+from ..shapes.enclosing_surface import with_limbs_steps
+from ..shapes.genus_reduction import evened_steps
+from ..shapes.landmarks import placed_at_vertices
+from ..shapes.reflection import reflected_mesh, reflected_points
+from ..shapes.shape import Shape
+from ..shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
+from .components.extended_maps import whole_maps_steps
+from .components.masked_maps import piece_of, with_pieces_only
+from .dense_hypotheses import LandmarkStart
+from .dense_registration import EIGENPAIRS, registered_pair_steps
+from .functional_maps import nearest_both_ways
+from .quality import MatchQuality, assess_maps, with_pieces
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..registration.deformable import DeformableSurface
+    from ..registration.registration import Registration, Stage
+    from ..shapes.prepared_surface import PreparedSurface
+    from .components.extended_maps import WholeMap
+    from .dense_registration import RegisteredPair
+
+__all__ = ["MEASURED", "DenseMatch", "dense_match_steps", "densify", "densify_steps"]
+
+_SAMPLES = 512
+"""Samples of each surface that hypotheses are compared at."""
+
+MEASURED = 64
+"""Of how many of them, at least, the distances are measured, and not estimated."""
+
+_POLISHED = 60_000
+"""Vertices up to which meshes that have a proxy are registered once more, with more details.  Beyond, it would take
+half as long again as all the rest."""
+
+
+@dataclass(frozen=True, eq=False)
+class DenseMatch:
+    """The maps between all vertices of two meshes.
+
+    Attributes
+    ----------
+    source_to_target : SurfaceMap
+        For every vertex of the source its point on the target.
+    target_to_source : SurfaceMap
+        For every vertex of the target its point on the source.
+    quality : MatchQuality
+        How far they may be trusted.
+    """
+
+    source_to_target: SurfaceMap
+    target_to_source: SurfaceMap
+    quality: MatchQuality
+
+
+def densify(
+    source: TriangleMesh | Shape,
+    target: TriangleMesh | Shape,
+    source_points: SurfacePoints,
+    target_points: SurfacePoints,
+    *,
+    maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
+) -> DenseMatch:
+    """Extend a sparse correspondence to all vertices; see `densify_steps`."""
+    return run(densify_steps(source, target, source_points, target_points, maps=maps))
+
+
+def densify_steps(
+    source: TriangleMesh | Shape,
+    target: TriangleMesh | Shape,
+    source_points: SurfacePoints,
+    target_points: SurfacePoints,
+    *,
+    maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
+) -> Steps[DenseMatch]:
+    """Extend a sparse correspondence to all vertices, in steps.
+
+    If it mirrors one surface onto another, other maps that do are tried as well, and the most credible is taken; any
+    other correspondence is extended as it is.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh or Shape
+        The surfaces.  With one `Shape` as both, a correspondence that mirrors is taken for its own inverse: the map is
+        found in one direction, which is the other one as well.
+    source_points, target_points : SurfacePoints
+        Corresponding points (k,) on them: some twenty, spread over the surface, are needed at least.
+    maps : pair of SurfaceMap, optional
+        Of two meshes, maps there and back by another correspondence: what has no partner by these has none by this
+        one, if that is much.
+
+    Returns
+    -------
+    DenseMatch
+        The maps.  Where the correspondence mirrors, the orientation in `quality` is that of the mirrored source.
+
+    Raises
+    ------
+    MatchError
+        If a point does not lie on the main part of its mesh.
+    """
+    call_helpers()
+    covered = _piece_of(source, maps[0], source_points), _piece_of(target, maps[1], target_points)
+    x = yield from within(_shape_steps(source, "source", covered[0], source_points), 0.0, 0.1)
+    y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)
+    x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
+    x, y = finer_shapes(x, y)
+    start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
+    yield from within(prepared_shapes_steps(x, y, Wanted(_SAMPLES, MEASURED, EIGENPAIRS)), 0.2, 0.35)
+    mirrored = _mirrors(x, y, start)
+    # Seen in a mirror, the source is matched by a map that keeps the orientation.
+    seen = x.reflected() if mirrored else x
+    involution = mirrored and x is y
+    shapes = seen.limited(_SAMPLES, MEASURED), y.limited(_SAMPLES, MEASURED)
+    steps = registered_pair_steps(*shapes, (start,), search=mirrored, as_they_are=mirrored)
+    pair = yield from within(steps, 0.35, 0.8)
+    dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
+    if mirrored:
+        dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))
+    return with_pieces_only(dense, (x.original, y.original), covered)
+
+
+def _piece_of(
+    surface: TriangleMesh | Shape, found: SurfaceMap | None, points: SurfacePoints
+) -> NDArray[np.bool_] | None:
+    """Tell which vertices of a mesh have a partner by an earlier map; a shape is taken as it is."""
+    return None if isinstance(surface, Shape) else piece_of(surface, found, points.nearest_vertices)
+
+
+def _shape_steps(
+    surface: TriangleMesh | Shape, name: str, covered: NDArray[np.bool_] | None, points: SurfacePoints
+) -> Steps[Shape]:
+    """Prepare what is covered of a mesh, so that points lie on it, or return a shape as it is."""
+    if isinstance(surface, Shape):
+        return surface
+    shape = yield from within(Shape.steps(surface, name, excluded=None if covered is None else ~covered), 0.0, 0.7)
+    return (yield from within(with_limbs_steps(shape, name, points.nearest_vertices), 0.7, 1.0))
+
+
+def _rows(shape: Shape, points: SurfacePoints) -> NDArray[np.float64]:
+    """Distances from the vertices nearest to points (k,) to all vertices, in sqrt(area), (k, n)."""
+    rows: NDArray[np.float64] = shape.solver.distances(shape.surface.on_mesh(points).nearest_vertices) / shape.scale
+    return rows
+
+
+def _seen_directly(to_reflection: SurfaceMap, source: TriangleMesh) -> SurfaceMap:
+    """Turn a map to the reflection of the source into one to the source."""
+    return SurfaceMap(reflected_points(source, to_reflection.points), to_reflection.confidence, source.vertex_count)
+
+
+def _at_landmarks(
+    found: SurfaceMap, image: TriangleMesh, vertices: NDArray[np.int64], partners: NDArray[np.int64]
+) -> SurfaceMap:
+    """Name the images of landmarks by the very vertices that were given, and trust them."""
+    confidence = found.confidence.copy()
+    confidence[vertices] = 1
+    return SurfaceMap(placed_at_vertices(found.points, image, vertices, partners), confidence, image.vertex_count)
+
+
+def _mirrors(x: Shape, y: Shape, start: LandmarkStart) -> bool:
+    """Whether a correspondence turns most of the surface over."""
+    images = nearest_both_ways(start.source_distances.T, start.target_distances.T).on_y
+    return SurfaceMap.from_points(y.mesh, SurfacePoints.at_vertices(y.mesh, images)).orientation(x.mesh, y.mesh) < 0
+
+
+def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involution: bool = False) -> Steps[DenseMatch]:
+    """Carry a registration to every vertex of the meshes that the surfaces stand for.
+
+    Parameters
+    ----------
+    pair : RegisteredPair
+        The surfaces, one laid onto the other.
+    polish : Stage
+        How meshes that have a proxy are registered once more, with more details.
+    involution : bool
+        Whether `x` is the reflection of `y` and the map its own inverse: then it is carried one way only.
+
+    Returns
+    -------
+    DenseMatch
+        The maps between all vertices, parts beside the main ones included.
+    """
+    x, y = pair.x.surface, pair.y.surface
+    main_x, main_y = x.cleaned.mesh, y.cleaned.mesh
+    polished = None
+    largest = max(main_x.vertex_count, main_y.vertex_count)
+    if largest <= _POLISHED and (x.proxy.is_coarser or y.proxy.is_coarser):
+        finer = yield from within(finer_surfaces_steps(x, y), 0.0, 0.2)
+        polished = Polish(*finer, polish, pair.landmarks)
+    lift = _Lift((x, y), (pair.source, pair.target), (pair.registration, pair.reverse), polished)
+    if involution:
+        there = yield from within(_main_map_steps(lift, 0), 0.2, 0.8)
+        back = reflected_points(main_x, there)
+    else:
+        share = shared_steps if largest <= MOST_SENT else here_steps
+        there, back = yield from within(share(_main_map_steps, lift, (0, 1)), 0.2, 0.8)
+    if pair.landmarks is not None:
+        here, partners = pair.landmarks.source.main, pair.landmarks.target.main
+        there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
+        back = pinned(main_y, main_x, back, partners, here, search=x.dense_search)
+    yield Progress(0.8, "Judging the map")
+    doubts = _doubts(pair)
+    quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness, doubt=doubts[0])
+    yield Progress(0.85, "Mapping every vertex")
+    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, likeness=pair.likeness, doubts=doubts)
+    whole = yield from within(steps, 0.85, 1.0)
+    forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)
+    alone = max(whole.there.alone, whole.back.alone)
+    quality = with_pieces(quality, alone, whole.there.share)
+    if pair.landmarks is not None:
+        given, partners = pair.landmarks.source.original, pair.landmarks.target.original
+        forward = _at_landmarks(forward, y.original, given, partners)
+        backward = _at_landmarks(backward, x.original, partners, given)
+    if pair.mirrored:
+        backward = _seen_directly(backward, reflected_mesh(x.original))
+    return DenseMatch(forward, backward, quality)
+
+
+def _doubts(pair: RegisteredPair) -> tuple[NDArray[np.float64] | float, NDArray[np.float64] | float]:
+    """Say how far images of vertices of the main parts may err, (n,) and (n',), beside their ways there and back."""
+    if pair.trips is None:
+        return 0.0, 0.0
+    places = pair.x.surface.proxy.points, pair.y.surface.proxy.points
+    there, back = (
+        np.einsum("nc,nc->n", points.barycentric, trips[points.corners])
+        for points, trips in zip(places, pair.trips, strict=True)
+    )
+    return there, back
+
+
+@dataclass(frozen=True, eq=False)
+class _Lift:
+    """Two surfaces, X and Y, what was registered in their place, each to the other, and how that is polished."""
+
+    surfaces: tuple[PreparedSurface, PreparedSurface]
+    deformable: tuple[DeformableSurface, DeformableSurface]
+    registrations: tuple[Registration, Registration]
+    polish: Polish | None
+
+
+def _main_map_steps(lift: _Lift, here: int) -> Steps[SurfacePoints]:
+    """Map every vertex of the main part of X to that of Y (`here` is 0), or of Y to that of X (1)."""
+    x, y, registration = lift.surfaces[here], lift.surfaces[1 - here], lift.registrations[here]
+    positions = lift.deformable[1 - here].in_its_units(registration.positions)
+    proxy_map = registration.on_target.nearest_vertices(y.mesh.triangles)
+    if lift.polish is not None:
+        return (yield from lift.polish.steps(positions, proxy_map, here))
+    ends = x.cleaned.mesh, x.proxy, positions, y.cleaned.mesh
+    return (yield from lift_steps(*ends, target_proxy=y.proxy, proxy_map=proxy_map, search=y.dense_search))
+
+
+def _on_original(found: WholeMap, y: PreparedSurface) -> SurfaceMap:
+    """Name a map of all vertices by the triangles of the original mesh, excluded ones counted."""
+    triangles = y.kept_triangles[found.points.triangles]
+    points = SurfacePoints.from_barycentric(y.original, triangles, found.points.barycentric)
+    return SurfaceMap(points, found.confidence, y.original.vertex_count)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Many plausible matchings of a few points, by beam search."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..runtime.errors import MatchError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["BeamMatchings", "beam_matchings"]
+
+
+class BeamMatchings(NamedTuple):
+    """Injective matchings of the points of X to points of Y, best first.
+
+    Attributes
+    ----------
+    images : (r, m) array of int
+        In each row, for each point of X, the number of its image among the points of Y.
+    costs : (r,) array of float
+        Smaller is better.
+    """
+
+    images: NDArray[np.int64]
+    costs: NDArray[np.float64]
+
+
+def beam_matchings(
+    distances_x: NDArray[np.float64],
+    distances_y: NDArray[np.float64],
+    dissimilarity: NDArray[np.float64],
+    *,
+    kept: int,
+    width: int = 400,
+    weight: float = 0.3,
+) -> BeamMatchings:
+    r"""Match points one after the other, keeping the best partial matchings only.
+
+    The cost of images t is
+
+    .. math:: \sum_i \Big[ w L_{i t_i} + \frac{2}{i} \sum_{j < i}
+        \frac{2 \, |d^X_{ij} - d^Y_{t_i t_j}|}{d^X_{ij} + d^Y_{t_i t_j}} \Big]
+
+    Parameters
+    ----------
+    distances_x : (m, m) array of float
+        Distances between the points of X.
+    distances_y : (n, n) array of float
+        Distances between the points of Y, in the same unit; n >= m.
+    dissimilarity : (m, n) array of float
+        L, how unlike the descriptors of the points are.
+    kept : int
+        How many matchings are wanted at most, r.
+    width : int
+        How many partial matchings are kept.
+    weight : float
+        w, of the descriptors.
+
+    Returns
+    -------
+    BeamMatchings
+        Up to `kept`.
+
+    Raises
+    ------
+    MatchError
+        If there are more points of X than of Y.
+    """
+    m, n = dissimilarity.shape
+    if m > n:
+        raise MatchError(f"{m} points cannot be matched to {n} points, each to another one: offer at least as many.")
+    images, costs = np.arange(n)[:, None], weight * dissimilarity[0]
+    for new in range(1, m):
+        known = distances_x[new, :new, None]  # (new, 1)
+        offered = distances_y[images]  # (r, new, n)
+        stretch = 2 * np.abs(known - offered) / np.maximum(known + offered, np.finfo(float).tiny)
+        extended = costs[:, None] + 2 * stretch.mean(axis=1) + weight * dissimilarity[new]
+        np.put_along_axis(extended, images, np.inf, axis=1)
+        best = np.argsort(extended, axis=None, kind="stable")[: min(width, len(images) * (n - new))]
+        costs = extended.ravel()[best]
+        images = np.column_stack([images[best // n], best % n])
+    return BeamMatchings(images[:kept], costs[:kept])

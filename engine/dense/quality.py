@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far a dense map may be trusted, in numbers and in a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import expit
+
+from ..mesh.connectivity.neighbour_means import neighbour_means
+from ..mesh.surface_map import SurfaceMap
+from .missing_parts import round_trips, with_partner
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..mesh.surface_points import SurfacePoints
+    from ..mesh.triangle_mesh import TriangleMesh
+
+__all__ = [
+    "MatchQuality",
+    "assess_maps",
+    "closeness",
+    "map_confidence",
+    "of_covered_part",
+    "trip_confidence",
+    "with_pieces",
+]
+
+_TRUSTED_ROUND_TRIP = 0.02
+"""Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
+
+_TRUSTED_STRETCH = 1.0
+"""Logarithm of the stretch of the surface around a point at which its confidence is halved."""
+
+_CLOSE, _CLOSE_SPREAD, _LEAST_CLOSENESS = 15.0, 1.4, 0.3
+"""Likeness of shapes of which half of what the maps agree on is as close to the truth as it seems, by how much more or
+less it changes, and what is left for shapes that are not alike at all.  Both maps may slide the same way."""
+
+_WHOLE = 0.995
+"""Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths, and
+fingertips that another body has not are no more than this."""
+
+_FEW = 0.02
+"""Part of a mesh in pieces without a counterpart up to which nothing is said: eyes, teeth and buttons."""
+
+_ROUNDED = 0.98
+"""Parts from which on tenths of a percent are said."""
+
+_PLAUSIBLE = 0.5
+"""Part of shapes so much alike that are matched rightly below which nothing should be trusted."""
+
+_CLEAR_MARGIN = 1.0
+"""Difference of scores to the next candidate from which on the choice between them was clear."""
+
+_LIKENESS, _LIKENESS_SPREAD = 13.5, 0.6
+"""Likeness of shapes that are matched wrongly as often as not, and by how much more or less it decides: cats, people
+and octopuses are matched to one another at 9 to 13, gorillas to men at 14 to 17, two persons at 20 to 30."""
+
+
+@dataclass(frozen=True)
+class MatchQuality:
+    """How far a dense map may be trusted.
+
+    Attributes
+    ----------
+    orientation : float
+        Part of the source's area on which the map keeps left on the left, minus the part on which it mirrors: 1 if it
+        does everywhere.  Of a map that is wanted to mirror (see `densify_steps`), seen in the mirror.
+    distortion : float
+        Mean of the absolute logarithm of the stretch of edges, by area: 0 for an isometry, 0.1 for some ten per cent.
+    coverage : float
+        Part of the target's area that has a partner on the source, see `with_partner`.
+    disagreement : float
+        Mean distance between a point of the source and where the two maps bring it, there and back, or brought it
+        before one of them was made to follow the other, in units of the square root of the area.
+    margin : float or None
+        By how much the best other candidate, such as the map turned by 180 degrees, was less credible; None if there
+        was no other.  Below one the choice was not clear.
+    confidence : float
+        All of this in one number, 0 to 1; that of pieces beside the main part counts by their areas.
+    sentence : str
+        The same for a person to read.
+    source_coverage : float
+        Like `coverage`, the part of the source's area that has a partner on the target.
+    likeness : float or None
+        How credible the map was before details were fitted, see `RegisteredPair.likeness`; None if that is not known.
+    pieces_alone : float
+        Part of the surface of either mesh, of the one that has more of it, that is in separate pieces without a
+        counterpart on the other.
+    """
+
+    orientation: float
+    distortion: float
+    coverage: float
+    disagreement: float
+    margin: float | None
+    confidence: float
+    sentence: str
+    source_coverage: float = 1.0
+    likeness: float | None = None
+    pieces_alone: float = 0.0
+
+
+def map_confidence(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    there: SurfacePoints,
+    back: SurfacePoints,
+    *,
+    likeness: float | None = None,
+    doubt: NDArray[np.float64] | float = 0.0,
+) -> NDArray[np.float64]:
+    """Judge each vertex's image by whether the way back leads home, and by how much the surface is stretched there.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    there, back : SurfacePoints
+        A point of the target for each vertex of the source, and the other way round.
+    likeness : float, optional
+        How credible the map is as a whole: of shapes that differ, less can be told.
+    doubt : (n,) array of float, optional
+        Distances, in sqrt(area), by which it is known otherwise that images may err: the longer of these and of the
+        ways there and back count.
+
+    Returns
+    -------
+    (n,) array of float
+        From 0 to 1, averaged over neighbours: about the part of such vertices whose images are not farther than three
+        hundredths of sqrt(area) from the true ones.  Zero for what has no partner on the target.
+    """
+    known = with_partner(source, target, there, back)
+    trips = _trips(source, there, back, doubt)
+    return _confidence(source, target, there, known, trips) * closeness(likeness)
+
+
+def trip_confidence(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Trust points, 0 to 1, by how far (k,) they are from where two maps bring them, there and back, in sqrt(area)."""
+    confidence: NDArray[np.float64] = 1 / (1 + np.square(distances / _TRUSTED_ROUND_TRIP))
+    return confidence
+
+
+def _confidence(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    there: SurfacePoints,
+    known: NDArray[np.bool_],
+    trips: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Judge images, (n,), by where vertices are known to have a partner, (n,), and how far they may err, (n,)."""
+    stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
+    confidence = trip_confidence(trips) / (1 + np.square(stretch / _TRUSTED_STRETCH))
+    return np.clip(neighbour_means(source, confidence), 0, 1) * known
+
+
+def _trips(
+    source: TriangleMesh, there: SurfacePoints, back: SurfacePoints, doubt: NDArray[np.float64] | float
+) -> NDArray[np.float64]:
+    """Say how far images may err, (n,), in sqrt(area): by ways there and back, or more."""
+    longer: NDArray[np.float64] = np.maximum(round_trips(source, there, back) / np.sqrt(source.area), doubt)
+    return longer
+
+
+def assess_maps(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    there: SurfacePoints,
+    back: SurfacePoints,
+    margin: float | None,
+    *,
+    likeness: float | None = None,
+    doubt: NDArray[np.float64] | float = 0.0,
+) -> MatchQuality:
+    """Measure a pair of maps between two surfaces.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    there, back : SurfacePoints
+        A point of the target for each vertex of the source, and the other way round.
+    margin : float or None
+        How clear the choice of the map was.
+    likeness : float, optional
+        How credible the map was.
+    doubt : (n,) array of float, optional
+        How far images may err, see `map_confidence`.
+    """
+    orientation = SurfaceMap.from_points(target, there).orientation(source, target)
+    lengths = np.square(source.edge_lengths)
+    distortion = float(np.average(np.abs(_log_stretch(source, target, there)), weights=lengths))
+    coverage = float(np.average(with_partner(target, source, back, there), weights=target.vertex_areas))
+    known = with_partner(source, target, there, back)
+    source_coverage = float(np.average(known, weights=source.vertex_areas))
+    trips = _trips(source, there, back, doubt)
+    disagreement = float(np.average(trips, weights=source.vertex_areas))
+    confidence = float(np.average(_confidence(source, target, there, known, trips), weights=source.vertex_areas))
+    confidence *= max(orientation, 0.0)
+    if margin is not None:
+        confidence *= 1 - 0.5 * float(np.exp(-margin / _CLEAR_MARGIN))
+    confidence *= _plausibility(likeness)
+    numbers = orientation, distortion, coverage, disagreement, margin, confidence
+    quality = MatchQuality(*numbers, "", source_coverage, likeness)
+    return replace(quality, sentence=_sentence(quality))
+
+
+def with_pieces(quality: MatchQuality, alone: float, share: float) -> MatchQuality:
+    """Say of a map of main parts, too, what is known of the pieces beside them.
+
+    Parameters
+    ----------
+    quality : MatchQuality
+        That of the main parts.
+    alone : float
+        What part of the surface is in separate pieces without a counterpart.
+    share : float
+        Mean confidence of the whole surface, as a part of that of the main part.
+    """
+    more = replace(quality, pieces_alone=alone, confidence=min(share * quality.confidence, 1.0))
+    return replace(more, sentence=_sentence(more))
+
+
+def of_covered_part(quality: MatchQuality, share: float, *, of_source: bool) -> MatchQuality:
+    """Say of a map, too, that it was made with only so large a part of the source, or of the target."""
+    if of_source:
+        more = replace(quality, source_coverage=share * quality.source_coverage)
+    else:
+        more = replace(quality, coverage=share * quality.coverage)
+    return replace(more, sentence=_sentence(more))
+
+
+def closeness(likeness: float | None) -> float:
+    """Estimate the part of what both maps agree on that is as near to the truth as it seems, 0 to 1."""
+    if likeness is None:
+        return 1.0
+    return _LEAST_CLOSENESS + (1 - _LEAST_CLOSENESS) * float(expit((likeness - _CLOSE) / _CLOSE_SPREAD))
+
+
+def _plausibility(likeness: float | None) -> float:
+    """Estimate the part of shapes so much alike that are matched rightly as a whole, 0 to 1."""
+    return 1.0 if likeness is None else float(expit((likeness - _LIKENESS) / _LIKENESS_SPREAD))
+
+
+def _sentence(quality: MatchQuality) -> str:
+    """Say the worst that is known."""
+    return _doubt(quality) or _difference(quality)
+
+
+def _doubt(quality: MatchQuality) -> str:
+    """Say why the map as a whole may be wrong; nothing if there is no reason."""
+    margin = quality.margin
+    if quality.orientation < 0.3:
+        return "The map turns large parts of the surface over: do not trust it; try landmarks."
+    if _plausibility(quality.likeness) < _PLAUSIBLE:
+        return "The shapes have too little in common: leave out what only one of them has, or try landmarks."
+    if margin is not None and margin < _CLEAR_MARGIN:
+        return "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong."
+    return ""
+
+
+def _difference(quality: MatchQuality) -> str:
+    """Say how much the shapes differ."""
+    distortion, disagreement = quality.distortion, quality.disagreement
+    if min(quality.coverage, quality.source_coverage) < _WHOLE:
+        return _without_partner(quality)
+    if quality.pieces_alone > _FEW:
+        share = _percentage(quality.pieces_alone)
+        return f"Separate pieces, {share} of a mesh, have no counterpart on the other: check where they went."
+    if disagreement > 0.02 or distortion > 0.5:
+        return "The shapes differ much: the map is a good guess that keeps left and right, but details may slide."
+    if disagreement > 0.008 or distortion > 0.2:
+        return "The shapes correspond, with some stretching where they differ."
+    return "The shapes correspond closely."
+
+
+def _without_partner(quality: MatchQuality) -> str:
+    """Say which of the shapes has more that the other lacks."""
+    missing = "parts of one shape seem to be missing on the other."
+    if quality.coverage <= quality.source_coverage:
+        return f"Only {_percentage(quality.coverage)} of the target is reached: {missing}"
+    return f"Only {_percentage(quality.source_coverage)} of the source has a partner: {missing}"
+
+
+def _percentage(part: float) -> str:
+    """Write a part of a whole so that what is left does not vanish."""
+    return f"{part:.0%}" if part < _ROUNDED else f"{part:.1%}"
+
+
+def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> NDArray[np.float64]:
+    """Logarithm of mapped over original length of each edge, both in units of sqrt(area), (e,)."""
+    first, second = source.edges.T
+    mapped = np.linalg.norm(there.positions[first] - there.positions[second], axis=1) / np.sqrt(target.area)
+    own = source.edge_lengths / np.sqrt(source.area)
+    # Edges shorter than a thousandth of the mean say nothing about stretch.
+    least = 1e-3 * float(own.mean())
+    return np.log(np.maximum(mapped, least) / np.maximum(own, least))
+
+
+def _vertex_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of values per edge (e,) over the edges at each vertex, (n,)."""
+    ends, n = mesh.edges.ravel(), mesh.vertex_count
+    return np.bincount(ends, np.repeat(values, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)

@@ -1,0 +1,404 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Candidates for the map between two surfaces: hypotheses that are followed up by registrations, soft and close."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..mesh.closest_points import FoundPoints
+from ..mesh.surface_points import SurfacePoints
+from ..registration.axial_twists import rolled_back, untwisted
+from ..registration.axial_windings import wound_steps
+from ..registration.registration import (
+    AGAIN,
+    CLOSE,
+    FINE,
+    GUIDED,
+    LAST,
+    SOFT,
+    Registration,
+    points_at,
+    register_steps,
+    restarted_steps,
+    smooth_start,
+)
+from ..runtime.parallel_map import shared_steps
+from ..runtime.progress import Steps, within
+from .dense_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
+from .functional_maps import PointMaps
+from .initial_maps import MapLead
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from ..registration.deformable import DeformableSurface
+    from ..registration.positional_constraints import Ties
+    from ..registration.registration import Stage
+    from ..shapes.shape import Shape
+    from .spectral_domain import MapDomain
+
+    _Common = tuple["Follower", MapDomain, MapDomain]
+    Trips = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+__all__ = ["Candidate", "CloseFit", "Follower"]
+
+_ELASTIC_WEIGHT = 4.0
+_GAP_WEIGHT = 4.0
+_LEAST_GAP = 1e-4  # in sqrt(area); surfaces that meet closer than that are all the same
+_SMOOTH = 40
+"""Eigenfunctions that the source is placed by before it is registered."""
+
+_GUIDES = 10
+"""Eigenfunctions of the target that guide the soft registration."""
+
+_DETAILED = 100
+"""Eigenfunctions that either surface is placed by before it is registered again."""
+
+_ROLLS = 3
+"""How often a long body is turned back at most: the better it lies, the better is seen how it is turned."""
+
+_TRIFLE = 0.006
+"""Mean distance, in sqrt(area), up to which a body lies as before: but a tip is turned, or it is wound about itself."""
+
+_WORTHWHILE = 3.0
+"""Difference of scores up to which a body that was laid down otherwise is turned back as well."""
+
+_POSED, _BUILT = 0.38, 0.48
+"""Mean difference of wave kernel signatures up to which only poses differ, and from which on bodies are unlike."""
+
+_STAGES = AGAIN, CLOSE, LAST
+
+_DISAGREE = 0.0055, 0.008, 0.012
+"""Mean length of the way there and back, in sqrt(area), from which on both sides are registered once more, twice, and
+three times: in turn each corrects what the other strains, and none comes to rest at once."""
+
+_NEARER = 0.95
+"""Part of its length before from which on the way there and back has not become shorter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A hypothesis, softly registered.
+
+    Attributes
+    ----------
+    hypothesis : MapHypothesis
+        The map it started from; of the best, if that was rough, what functional maps make of where it led.
+    registration : Registration
+        The source on the target.
+    score : float
+        Smaller is more credible: the score of the registered map and the logarithms of the gaps that are left.
+    likeness : float
+        How much alike the surfaces are, if this is the map, larger for more: by the score of the hypothesis and the
+        logarithm of what the deformation costs.
+    isometry : float
+        From 0, bodies of unlike build, to 1, one body in two poses, by wave kernel signatures where it was registered.
+    """
+
+    hypothesis: MapHypothesis
+    registration: Registration
+    score: float
+    likeness: float
+    isometry: float
+
+
+@dataclass(frozen=True, eq=False)
+class CloseFit:
+    """A candidate, registered closely from either side.
+
+    Attributes
+    ----------
+    candidate : Candidate
+        What was followed.
+    registration : Registration
+        The source on the target.
+    reverse : Registration
+        The target on the source.
+    score : float
+        Smaller is more credible: the mean of the scores of the soft registration and of the close one.  A rough start
+        may lead the soft one of the true map to where the surfaces meet badly, and a close one fits wrong maps as well.
+    """
+
+    candidate: Candidate
+    registration: Registration
+    reverse: Registration
+    score: float
+
+
+@dataclass(frozen=True, eq=False)
+class Follower:
+    """Follows hypotheses up by registrations.
+
+    Attributes
+    ----------
+    x, y : Shape
+        The shapes.
+    source, target : DeformableSurface
+        Their surfaces.
+    ties, ties_back : Ties or None
+        Where the source is held on the target, and the target on the source.
+    """
+
+    x: Shape
+    y: Shape
+    source: DeformableSurface
+    target: DeformableSurface
+    ties: Ties | None = None
+    ties_back: Ties | None = None
+    is_sent_once: ClassVar[bool] = True
+
+    @cached_property
+    def _smooth(self) -> NDArray[np.float64]:
+        """Functions that the source is placed by before it is registered, (n_x, k)."""
+        return self._functions[:, :_SMOOTH]
+
+    @cached_property
+    def _functions(self) -> NDArray[np.float64]:
+        """All functions of the source, (n_x, k)."""
+        return _functions(self.x, len(self.x.spectrum))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what the surfaces stand for, and what is made in no time."""
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        return state | {"x": self.x.lean(), "y": self.y.lean()}
+
+    def all_steps(self, hypotheses: Sequence[MapHypothesis]) -> Steps[list[Candidate]]:
+        """Follow up several hypotheses between the same domains; see `steps`."""
+        if not hypotheses:
+            return []
+        items = [(_lead_of(hypothesis), hypothesis.__dict__.get("images")) for hypothesis in hypotheses]
+        found = yield from shared_steps(_followed_steps, (self, *hypotheses[0].domains), items)
+        return [Candidate(hypothesis, *rest) for hypothesis, rest in zip(hypotheses, found, strict=True)]
+
+    def steps(self, hypothesis: MapHypothesis) -> Steps[Candidate]:
+        """Register the source from where a hypothesis takes it, and judge what comes of it."""
+        source, target = self.source, self.target
+        images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
+        start = self.start(images)
+        posed = (start + smooth_start(source, target, images.on_y, self._functions)) / 2
+        first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
+        guides = self._guides(hypothesis, images)
+        stages = GUIDED, SOFT
+        steps = register_steps(source, target, start, stages, first, posed=posed, ties=self.ties, guides=guides)
+        registration = yield from within(steps, 0.2, 1.0)
+        return self._judged(hypothesis, registration)
+
+    def rolled_back_steps(self, candidate: Candidate) -> Steps[list[Candidate]]:
+        """Turn a long body back where it is turned about its axis, and try how else it might lie as a whole.
+
+        Returned are all ways to lie, the most credible first, or the candidate alone.  What landmarks hold stays the
+        way round it is.
+        """
+        if self.ties is not None:
+            return [candidate]
+        best, ways = yield from within(self._turned_back_steps(candidate), 0.0, 0.4)
+        found = [best]
+        for number, way in enumerate(ways):
+            begin, end = (0.4 + 0.6 * (number + i) / len(ways) for i in (0, 1))
+            lying = yield from within(self._registered_again_steps(candidate, way), begin, (begin + end) / 2)
+            if lying.score < best.score + _WORTHWHILE:
+                lying, _ = yield from within(self._turned_back_steps(lying), (begin + end) / 2, end)
+            found.append(lying)
+        return sorted(found, key=lambda candidate: candidate.score)
+
+    def _turned_back_steps(self, candidate: Candidate) -> Steps[tuple[Candidate, list[NDArray[np.float64]]]]:
+        """Turn parts of a long body back while that is more credible; and say how else all of it might be placed."""
+        ways: list[NDArray[np.float64]] = []
+        for number in range(_ROLLS):
+            positions = candidate.registration.positions
+            turned, otherwise = rolled_back(self.x, self.source, self.target, positions)
+            ways = [way for winding in otherwise for way in winding.positions if self.apart(way, positions) > _TRIFLE]
+            if turned is positions:
+                break
+            again = self._registered_again_steps(candidate, turned)
+            rolled = yield from within(again, number / _ROLLS, (number + 1) / _ROLLS)
+            if rolled.score >= candidate.score:
+                break
+            candidate = rolled
+        return candidate, ways
+
+    def _registered_again_steps(self, candidate: Candidate, positions: NDArray[np.float64]) -> Steps[Candidate]:
+        """Follow a candidate's hypothesis from other positions."""
+        registration = yield from register_steps(self.source, self.target, positions, (GUIDED, SOFT))
+        return self._judged(candidate.hypothesis, registration)
+
+    def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
+        """Say how credible a hypothesis is by the soft registration that it led to."""
+        elastic = _ELASTIC_WEIGHT * float(np.log(max(registration.cost, float(np.finfo(float).tiny))))
+        score, terms = self._assessed(hypothesis, registration)
+        # The rough map that it began with may be no isometry though the bodies are alike.
+        isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))
+        return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic), isometry)
+
+    def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
+        """Register several candidates closely, between the same domains; see `close_steps`."""
+        items = [(_lead_of(c.hypothesis), (c.registration, c.score, c.likeness, c.isometry)) for c in candidates]
+        common = self, *candidates[0].hypothesis.domains
+        found = yield from shared_steps(_closely_followed_steps, common, items)
+        return [CloseFit(candidate, *rest) for candidate, rest in zip(candidates, found, strict=True)]
+
+    def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
+        """Register closely: the source, then the target from where it lies, then the source again."""
+        source, target = self.source, self.target
+        positions, isometry = candidate.registration.positions, candidate.isometry
+
+        def register_all_steps(starts: list[NDArray[np.float64]], stage: Stage = FINE) -> Steps[list[Registration]]:
+            """Register from several positions."""
+            items = [(start, stage, isometry) for start in starts]
+            return (yield from shared_steps(_registered_steps, (self, *candidate.hypothesis.domains), items))
+
+        if self.ties is None:
+            way = untwisted(self.x, source, target, positions, isometry)
+            first = yield from within(wound_steps(register_all_steps, source, target, way), 0.0, 0.2)
+        else:  # what landmarks hold stays the way round it is
+            (first,) = yield from within(register_all_steps([positions]), 0.0, 0.2)
+        reverse, final = yield from within(self.again_steps(candidate, first), 0.2, 1.0)
+        score = (candidate.score + self._assessed(candidate.hypothesis, final)[0]) / 2
+        return CloseFit(candidate, final, reverse, score)
+
+    def settled_steps(self, fit: CloseFit) -> Steps[tuple[CloseFit, Trips]]:
+        """Go on from either side in turn, while the two disagree and come nearer to each other by that.
+
+        At last the target follows where the source has come to lie since.  How far they were apart before that tells
+        where they may err, see `trips`.
+        """
+        trips = self.trips(fit)
+        for number, agreed in enumerate(_DISAGREE):
+            length = self._length(trips)
+            if length <= agreed:
+                break
+            again = self.again_steps(fit.candidate, fit.registration)
+            begin, end = ((number + i) / (len(_DISAGREE) + 1) for i in (0, 1))
+            reverse, registration = yield from within(again, begin, end)
+            other = replace(fit, registration=registration, reverse=reverse)
+            apart = self.trips(other)
+            if self._length(apart) >= length:
+                break
+            fit, trips = other, apart
+            if self._length(apart) > _NEARER * length:
+                break
+        matches = fit.registration.on_source, fit.registration.on_target
+        start, isometry = fit.reverse.positions, fit.candidate.isometry
+        following = register_steps(
+            self.target, self.source, start, (LAST,), matches, isometry=isometry, ties=self.ties_back
+        )
+        follower = yield from within(following, len(_DISAGREE) / (len(_DISAGREE) + 1), 1.0)
+        return replace(fit, reverse=follower), trips
+
+    def trips(self, fit: CloseFit) -> Trips:
+        """Distances, in sqrt(area), between vertices and where the two maps bring them, there and back."""
+        ways = (self.source, self.target, fit.registration), (self.target, self.source, fit.reverse)
+        trips = []
+        for (start, end, there), (_, _, back) in zip(ways, ways[::-1], strict=True):
+            images = points_at(back.on_target, start.triangles, start.vertices)
+            returned = points_at(there.on_target, end.triangles, images)
+            trips.append(np.linalg.norm(returned - start.vertices, axis=1))
+        return trips[0], trips[1]
+
+    def _length(self, trips: Trips) -> float:
+        """Mean length from where it is shorter: what only one of the surfaces has leads elsewhere anyhow."""
+        masses = self.source.mass, self.target.mass
+        return min(float(np.average(trip, weights=mass)) for trip, mass in zip(trips, masses, strict=True))
+
+    def again_steps(self, candidate: Candidate, found: Registration) -> Steps[tuple[Registration, Registration]]:
+        """Register the target from where the source lies on it, then the source from where the target does."""
+        source, target = self.source, self.target
+        here, there = self._guides(candidate.hypothesis, self.vertex_maps(found))
+        restart = partial(restarted_steps, stages=_STAGES, isometry=candidate.isometry)
+        matches, guides = (found.on_source, found.on_target), (there, here)
+        steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back, guides=guides)
+        reverse = yield from within(steps, 0.0, 0.5)
+        matches, guides = (reverse.on_source, reverse.on_target), (here, there)
+        steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties, guides=guides)
+        return reverse, (yield from within(steps, 0.5, 1.0))
+
+    def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:
+        """Score what a hypothesis has led to; and the terms of the score, without the gaps that are left."""
+        # A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.  The
+        # true one may take more deforming than a wrong one where proportions differ, but the surfaces meet closer.
+        gaps = np.maximum(registration.gaps, _LEAST_GAP)
+        lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
+        return lead.score + _GAP_WEIGHT * float(np.log(gaps).sum()), lead.terms
+
+    def start(self, images: PointMaps) -> NDArray[np.float64]:
+        """Place the source where a map between all vertices puts it, smoothly."""
+        return smooth_start(self.source, self.target, images.on_y, self._smooth)
+
+    def apart(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+        """Mean distance, in sqrt(area), between two ways to place the source."""
+        areas = self.source.mass
+        return float(areas @ np.linalg.norm(first - second, axis=1) / areas.sum())
+
+    def refined_steps(self, candidate: Candidate) -> Steps[Candidate]:
+        """Let functional maps refine a registered map, and take that for the hypothesis that led to it."""
+        was = candidate.hypothesis
+        maps = self.vertex_maps(candidate.registration)
+        hypothesis = yield from refined_hypothesis_steps(was.domains, maps, was.origin)
+        likeness = candidate.likeness + was.score - hypothesis.score
+        return replace(candidate, hypothesis=hypothesis, likeness=likeness)
+
+    def _guides(self, hypothesis: MapHypothesis, images: PointMaps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Take the lowest eigenfunctions of the target to both surfaces: a tail is far from a leg in them, in any pose.
+
+        The higher ones count less, by the root of their eigenvalues: they err more, and say less about limbs.
+        """
+        domain, lowest = hypothesis.domains[1], slice(1, 1 + _GUIDES)
+        values = domain.values[lowest]
+        there = domain.functions[:, lowest] * np.sqrt(values[:1] / values)
+        here = self._smooth @ (self._smooth.T @ (self.source.mass[:, None] * there[images.on_y]))
+        return here, there
+
+    def vertex_maps(self, registration: Registration) -> PointMaps:
+        """Take the maps of a registration between all vertices."""
+        on_target, on_source = registration.on_target, registration.on_source
+        return PointMaps(
+            self.target.triangles[on_target.triangles, on_target.barycentric.argmax(axis=1)],
+            self.source.triangles[on_source.triangles, on_source.barycentric.argmax(axis=1)],
+        )
+
+
+def _lead_of(hypothesis: MapHypothesis) -> MapLead:
+    """Return a hypothesis without what all of them share."""
+    return MapLead(hypothesis.points, hypothesis.score, hypothesis.orientation, hypothesis.terms, hypothesis.origin)
+
+
+def _followed_steps(
+    common: _Common, item: tuple[MapLead, PointMaps | None]
+) -> Steps[tuple[Registration, float, float, float]]:
+    """Find what `Follower.steps` does, beside the hypothesis."""
+    follow, x, y = common
+    found = yield from follow.steps(hypothesis_of((x, y), *item))
+    return found.registration, found.score, found.likeness, found.isometry
+
+
+def _closely_followed_steps(
+    common: _Common, item: tuple[MapLead, tuple[Registration, float, float, float]]
+) -> Steps[tuple[Registration, Registration, float]]:
+    """Find what `Follower.close_steps` does, beside the candidate."""
+    (follow, x, y), (lead, rest) = common, item
+    found = yield from follow.close_steps(Candidate(hypothesis_of((x, y), lead), *rest))
+    return found.registration, found.reverse, found.score
+
+
+def _registered_steps(common: _Common, item: tuple[NDArray[np.float64], Stage, float]) -> Steps[Registration]:
+    """Register the source from some positions."""
+    follow, (start, stage, isometry) = common[0], item
+    steps = register_steps(follow.source, follow.target, start, (stage,), isometry=isometry, ties=follow.ties)
+    return (yield from steps)
+
+
+def _functions(shape: Shape, count: int) -> NDArray[np.float64]:
+    """First eigenfunctions of a shape of unit area, (n, count)."""
+    functions: NDArray[np.float64] = shape.spectrum.functions[:, :count] * np.sqrt(shape.laplace.area)
+    return functions
+
+
+def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
+    points = SurfacePoints.at_vertices(surface.mesh, vertices)
+    return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))

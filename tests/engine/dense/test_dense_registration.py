@@ -1,0 +1,486 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The choice among hypotheses, and the registration of the best."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engine import Shape, SurfacePoints, TriangleMesh, run
+from engine.dense import dense_hypotheses as map_hypotheses
+from engine.dense import dense_registration as dense_map
+from engine.dense.dense_hypotheses import LandmarkStart, assessed_everywhere, map_hypotheses_steps
+from engine.dense.dense_registration import EIGENPAIRS, are_distinct, registered_pair_steps
+from engine.dense.densify import dense_match_steps
+from engine.dense.functional_maps import PointMaps
+from engine.dense.landmark_selection import Steered
+from engine.dense.registered_hypotheses import Follower
+from engine.registration.elastic import ElasticSurface
+from engine.registration.positional_constraints import Ties
+from engine.registration.registration import SOFT, register_steps
+from engine.shapes.landmarks import LandmarkPlaces, Landmarks
+from tests.bodies import fish, mirrored_body
+from tests.shapes import icosphere, rotation
+
+SAMPLES = 150
+
+
+def shape(vertices, triangles):
+    made = Shape(TriangleMesh(vertices, triangles))
+    run(made.sample_steps(SAMPLES))
+    return made
+
+
+def errors(points, triangles, own, other, area):
+    """Distance at rest between the vertices and their images, over the square root of the area."""
+    images = np.einsum("kc,kcd->kd", points.barycentric, other[triangles[points.triangles]])
+    return np.linalg.norm(own - images, axis=1) / np.sqrt(area)
+
+
+def start_from(x, y, vertices_x, vertices_y, origin="given"):
+    rows = x.solver.distances(np.asarray(vertices_x)) / x.scale
+    return LandmarkStart(rows, y.solver.distances(np.asarray(vertices_y)) / y.scale, origin)
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    """A symmetric body, and one like it in another pose and triangulation."""
+    first, second = mirrored_body(0.0, 9), mirrored_body(0.8, 9, seed=1)
+    return shape(*first[:2]), shape(*second[:2]), first[2], second[2]
+
+
+def returned(value):
+    """Steps that take none."""
+    return value
+    yield
+
+
+def followed(steps):
+    """What a computation yields on the way, and returns."""
+    reports = []
+    while True:
+        try:
+            reports.append(next(steps))
+        except StopIteration as stop:
+            return reports, stop.value
+
+
+@pytest.fixture(scope="module")
+def watched(bodies):
+    """What a registration yields on the way, and returns."""
+    return followed(registered_pair_steps(*bodies[:2]))
+
+
+@pytest.fixture(scope="module")
+def registered(watched):
+    return watched[1]
+
+
+@pytest.fixture(scope="module")
+def starts(bodies):
+    """Start from twenty true pairs of vertices, and from their mirror images."""
+    x, y, rest_x, rest_y = bodies
+    chosen = x.samples[:20]
+    gaps = [np.linalg.norm(rest_x[chosen][:, None] * [1, side, 1] - rest_y, axis=2) for side in (1, -1)]
+    return [
+        start_from(x, y, chosen, gap.argmin(axis=1), name) for gap, name in zip(gaps, ("true", "mirror"), strict=True)
+    ]
+
+
+def test_left_stays_left_between_the_vertices(registered, bodies):
+    x, y, rest_x, rest_y = bodies
+    there = errors(registered.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area)
+    back = errors(registered.registration.on_source, x.mesh.triangles, rest_y, rest_x, y.mesh.area)
+    for found in (there, back):
+        assert found.mean() < 0.01
+        assert found.max() < 0.08
+    assert registered.candidates[0].hypothesis.orientation > 0.5
+
+
+def test_candidates_are_ordered_and_cost_what_their_registration_costs(registered):
+    scores = [candidate.score for candidate in registered.candidates]
+    assert scores == sorted(scores)
+    for candidate in registered.candidates:
+        found, domains = candidate.registration, candidate.hypothesis.domains
+        maps = PointMaps(
+            *(
+                surface.triangles[points.triangles, points.barycentric.argmax(axis=1)]
+                for surface, points in ((registered.target, found.on_target), (registered.source, found.on_source))
+            )
+        )
+        cost = 4 * np.log(found.energy + 20 * found.misfit)
+        assert candidate.score == pytest.approx(assessed_everywhere(domains, maps).score + 4 * np.log(found.gaps).sum())
+        assert candidate.likeness == pytest.approx(-candidate.hypothesis.score - cost)
+        waves = assessed_everywhere(domains, maps).terms["waves"]
+        assert candidate.isometry == pytest.approx(np.clip((0.48 - waves) / 0.1, 0, 1))
+        assert candidate.hypothesis.orientation > 0
+    assert registered.likeness == registered.candidates[0].likeness
+    assert registered.margin is None or registered.margin > 0
+
+
+def test_the_pair_says_what_was_registered(registered, bodies):
+    x, y = bodies[:2]
+    assert registered.x is x
+    assert registered.y is y
+    np.testing.assert_array_equal(registered.source.triangles, x.mesh.triangles)
+    assert registered.registration.positions.shape == x.mesh.vertices.shape
+    assert len(registered.registration.on_source.triangles) == y.mesh.vertex_count
+    assert len(x.spectrum) == EIGENPAIRS
+
+
+def test_a_given_start_is_followed_where_nothing_is_searched(bodies, starts):
+    x, y, rest_x, rest_y = bodies
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true"]
+    assert pair.margin is None
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
+
+
+def test_a_start_is_followed_as_it_is_too_and_is_no_other_map(bodies, starts):
+    x, y, rest_x, rest_y = bodies
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False, as_they_are=True))
+    assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true", "true"]
+    assert pair.candidates[0].score < pair.candidates[1].score
+    assert pair.margin is None
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
+
+
+def test_of_two_starts_the_one_that_keeps_the_orientation_is_taken(bodies, starts):
+    x, y, rest_x, rest_y = bodies
+    pair = run(registered_pair_steps(x, y, starts[::-1], search=False))
+    assert pair.candidates[0].hypothesis.origin == "true"
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).mean() < 0.01
+
+
+def hind_legs_exchanged(x, y, rest_x, rest_y):
+    """Start from pairs of vertices of which those on the hind legs are the mirror images of the true ones."""
+    places = rest_x[x.samples].copy()
+    places[(places[:, 0] < -0.2) & (places[:, 2] < -0.4), 1] *= -1
+    images = np.linalg.norm(places[:, None] - rest_y, axis=2).argmin(axis=1)
+    return start_from(x, y, x.samples, images, "exchanged")
+
+
+def test_limbs_that_the_best_hypothesis_exchanges_are_put_right(bodies, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    wrong = hind_legs_exchanged(*bodies)
+    left = run(registered_pair_steps(x, y, [wrong], search=False))
+    assert errors(left.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() > 0.15
+
+    def misled(x, y, starts=(), *, search=True, **options):
+        return map_hypotheses_steps(x, y, [wrong] if search else starts, search=False, **options)
+
+    monkeypatch.setattr(dense_map, "map_hypotheses_steps", misled)
+    reports, pair = followed(registered_pair_steps(x, y))
+    assert pair.candidates[0].hypothesis.origin == "limbs"
+    assert [report.fraction for report in reports] == sorted(report.fraction for report in reports)
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
+    assert pair.margin is None or pair.margin >= 0
+
+
+def test_where_a_map_is_nearly_an_isometry_no_rough_ones_are_followed(registered):
+    assert not registered.candidates[0].hypothesis.is_doubtful
+    assert "matching" not in [candidate.hypothesis.origin for candidate in registered.candidates]
+
+
+def turned_start(x, y, rest_x, rest_y):
+    """Start from pairs of vertices of which one is where the other would be if the body were turned round."""
+    turned = np.linalg.norm(rest_x[x.samples[:40]][:, None] * [-1, -1, 1] - rest_y, axis=2).argmin(axis=1)
+    return start_from(x, y, x.samples[:40], turned, "turned")
+
+
+def test_a_matching_as_it_is_takes_the_place_of_hypotheses_that_are_wrong(bodies, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    start = turned_start(*bodies)
+
+    def misled(x, y, starts=(), *, search=True, **options):
+        return map_hypotheses_steps(x, y, [start] if search else starts, search=False, **options)
+
+    monkeypatch.setattr(dense_map, "map_hypotheses_steps", misled)
+    reports, pair = followed(registered_pair_steps(x, y))
+    fractions = [report.fraction for report in reports]
+    assert fractions == sorted(fractions)
+    best, other = pair.candidates[0], pair.candidates[-1]
+    assert (best.hypothesis.origin, other.hypothesis.origin) == ("matching", "turned")
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
+    assert not best.hypothesis.is_doubtful
+    assert other.hypothesis.is_doubtful
+    assert best.likeness > other.likeness + 3
+    assert pair.margin == pytest.approx(other.score - best.score)
+
+
+@pytest.mark.parametrize("agreeing", [True, False])
+def test_matchings_are_followed_only_if_they_agree_with_landmarks(agreeing, bodies, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    known = x.samples[:1]
+    partner = np.linalg.norm(rest_x[known] * [-1, -1, 1] - rest_y, axis=1).argmin(keepdims=True)
+    places = (LandmarkPlaces(vertices, vertices, vertices) for vertices in (known, partner))
+    hypotheses = run(map_hypotheses_steps(x, y, [turned_start(*bodies)], search=False))
+    steered = Steered(x, mirrored=False, hypotheses=hypotheses)
+    monkeypatch.setattr(dense_map, "steered_hypotheses_steps", lambda *_, **__: returned(steered))
+    asked = []
+    monkeypatch.setattr(dense_map, "agrees", lambda *those: asked.append(those[3]) or agreeing)
+    pair = run(registered_pair_steps(x, y, landmarks=Landmarks(*places)))
+    assert {hypothesis.origin for hypothesis in asked} == {"matching"}
+    assert ("matching" in [candidate.hypothesis.origin for candidate in pair.candidates]) == agreeing
+
+
+@pytest.fixture
+def both_starts(bodies, starts, monkeypatch):
+    """Start from the truth, and from it with the hind legs exchanged, however much less credible that is."""
+    monkeypatch.setattr(map_hypotheses, "_HOPELESS", np.inf)
+    monkeypatch.setattr(map_hypotheses, "_DISTINCT", 0.0)
+    monkeypatch.setattr(dense_map, "_AMBIGUOUS", np.inf)
+    return [starts[0], hind_legs_exchanged(*bodies)]
+
+
+def with_soft_score(monkeypatch, origin, added):
+    """Let the soft registrations of hypotheses of this origin seem worse than they are."""
+    own = Follower.steps
+
+    def steps(self, hypothesis):
+        candidate = yield from own(self, hypothesis)
+        return replace(candidate, score=candidate.score + added * (hypothesis.origin == origin))
+
+    monkeypatch.setattr(Follower, "steps", steps)
+
+
+def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, both_starts, monkeypatch):
+    x, y, rest_x, rest_y = bodies
+    plain = run(registered_pair_steps(x, y, both_starts, search=False))
+    scores = {candidate.hypothesis.origin: candidate.score for candidate in plain.candidates}
+    # So that the wrong one seems a little better at first.
+    added = scores["exchanged"] - scores["true"] + 1
+    assert added > 1
+    with_soft_score(monkeypatch, "true", added)
+    pair = run(registered_pair_steps(x, y, both_starts, search=False))
+    assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true", "exchanged"]
+    assert pair.candidates[0].score == pytest.approx(pair.candidates[1].score + 1)
+    assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
+    follow = Follower(x, y, pair.source, pair.target)
+    fits = [run(follow.close_steps(candidate)) for candidate in pair.candidates]
+    assert pair.margin == pytest.approx(fits[1].score - fits[0].score)
+    settled, trips = run(follow.settled_steps(fits[0]))
+    np.testing.assert_array_equal(settled.registration.positions, pair.registration.positions)
+    np.testing.assert_array_equal(settled.reverse.positions, pair.reverse.positions)
+    for own, of_pair in zip(trips, pair.trips, strict=True):
+        np.testing.assert_array_equal(own, of_pair)
+
+
+def ways_there_and_back(follow, fit):
+    """Distances of the target's vertices from where both maps bring them, over the square root of the area."""
+    there, back = fit.reverse.on_target, fit.registration.on_target
+    images = SurfacePoints.from_barycentric(follow.y.mesh, back.triangles, back.barycentric).positions
+    corners = follow.x.mesh.triangles[there.triangles]
+    home = np.einsum("kc,kcd->kd", there.barycentric, images[corners])
+    return np.linalg.norm(home - follow.y.mesh.vertices, axis=1) / np.sqrt(follow.y.mesh.area)
+
+
+@pytest.fixture
+def disagreeing(bodies, starts):
+    """A candidate that was registered from either side, but hardly."""
+    x, y = bodies[:2]
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    follow = Follower(x, y, pair.source, pair.target)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("engine.dense.registered_hypotheses._STAGES", (replace(SOFT, weights=(40.0,)),))
+        return follow, run(follow.close_steps(pair.candidates[0]))
+
+
+@pytest.mark.parametrize(("agreed", "more"), [((np.inf,), 0), ((0.0,), 1), ((0.0, 0.0), 2), ((0.0, np.inf), 1)])
+def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monkeypatch):
+    follow, fit = disagreeing
+    monkeypatch.setattr("engine.dense.registered_hypotheses._DISAGREE", agreed)
+    lengths = [ways_there_and_back(follow, fit)]
+    own = Follower.again_steps
+    starts = []
+    monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: starts.append(found) or own(self, c, found))
+    settled, trips = run(follow.settled_steps(fit))
+    assert len(starts) == more
+    assert (settled.registration is fit.registration) == (more == 0)
+    assert settled.candidate is fit.candidate
+    assert settled.score == fit.score
+    lengths.append(ways_there_and_back(follow, settled))
+    # Even if nothing is registered again, the target follows the source; how far they were apart is kept.
+    assert lengths[1].mean() < 0.8 * lengths[0].mean()
+    assert trips[1].mean() > 1.1 * lengths[1].mean()
+    if not more:
+        np.testing.assert_allclose(trips[1], lengths[0])
+
+
+def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monkeypatch):
+    follow, fit = disagreeing
+    monkeypatch.setattr("engine.dense.registered_hypotheses._DISAGREE", (0.0,) * 3)
+    own = Follower.again_steps
+    tried = []
+    monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: tried.append(found) or own(self, c, found))
+    monkeypatch.setattr("engine.dense.registered_hypotheses._NEARER", 0.0)
+    assert run(follow.settled_steps(fit))[0].registration is not fit.registration
+    assert len(tried) == 1
+    # Farther from each other, they are not taken.
+    matches = fit.registration.on_target
+    exchanged = replace(matches, triangles=matches.triangles[::-1])
+    worse = replace(fit.registration, on_target=exchanged)
+    monkeypatch.setattr(Follower, "again_steps", lambda *_: returned((fit.reverse, worse)))
+    assert run(follow.settled_steps(fit))[0].registration is fit.registration
+
+
+def test_confidence_is_lower_where_the_maps_were_apart(bodies, starts):
+    x, y = bodies[:2]
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    along = x.mesh.vertices[:, 0] / np.sqrt(x.mesh.area)
+    far = np.where(along > 0, 0.1, 0.0), np.zeros(y.mesh.vertex_count)
+    sure, doubted = (run(dense_match_steps(replace(pair, trips=trips))) for trips in (None, far))
+    np.testing.assert_array_equal(doubted.source_to_target.positions, sure.source_to_target.positions)
+    own, before = doubted.source_to_target.confidence, sure.source_to_target.confidence
+    assert own[along > 0.2].max() < 0.1
+    np.testing.assert_allclose(own[along < -0.2], before[along < -0.2])
+    np.testing.assert_allclose(doubted.target_to_source.confidence, sure.target_to_source.confidence)
+    assert doubted.quality.confidence < 0.8 * sure.quality.confidence
+    assert doubted.quality.disagreement > sure.quality.disagreement + 0.03
+
+
+@pytest.mark.parametrize(
+    ("few", "expected"), [(0, ([0.375, 0.625] * 2, 0.5)), (10**9, ([0.5] * 2, 0.0))], ids=["fine", "coarse"]
+)
+def test_strain_is_taken_for_as_sparse_and_directed_as_bodies_are_alike(few, expected, bodies, starts, monkeypatch):
+    monkeypatch.setattr("engine.registration.registration._COARSE", few)
+    x, y = bodies[:2]
+    pair = run(registered_pair_steps(x, y, starts[:1], search=False))
+    follow, candidate = Follower(x, y, pair.source, pair.target), pair.candidates[0]
+    powers, directions = [], []
+    own = ElasticSurface.softened
+
+    def recorded(surface, positions, radius, power, constant, *, directed):
+        powers.append(power)
+        directions.append(directed)
+        return own(surface, positions, radius, power, constant, directed=directed)
+
+    monkeypatch.setattr(ElasticSurface, "softened", recorded)
+    run(follow.close_steps(replace(candidate, isometry=0.5)))
+    assert powers == pytest.approx(expected[0])  # there and back
+    assert directions == [expected[1]] * len(powers)
+
+
+def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_starts, monkeypatch):
+    with_soft_score(monkeypatch, "exchanged", 100)
+    closely = []
+    own = Follower.close_steps
+    monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.hypothesis.origin) or own(self, c))
+    pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False))
+    assert closely == ["true"]
+    assert pair.margin == pytest.approx(pair.candidates[1].score - pair.candidates[0].score)
+
+
+@pytest.fixture(scope="module")
+def long_bodies():
+    """A fish and the same bent sideways."""
+    vertices, triangles = fish(12)
+    bent = vertices.copy()
+    bent[:, 1] += 0.3 * vertices[:, 0] ** 2
+    return shape(vertices, triangles), shape(bent, triangles)
+
+
+@pytest.fixture(scope="module")
+def upset(long_bodies):
+    """The fish on the bent one, with its tail upside down, and what follows it."""
+    x, y = long_bodies
+    chosen = x.samples[:20]
+    pair = run(registered_pair_steps(x, y, [start_from(x, y, chosen, chosen)], search=False))
+    right = pair.candidates[0]
+    over = np.where(x.mesh.vertices[:, 0] > 0.65, -1, 1)
+    positions = pair.target.in_unit_size(y.mesh.vertices * np.stack([over**2, over, over], axis=1))
+    registration = run(register_steps(pair.source, pair.target, positions, (SOFT,)))
+    return Follower(x, y, pair.source, pair.target), replace(
+        right, registration=registration, score=right.score + 3, likeness=right.likeness - 3
+    )
+
+
+def misplaced(x, target, registration):
+    """Mean distance of the vertices of the tail from where they belong."""
+    tail = x.mesh.vertices[:, 0] > 0.75
+    return np.linalg.norm(registration.positions[tail] - target.vertices[tail], axis=1).mean()
+
+
+def test_long_bodies_are_turned_back_where_that_is_more_credible(upset):
+    follow, candidate = upset
+    rolled, *others = run(follow.rolled_back_steps(candidate))
+    assert misplaced(follow.x, follow.target, candidate.registration) > 0.1
+    assert misplaced(follow.x, follow.target, rolled.registration) < 0.03
+    assert rolled.score < candidate.score
+    assert rolled.hypothesis is candidate.hypothesis
+    assert [rolled.score, *(o.score for o in others)] == sorted([rolled.score, *(o.score for o in others)])
+
+
+def test_long_bodies_stay_where_turning_them_back_is_less_credible_or_landmarks_hold_them(upset):
+    follow, candidate = upset
+    better = replace(candidate, score=candidate.score - 100)
+    assert run(follow.rolled_back_steps(better))[0] is better
+    held = SurfacePoints.at_vertices(follow.x.mesh, follow.x.samples[:1])
+    ties = Ties.at(follow.x.mesh, held, follow.target.vertices[follow.x.samples[:1]])
+    (kept,) = run(replace(follow, ties=ties).rolled_back_steps(candidate))
+    assert kept is candidate
+
+
+def test_where_a_map_is_looked_for_long_bodies_are_turned_back(long_bodies, upset, monkeypatch):
+    x, y = long_bodies
+    monkeypatch.setattr(Follower, "steps", lambda _self, hypothesis: returned(replace(upset[1], hypothesis=hypothesis)))
+    pair = run(registered_pair_steps(x, y))
+    assert misplaced(x, pair.target, pair.registration) < 0.03
+    assert pair.candidates[0].score < upset[1].score
+
+
+def test_a_way_to_lie_that_is_no_better_at_first_is_registered_closely_as_well(long_bodies, upset, monkeypatch):
+    x, y = long_bodies
+    over = upset[1].registration
+
+    def ways(_self, candidate):
+        return returned([candidate, replace(candidate, registration=over, score=candidate.score + 1)])
+
+    closely = []
+    own = Follower.close_steps
+    monkeypatch.setattr(Follower, "rolled_back_steps", ways)
+    monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.registration) or own(self, c))
+    chosen = x.samples[:20]
+    pair = run(registered_pair_steps(x, y, [start_from(x, y, chosen, chosen)]))
+    assert over in closely
+    assert len(closely) == 2
+    assert misplaced(x, pair.target, pair.registration) < 0.03
+
+
+def test_motion_and_scale_do_not_matter(registered, bodies):
+    x, y = bodies[:2]
+    turn = rotation([1, -1, 2], 2.5)
+    other = shape(0.01 * y.mesh.vertices @ turn.T + [7, 8, 9], y.mesh.triangles)
+    pair = run(registered_pair_steps(x, other))
+    np.testing.assert_allclose(pair.registration.positions, registered.registration.positions @ turn.T, atol=1e-4)
+    assert pair.candidates[0].score == pytest.approx(registered.candidates[0].score, rel=1e-3)
+
+
+def test_progress_rises(watched):
+    fractions = [report.fraction for report in watched[0]]
+    assert fractions == sorted(fractions)
+    assert fractions[0] >= 0
+    assert fractions[-1] == pytest.approx(1)
+
+
+def test_meshes_with_fewer_vertices_than_eigenpairs_are_registered_too():
+    vertices, triangles = icosphere(3)  # 92 vertices
+    vertices = vertices * [1, 1.3, 1.8] + 0.2 * vertices[:, :1] * vertices[:, 1:2]
+    x, y = shape(vertices, triangles), shape(1.1 * vertices, triangles)
+    start = start_from(x, y, x.samples[:20], x.samples[:20])
+    pair = run(registered_pair_steps(x, y, [start], search=False))
+    points = pair.registration.on_target
+    images = SurfacePoints.from_barycentric(y.mesh, points.triangles, points.barycentric).positions
+    assert np.linalg.norm(images / 1.1 - vertices, axis=1).mean() < 0.05 * x.scale
+
+
+def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_little_everywhere_are_not():
+    rng = np.random.default_rng(0)
+    areas, places = rng.uniform(1, 2, 400), rng.standard_normal((400, 3))
+    limb = np.zeros((400, 3))
+    limb[:12, 0] = 0.4
+    offset = np.full(3, 0.02)
+    assert not are_distinct(places, places + offset, areas)
+    assert are_distinct(places, places + limb, areas)
+    assert not are_distinct(places, places + limb * (np.arange(400) < 4)[:, None], areas)
+    assert are_distinct(places, places + 4 * offset, areas)
