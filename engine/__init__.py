@@ -7,7 +7,11 @@ from .fitted_rig import FittedRig
 from .hierarchical.settings import MatchSettings
 from .joint_placement import PlacedJoints, place_joints
 from .local_frames import LocalFrames, bone_frames, surface_frames
-from .matching import match, match_steps
+from .matching.matching import match, match_steps
+from .matching.result import CoarseMatch, Level, MatchResult
+from .matching.retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
+from .matching.symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
+from .matching.symmetry_map import symmetry_map, symmetry_map_steps
 from .mesh.closest_points import ClosestPoints
 from .mesh.polygons import Polygons
 from .mesh.surface_map import SurfaceMap
@@ -15,8 +19,6 @@ from .mesh.surface_points import SurfacePoints
 from .mesh.triangle_mesh import TriangleMesh
 from .morphing import in_between
 from .rest_pose import RestPose, rest_pose
-from .result import CoarseMatch, Level, MatchResult
-from .retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
 from .rig_fit import fit_rig, fit_rig_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .runtime.progress import Progress, run
@@ -26,8 +28,6 @@ from .shapes.shape import Shape
 from .skeleton import Skeleton
 from .skin_weights import carried as carry_weights
 from .symmetrising import Symmetriser
-from .symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
-from .symmetry_map import symmetry_map, symmetry_map_steps
 from .uv_transfer import CarriedUVs, carry_uvs_steps
 from .weight_transfer import CarriedWeights, carry_weights_steps
 from .wrapping import WrappedSurface, wrap_steps

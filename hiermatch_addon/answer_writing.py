@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..engine import Progress
-from ..engine.refinement import distortion_after, placed_by_map
+from ..engine.matching.refinement import distortion_after, placed_by_map
 from ..engine.runtime.progress import run, within
 from . import writing
 from .contents import contents_steps

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
-from ..engine.refinement import distortion_after, placed_by_map
+from ..engine.matching.refinement import distortion_after, placed_by_map
 from ..engine.runtime.progress import within
 from . import writing
 from .access import mesh_of, view_layer_of

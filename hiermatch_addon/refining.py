@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import Progress
-from ..engine.refinement import refine_map_steps
+from ..engine.matching.refinement import refine_map_steps
 from ..engine.runtime.progress import within
 from .access import mesh_of, view_layer_of
 from .answer_writing import following, mapped_contents_steps

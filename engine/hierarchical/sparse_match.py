@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..matching.result import Level
 from ..mesh.surface_points import SurfacePoints
-from ..result import Level
 from ..runtime.progress import Steps, within
 from ..shapes.landmarks import placed_at_vertices
 from ..shapes.surface_distances import symmetric_roots

@@ -21,8 +21,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
+from engine.matching.retrieval import RetrievalSettings, retrieve
 from engine.mesh.triangle_mesh import TriangleMesh
-from engine.retrieval import RetrievalSettings, retrieve
 from engine.runtime.progress import run
 from engine.shapes.shape import Shape
 from tests.benchmarks.symmetry import read_off

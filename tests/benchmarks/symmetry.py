@@ -25,12 +25,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from scipy.spatial import cKDTree
 
-from engine import symmetry_map
 from engine.geometry.geodesics import GeodesicSolver
 from engine.geometry.sampling import farthest_point_sampling
 from engine.hierarchical.settings import MatchSettings
+from engine.matching import symmetry_map
+from engine.matching.symmetry import find_symmetry
 from engine.mesh.triangle_mesh import TriangleMesh
-from engine.symmetry import find_symmetry
 from tests.bodies import mirrored_body
 from tests.shapes import creature
 

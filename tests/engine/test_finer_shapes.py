@@ -9,7 +9,7 @@ import pytest
 from engine import MatchSettings, Shape, SurfacePoints, TriangleMesh, match
 from engine.dense.densify import densify
 from engine.geometry.eigenpairs import Spectrum
-from engine.refinement import refine_map
+from engine.matching.refinement import refine_map
 from engine.runtime.progress import run
 from engine.shapes.proxy import Proxy
 from engine.shapes.shape_preparation import finer_shapes, finer_shapes_steps

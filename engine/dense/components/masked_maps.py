@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ...matching.result import MatchResult
     from ...mesh.triangle_mesh import TriangleMesh
-    from ...result import MatchResult
     from ..densify import DenseMatch
 
 __all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]

@@ -5,16 +5,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .dense.densify import densify_steps
-from .runtime.progress import run, within
-from .shapes.shape import Shape
+from ..dense.densify import densify_steps
+from ..runtime.progress import run, within
+from ..shapes.shape import Shape
 from .symmetry import find_symmetry_steps
 
 if TYPE_CHECKING:
-    from .dense.densify import DenseMatch
-    from .hierarchical.settings import MatchSettings
-    from .mesh.triangle_mesh import TriangleMesh
-    from .runtime.progress import Steps
+    from ..dense.densify import DenseMatch
+    from ..hierarchical.settings import MatchSettings
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..runtime.progress import Steps
 
 __all__ = ["symmetry_map", "symmetry_map_steps"]
 

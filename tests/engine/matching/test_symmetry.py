@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from engine.hierarchical.settings import MatchSettings
+from engine.matching.symmetry import find_symmetry, find_symmetry_steps
 from engine.mesh.triangle_mesh import TriangleMesh
 from engine.runtime.errors import MatchError
 from engine.runtime.progress import run
 from engine.shapes.shape import Shape
-from engine.symmetry import find_symmetry, find_symmetry_steps
 from tests.bodies import mirrored_body
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 

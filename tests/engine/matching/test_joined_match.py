@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, densify, match
-from engine.joined_match import matched_with_pieces_steps
+from engine.matching.joined_match import matched_with_pieces_steps
+from engine.matching.refinement import point_distortions, refine_map
+from engine.matching.shape_matching import MatchTask
 from engine.mesh.surface_points import SurfacePoints
-from engine.refinement import point_distortions, refine_map
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
-from engine.shape_matching import MatchTask
 from engine.shapes.enclosing_surface import separate_limbs
 from tests.limbs import modular_creature
 from tests.messes import together

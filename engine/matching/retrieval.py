@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .hierarchical.descriptors import distance_histograms, earth_movers_distance, squared_differences
-from .hierarchical.hierarchy import level_sizes, refine_steps
-from .hierarchical.sampled_pair import Pair
-from .hierarchical.settings import MatchSettings
-from .hierarchical.sparse_hypotheses import coarse_steps
-from .mesh.surface_points import SurfacePoints
-from .runtime.errors import MatchError, SettingsError
-from .runtime.progress import Progress, Steps, run, within
-from .shapes.shape import Shape
+from ..hierarchical.descriptors import distance_histograms, earth_movers_distance, squared_differences
+from ..hierarchical.hierarchy import level_sizes, refine_steps
+from ..hierarchical.sampled_pair import Pair
+from ..hierarchical.settings import MatchSettings
+from ..hierarchical.sparse_hypotheses import coarse_steps
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.errors import MatchError, SettingsError
+from ..runtime.progress import Progress, Steps, run, within
+from ..shapes.shape import Shape
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Retrieval", "RetrievalSettings", "RetrievedMatch", "retrieve", "retrieve_steps"]
 

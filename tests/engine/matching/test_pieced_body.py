@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import SurfaceMap, SurfacePoints
-from engine.pieced_body import PiecedBody, resized_share, torn_share, without_partner
+from engine.matching.pieced_body import PiecedBody, resized_share, torn_share, without_partner
 from tests.limbs import modular_creature
 
 

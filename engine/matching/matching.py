@@ -8,24 +8,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .hierarchical.settings import MatchSettings
+from ..hierarchical.settings import MatchSettings
+from ..runtime.blas_threads import one_thread
+from ..runtime.errors import MatchError
+from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
+from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.worker import call_helpers
+from ..shapes.prepared_surface import prepared_steps
+from ..shapes.shape import Shape
 from .joined_match import matched_with_pieces_steps
 from .partial_match import has_border, part_matched_steps
-from .runtime.blas_threads import one_thread
-from .runtime.errors import MatchError
-from .runtime.parallel_map import MOST_SENT, here_steps, shared_steps
-from .runtime.progress import Progress, Steps, run, within
-from .runtime.worker import call_helpers
 from .shape_matching import MatchTask, matched_steps
-from .shapes.prepared_surface import prepared_steps
-from .shapes.shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..shapes.prepared_surface import PreparedSurface
     from .result import MatchResult
-    from .shapes.prepared_surface import PreparedSurface
 
     _Unprepared = tuple[TriangleMesh, str, NDArray[np.bool_] | None]
 

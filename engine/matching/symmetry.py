@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .geometry.orientation import orientation_agreement, signed_areas
-from .hierarchical.descriptors import squared_differences, weighted_correlation
-from .hierarchical.exact.branch_and_bound import Exclusion, branch_and_bound_steps
-from .hierarchical.hierarchy import level_sizes, refine_steps
-from .hierarchical.sampled_pair import Pair
-from .hierarchical.settings import MatchSettings
-from .mesh.surface_points import SurfacePoints
-from .runtime.errors import MatchError
-from .runtime.progress import Progress, Steps, run, within
-from .shapes.shape import Shape
+from ..geometry.orientation import orientation_agreement, signed_areas
+from ..hierarchical.descriptors import squared_differences, weighted_correlation
+from ..hierarchical.exact.branch_and_bound import Exclusion, branch_and_bound_steps
+from ..hierarchical.hierarchy import level_sizes, refine_steps
+from ..hierarchical.sampled_pair import Pair
+from ..hierarchical.settings import MatchSettings
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.errors import MatchError
+from ..runtime.progress import Progress, Steps, run, within
+from ..shapes.shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .hierarchical.exact.branch_and_bound import BoundedMatching
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..hierarchical.exact.branch_and_bound import BoundedMatching
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["SymmetryResult", "find_symmetry", "find_symmetry_steps"]
 

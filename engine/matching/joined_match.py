@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..runtime.errors import MatchError
+from ..runtime.progress import within
+from ..shapes.enclosing_surface import separate_limbs, with_limbs_steps
 from .partial_match import has_border
 from .pieced_body import PiecedBody, resized_share, torn_share, without_partner
-from .runtime.errors import MatchError
-from .runtime.progress import within
 from .shape_matching import matched_steps
-from .shapes.enclosing_surface import separate_limbs, with_limbs_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..runtime.progress import Steps
+    from ..shapes.shape import Shape
     from .result import MatchResult
-    from .runtime.progress import Steps
     from .shape_matching import MatchTask
-    from .shapes.shape import Shape
 
 __all__ = ["matched_with_pieces_steps"]
 

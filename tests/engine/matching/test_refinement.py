@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import MatchError, SurfaceMap, SurfacePoints, TriangleMesh
-from engine.refinement import distortion_after, placed_by_map, point_distortions, refine_map
+from engine.matching.refinement import distortion_after, placed_by_map, point_distortions, refine_map
 from tests.shapes import creature, icosphere, posed
 
 

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, densify, match, match_steps
-from engine.covered_parts import CoveredPart
-from engine.partial_match import has_border, part_matched_steps
-from engine.refinement import refine_map
+from engine.matching.overlap_region import CoveredPart
+from engine.matching.partial_match import has_border, part_matched_steps
+from engine.matching.refinement import refine_map
+from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
-from engine.shape_matching import MatchTask, matched_steps
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -128,7 +128,7 @@ def test_with_a_piece_that_is_of_no_use_the_first_match_stays(useless, whole, ha
         return [CoveredPart(covered, -100.0)]
         yield
 
-    monkeypatch.setattr("engine.partial_match.covered_parts_steps", found_steps)
+    monkeypatch.setattr("engine.matching.partial_match.covered_parts_steps", found_steps)
     assert run(part_matched_steps(first, x, y, task)) is first
     assert asked
 

@@ -10,29 +10,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .dense.dense_hypotheses import LandmarkStart, map_domains
-from .dense.dense_registration import EIGENPAIRS, registered_pair_steps
-from .dense.densify import MEASURED, DenseMatch, dense_match_steps
-from .dense.initial_maps import RoughSearch
-from .hierarchical.hierarchy import refine_steps
-from .hierarchical.sampled_pair import Pair
-from .hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
-from .mesh.surface_points import SurfacePoints
+from ..dense.dense_hypotheses import LandmarkStart, map_domains
+from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
+from ..dense.densify import MEASURED, DenseMatch, dense_match_steps
+from ..dense.initial_maps import RoughSearch
+from ..hierarchical.hierarchy import refine_steps
+from ..hierarchical.sampled_pair import Pair
+from ..hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.errors import MatchError
+from ..runtime.progress import within
+from ..shapes.genus_reduction import evened_steps
+from ..shapes.landmarks import locate_landmarks, placed_at_vertices
+from ..shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
+from ..shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .result import CoarseMatch, MatchResult
-from .runtime.errors import MatchError
-from .runtime.progress import within
-from .shapes.genus_reduction import evened_steps
-from .shapes.landmarks import locate_landmarks, placed_at_vertices
-from .shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
-from .shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .hierarchical.settings import MatchSettings
-    from .runtime.progress import Steps
-    from .shapes.landmarks import Landmarks
-    from .shapes.shape import Shape
+    from ..hierarchical.settings import MatchSettings
+    from ..runtime.progress import Steps
+    from ..shapes.landmarks import Landmarks
+    from ..shapes.shape import Shape
 
 __all__ = ["Clock", "MatchTask", "matched_steps"]
 

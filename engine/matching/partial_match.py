@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .covered_parts import continued, covered_parts_steps
-from .dense.components.masked_maps import share_of, with_piece_only
-from .repair.clean_surface import StandIn
-from .runtime.errors import MatchError
-from .runtime.progress import within
+from ..dense.components.masked_maps import share_of, with_piece_only
+from ..repair.clean_surface import StandIn
+from ..runtime.errors import MatchError
+from ..runtime.progress import within
+from ..shapes.enclosing_surface import with_limbs_steps
+from ..shapes.shape import Shape
+from .overlap_region import continued, covered_parts_steps
 from .shape_matching import matched_steps
-from .shapes.enclosing_surface import with_limbs_steps
-from .shapes.shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ..runtime.progress import Steps
     from .result import MatchResult
-    from .runtime.progress import Steps
     from .shape_matching import MatchTask
 
 __all__ = ["has_border", "part_matched_steps"]

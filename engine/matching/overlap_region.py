@@ -11,24 +11,24 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from .dense.dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
-from .dense.dense_registration import EIGENPAIRS
-from .dense.missing_parts import with_partner
-from .dense.registered_hypotheses import Follower
-from .dense.spectral_domain import MapDomain
-from .mesh.surface_points import SurfacePoints
-from .mesh.triangle_mesh import TriangleMesh
-from .part_search import part_placements_steps
-from .registration.deformable import DeformableSurface
-from .runtime.errors import MatchError
-from .runtime.parallel_map import shared_steps
-from .runtime.progress import Steps, within
-from .shapes.shape import Shape
+from ..dense.dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
+from ..dense.dense_registration import EIGENPAIRS
+from ..dense.missing_parts import with_partner
+from ..dense.registered_hypotheses import Follower
+from ..dense.spectral_domain import MapDomain
+from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..registration.deformable import DeformableSurface
+from ..runtime.errors import MatchError
+from ..runtime.parallel_map import shared_steps
+from ..runtime.progress import Steps, within
+from ..shapes.shape import Shape
+from .partial_placement import part_placements_steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.surface_map import SurfaceMap
+    from ..mesh.surface_map import SurfaceMap
 
 __all__ = ["CoveredPart", "best_and_rivals", "continued", "covered_parts_steps"]
 

@@ -7,28 +7,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .dense.components.masked_maps import piece_of, with_pieces_only
-from .dense.dense_registration import EIGENPAIRS, RegisteredPair
-from .dense.densify import dense_match_steps
-from .mesh.surface_points import SurfacePoints
-from .registration.deformable import DeformableSurface
-from .registration.positional_constraints import Ties
-from .registration.registration import FINE, Stage, register_steps, restarted_steps
-from .runtime.errors import MatchError
-from .runtime.progress import run, within
-from .shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
-from .shapes.landmarks import locate_landmarks
-from .shapes.reflection import reflected_mesh
-from .shapes.shape import Shape
-from .shapes.shape_preparation import finer_shapes
+from ..dense.components.masked_maps import piece_of, with_pieces_only
+from ..dense.dense_registration import EIGENPAIRS, RegisteredPair
+from ..dense.densify import dense_match_steps
+from ..mesh.surface_points import SurfacePoints
+from ..registration.deformable import DeformableSurface
+from ..registration.positional_constraints import Ties
+from ..registration.registration import FINE, Stage, register_steps, restarted_steps
+from ..runtime.errors import MatchError
+from ..runtime.progress import run, within
+from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
+from ..shapes.landmarks import locate_landmarks
+from ..shapes.reflection import reflected_mesh
+from ..shapes.shape import Shape
+from ..shapes.shape_preparation import finer_shapes
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .dense.densify import DenseMatch
-    from .mesh.surface_map import SurfaceMap
-    from .mesh.triangle_mesh import TriangleMesh
-    from .runtime.progress import Steps
+    from ..dense.densify import DenseMatch
+    from ..mesh.surface_map import SurfaceMap
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..runtime.progress import Steps
 
 __all__ = ["distortion_after", "placed_by_map", "point_distortions", "refine_map", "refine_map_steps"]
 

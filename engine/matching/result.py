@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from .dense.quality import MatchQuality
-    from .mesh.surface_map import SurfaceMap
-    from .mesh.surface_points import SurfacePoints
+    from ..dense.quality import MatchQuality
+    from ..mesh.surface_map import SurfaceMap
+    from ..mesh.surface_points import SurfacePoints
 
 __all__ = ["CoarseMatch", "Level", "MatchResult"]
 

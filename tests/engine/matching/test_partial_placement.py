@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
-from engine.part_search import part_placements_steps
+from engine.matching.partial_placement import part_placements_steps
 from engine.runtime.progress import run
 from tests.shapes import compacted, creature
 

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
+from engine.matching.retrieval import RetrievalSettings, retrieve, retrieve_steps
 from engine.mesh.triangle_mesh import TriangleMesh
-from engine.retrieval import RetrievalSettings, retrieve, retrieve_steps
 from engine.runtime.errors import MatchError, SettingsError
 from engine.runtime.progress import run
 from engine.shapes.shape import Shape

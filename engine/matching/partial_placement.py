@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .dense.extremity_search import beam_matchings
-from .dense.lifted_matchings import squared_differences
-from .geometry.orientation import signed_areas
-from .runtime.progress import Progress
+from ..dense.extremity_search import beam_matchings
+from ..dense.lifted_matchings import squared_differences
+from ..geometry.orientation import signed_areas
+from ..runtime.progress import Progress
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .runtime.progress import Steps
-    from .shapes.shape import Shape
+    from ..runtime.progress import Steps
+    from ..shapes.shape import Shape
 
 __all__ = ["PartPlacement", "part_placements_steps"]
 

@@ -13,8 +13,8 @@ from scipy.spatial import cKDTree
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .mesh.surface_map import SurfaceMap
-    from .mesh.triangle_mesh import TriangleMesh
+    from ..mesh.surface_map import SurfaceMap
+    from ..mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["PiecedBody", "resized_share", "torn_share", "without_partner"]
 
