@@ -3,10 +3,7 @@
 
 from .dense.densify import DenseMatch, densify, densify_steps
 from .dense.quality import MatchQuality
-from .fitted_rig import FittedRig
 from .hierarchical.settings import MatchSettings
-from .joint_placement import PlacedJoints, place_joints
-from .local_frames import LocalFrames, bone_frames, surface_frames
 from .matching.matching import match, match_steps
 from .matching.result import CoarseMatch, Level, MatchResult
 from .matching.retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
@@ -17,20 +14,23 @@ from .mesh.polygons import Polygons
 from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints
 from .mesh.triangle_mesh import TriangleMesh
-from .morphing import in_between
-from .rest_pose import RestPose, rest_pose
-from .rig_fit import fit_rig, fit_rig_steps
+from .retarget.morphing import in_between
+from .retarget.rig.fitted_rig import FittedRig
+from .retarget.rig.joint_placement import PlacedJoints, place_joints
+from .retarget.rig.rest_pose import RestPose, rest_pose
+from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
+from .retarget.rig.skeleton import Skeleton
+from .retarget.values.deformation_gradients import LocalFrames, bone_frames, surface_frames
+from .retarget.values.shape_key_transfer import carry_offsets_steps
+from .retarget.values.symmetrising import Symmetriser
+from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
+from .retarget.weights.skin_weights import carried as carry_weights
+from .retarget.weights.weight_transfer import CarriedWeights, carry_weights_steps
+from .retarget.wrapping import WrappedSurface, wrap_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .runtime.progress import Progress, run
 from .runtime.worker import use_processes
-from .shape_key_transfer import carry_offsets_steps
 from .shapes.shape import Shape
-from .skeleton import Skeleton
-from .skin_weights import carried as carry_weights
-from .symmetrising import Symmetriser
-from .uv_transfer import CarriedUVs, carry_uvs_steps
-from .weight_transfer import CarriedWeights, carry_weights_steps
-from .wrapping import WrappedSurface, wrap_steps
 
 __all__ = [
     "CarriedUVs",

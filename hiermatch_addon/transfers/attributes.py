@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine.attribute_transfer import Crossing, carry_values_steps
-from ...engine.corner_transfer import carry_normals
-from ...engine.face_transfer import carry_face_values
-from ...engine.local_frames import surface_frames
+from ...engine.retarget.values.attribute_transfer import Crossing, carry_values_steps
+from ...engine.retarget.values.corner_transfer import carry_normals
+from ...engine.retarget.values.deformation_gradients import surface_frames
+from ...engine.retarget.values.face_transfer import carry_face_values
 from ...engine.runtime.progress import Progress, within
 from ..access import mesh_of
 from ..attribute_choice import SEAMS, choose_attributes, taken_note
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.attribute_transfer import Domain
     from ...engine.mesh.polygons import Polygons
+    from ...engine.retarget.values.attribute_transfer import Domain
     from ...engine.runtime.progress import Steps
     from ..attribute_io import AttributeLayout
     from ..transfer import Passage

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ...engine.joint_placement import place_joints
-from ...engine.rest_pose import is_posed, rest_pose
+from ...engine.retarget.rig.joint_placement import place_joints
+from ...engine.retarget.rig.rest_pose import is_posed, rest_pose
 from ...engine.runtime.progress import Progress
 from ..access import view_layer_of
 from ..armature_copy import copy_armature, move_joints, repoint
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.joint_placement import PlacedJoints
-    from ...engine.rest_pose import RestPose
+    from ...engine.retarget.rig.joint_placement import PlacedJoints
+    from ...engine.retarget.rig.rest_pose import RestPose
     from ...engine.runtime.progress import Steps
     from ..transfer import Passage
     from .rig_options import RigSettings

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine.local_frames import bone_frames, surface_frames
-from ...engine.shape_key_transfer import carry_offsets_steps
+from ...engine.retarget.values.deformation_gradients import bone_frames, surface_frames
+from ...engine.retarget.values.shape_key_transfer import carry_offsets_steps
 from ..armatures import find_armature
 from ..errors import ObjectError
 from ..key_actions import share_key_action

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...engine import Progress, symmetry_map_steps
+from ...engine.retarget.values.symmetrising import Symmetriser
 from ...engine.runtime.progress import within
-from ...engine.symmetrising import Symmetriser
 from ..access import mesh_of, view_layer_of
 from ..attribute_io import attribute_layouts, read_attribute, write_attribute
 from ..deform_layer import check_weights_writable, read_weights, write_weights

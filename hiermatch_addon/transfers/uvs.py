@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...engine.face_places import FacePlaces
+from ...engine.retarget.values.face_correspondence import FacePlaces
+from ...engine.retarget.values.uv_transfer import carry_uvs_steps
 from ...engine.runtime.progress import Progress, within
-from ...engine.uv_transfer import carry_uvs_steps
 from ..access import mesh_of
 from ..attribute_io import (
     AttributeLayout,
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...engine.mesh.polygons import Polygons
+    from ...engine.retarget.values.uv_transfer import CarriedUVs
     from ...engine.runtime.progress import Steps
-    from ...engine.uv_transfer import CarriedUVs
     from ..transfer import Passage
     from .uvs_options import UVSettings
 

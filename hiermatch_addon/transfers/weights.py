@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...engine.skin_weights import row_sums
-from ...engine.weight_transfer import Columns, carry_weights_steps, put_in
+from ...engine.retarget.weights.skin_weights import row_sums
+from ...engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
 from .. import mesh_io
 from ..access import mesh_of
 from ..deform_layer import check_weights_writable, read_weights, write_weights

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine.morphing import in_between
+from ...engine.retarget.morphing import in_between
+from ...engine.retarget.wrapping import kept_in_place, wrap_steps
 from ...engine.runtime.progress import Progress, within
-from ...engine.wrapping import kept_in_place, wrap_steps
 from .. import writing
 from ..access import mesh_of
 from ..mesh_io import vertex_positions

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 from hiermatch.engine import FittedRig, SurfaceMap
-from hiermatch.engine.bone_fit import fit_bones
+from hiermatch.engine.retarget.rig.bone_fit import fit_bones
 from hiermatch.hiermatch_addon.armatures import find_armature, read_rig
 from hiermatch.hiermatch_addon.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.transfer import Passage

@@ -16,8 +16,8 @@ from engine import (
     run,
     surface_frames,
 )
-from engine.bone_fit import skinned
-from tests.engine.test_bone_fit import pose
+from engine.retarget.rig.bone_fit import skinned
+from tests.engine.retarget.rig.test_bone_fit import pose
 from tests.shapes import creature, permuted
 from tests.skeletons import CONTROLS, creature_bones, creature_weights
 

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bones from a deformation: the transforms with which skinning explains best where the vertices of a body went."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.linalg import splu
+
+from ...geometry.procrustes import nearest_rotations
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .skeleton import Skeleton
+
+__all__ = ["BoneTransforms", "fit_bones", "skinned"]
+
+_ROUNDS = 12
+"""Rounds of finding transforms, their nearest similarities and the trust in each vertex in turn."""
+
+_SIMILARITY = 1.0
+"""How much a transform that is no similarity counts, against the second moment of the vertices that it moves."""
+
+_JOINT = 3.0
+"""How much the distance of the two ends at a joint counts, against the mass of the lighter bone there."""
+
+_LEAST_MASS = 1e-4
+"""Least part of the body's area with which a joint counts."""
+
+_WEIGHTLESS = 1e-3
+"""A bone that moves less than this part of a vertex altogether moves none."""
+
+_DOUBT = 0.005
+"""Residual, in units of the root of the target's area, at which a vertex counts half."""
+
+_ROOT_OF_AREA = 3.0
+"""Root of a body's area against the root mean squared distance of its surface from its middle: 3 to 4 for bodies."""
+
+_LENIENT = 4.0
+"""How many times as much the first round forgives: the first transforms are rough everywhere."""
+
+_MOST_SCALE = 2.5
+"""Largest factor between the scale of a bone and that of the whole body."""
+
+_COMMON_LENGTH, _COMMON_WIDTH = 0.5, 0.1
+"""How far a bone's stretch along itself, and that across, is drawn to the body's in each round."""
+
+
+@dataclass(frozen=True, eq=False)
+class BoneTransforms:
+    """One affine transform per bone, b of them; `FittedRig` tells what they are.
+
+    Attributes
+    ----------
+    linear : (b, 3, 3) array of float
+        Linear parts.
+    translations : (b, 3) array of float
+        Translations.
+    rotations : (b, 3, 3) array of float
+        The nearest rotations.
+    scales : (b,) array of float
+        Mean scales.
+    posed : (n, 3) array of float
+        The vertices, moved by their bones.
+    """
+
+    linear: NDArray[np.float64]
+    translations: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    scales: NDArray[np.float64]
+    posed: NDArray[np.float64]
+
+
+def _similarities(matrices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Find the nearest rotation to each matrix (k, 3, 3), and its mean scale along the axes, (k,)."""
+    rotations = nearest_rotations(matrices)
+    return rotations, np.einsum("kij,kij->k", rotations, matrices) / 3
+
+
+def fit_bones(
+    vertices: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    areas: NDArray[np.float64],
+    weights: csr_array,
+    skeleton: Skeleton,
+) -> BoneTransforms:
+    r"""Find the transforms of all bones at once.
+
+    Skinning moves a vertex :math:`v_i` to :math:`\sum_b w_{ib} (M_b v_i + t_b)`.  The transforms are those that bring
+    all vertices nearest to where they went, in least squares with robust weights, while parent and child agree at
+    each joint and each :math:`M_b` is close to a similarity: everything is linear but the similarities, which are
+    found in turn with the transforms.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float
+        The body at rest.
+    positions : (n, 3) array of float
+        Where its vertices went.
+    areas : (n,) array of float
+        How much each vertex counts; 0 for one whose position is not known.
+    weights : (n, b) csr_array of float
+        How much each bone moves each vertex; rows sum to one or are empty.
+    skeleton : Skeleton
+        The bones, b.
+
+    Returns
+    -------
+    BoneTransforms
+        A bone that moves nothing follows its nearest ancestor that does, or else the whole body.
+    """
+    areas = np.where(np.asarray(weights.sum(axis=1)).ravel() > 0, areas, 0.0)
+    areas = areas / areas.sum()
+    active = np.flatnonzero(areas @ weights > _WEIGHTLESS * areas[areas > 0].min())
+    leaders = _leaders(skeleton, active)
+    above = np.where(skeleton.parents[active] >= 0, leaders[skeleton.parents[active]], len(active))
+    joints = _joints(skeleton, active, above)
+    axes = skeleton.tails[active] - skeleton.heads[active]
+    system = _System(vertices, positions, areas, csr_array(weights[:, active]), joints, axes=axes)
+    linear, translations = system.solved()
+    whole = _similarity(vertices, positions, areas)
+    linear = np.concatenate([linear, whole[0][None]])[leaders]
+    translations = np.concatenate([translations, whole[1][None]])[leaders]
+    rotations, scales = _similarities(linear)
+    posed = skinned(vertices, weights, linear, translations)
+    loose = np.asarray(weights.sum(axis=1)).ravel() <= 0
+    posed[loose] = vertices[loose] @ whole[0].T + whole[1]
+    return BoneTransforms(linear, translations, rotations, scales, posed)
+
+
+def skinned(
+    vertices: NDArray[np.float64],
+    weights: csr_array,
+    linear: NDArray[np.float64],
+    translations: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Move vertices (n, 3) by bones with the weights (n, b): linear blend skinning."""
+    blended = (weights @ linear.reshape(-1, 9)).reshape(-1, 3, 3)
+    return np.einsum("nij,nj->ni", blended, vertices) + weights @ translations
+
+
+def _leaders(skeleton: Skeleton, active: NDArray[np.int64]) -> NDArray[np.int64]:
+    """For each bone the place in `active` of itself or its nearest active ancestor; one past the end if none, (b,)."""
+    leaders = np.full(len(skeleton), len(active))
+    place = np.full(len(skeleton), -1)
+    place[active] = np.arange(len(active))
+    for bone in skeleton.order:
+        if place[bone] >= 0:
+            leaders[bone] = place[bone]
+        elif skeleton.parents[bone] >= 0:
+            leaders[bone] = leaders[skeleton.parents[bone]]
+    return leaders
+
+
+@dataclass(frozen=True, eq=False)
+class _Joints:
+    """Where active bones hang on their nearest active ancestors: numbers (j,) of both, and places (j, 3) at rest."""
+
+    child: NDArray[np.int64]
+    above: NDArray[np.int64]
+    places: NDArray[np.float64]
+
+
+def _joints(skeleton: Skeleton, active: NDArray[np.int64], above: NDArray[np.int64]) -> _Joints:
+    """Find the joints of active bones, of which `above` says for each on which other one it hangs."""
+    child = np.flatnonzero(above < len(active))
+    return _Joints(child, above[child], skeleton.heads[active[child]])
+
+
+def _similarity(
+    vertices: NDArray[np.float64], positions: NDArray[np.float64], areas: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Find the similarity that brings the body nearest to where it went: linear part (3, 3) and translation (3,)."""
+    share = areas / areas.sum()
+    here, there = share @ vertices, share @ positions
+    before, after = vertices - here, positions - there
+    covariance = (share[:, None] * after).T @ before
+    left, stretch, right = np.linalg.svd(covariance)
+    sign = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right)) or 1.0])
+    spread = max(float(share @ np.square(before).sum(axis=1)), np.finfo(float).tiny)
+    linear = (left * sign) @ right * float((stretch * sign).sum()) / spread
+    return linear, there - linear @ here
+
+
+class _System:
+    """The least squares problem of k bones that move vertices."""
+
+    def __init__(
+        self,
+        vertices: NDArray[np.float64],
+        positions: NDArray[np.float64],
+        areas: NDArray[np.float64],
+        weights: csr_array,
+        joints: _Joints,
+        *,
+        axes: NDArray[np.float64],
+    ) -> None:
+        lengths = np.linalg.norm(axes, axis=1, keepdims=True)
+        self._axes = np.where(lengths > 0, axes / np.maximum(lengths, np.finfo(float).tiny), [0.0, 0.0, 1.0])
+        self._positions, self._areas, count = positions, areas, weights.shape[1]
+        # Around the middle of the body and in its size, so that the four columns of a bone are of one magnitude.
+        self._middle = areas @ vertices
+        self._size = float(np.sqrt(areas @ np.square(vertices - self._middle).sum(axis=1)))
+        local = (vertices - self._middle) / self._size
+        self._lengths = float(np.sqrt(areas @ np.square(positions - areas @ positions).sum(axis=1)))
+        entries = coo_array(weights)
+        ends = np.concatenate([local, np.ones((len(local), 1))], axis=1)  # (n, 4)
+        columns = (4 * entries.col[:, None] + np.arange(4)).ravel()
+        rows = np.repeat(entries.row, 4)
+        values = (entries.data[:, None] * ends[entries.row]).ravel()
+        self._design = csr_array((values, (rows, columns)), shape=(len(vertices), 4 * count))
+        self._mass = mass = areas @ weights
+        self._ties = self._tied(joints, mass)
+        moments = np.empty(count)
+        self._start = np.empty((count, 3, 3))
+        dense = weights.tocsc()
+        for bone in range(count):
+            part = slice(dense.indptr[bone], dense.indptr[bone + 1])
+            moved, weight = dense.indices[part], dense.data[part]
+            share = areas[moved] * weight
+            centre = share @ local[moved] / max(share.sum(), np.finfo(float).tiny)
+            moments[bone] = share @ np.square(local[moved] - centre).sum(axis=1) / 3
+            sharp = np.maximum(share * weight, np.finfo(float).tiny)
+            self._start[bone] = _similarity(local[moved], positions[moved], sharp)[0]
+        self._pull = np.zeros((count, 4))
+        self._pull[:, :3] = _SIMILARITY * np.maximum(moments, _LEAST_MASS**2)[:, None]
+
+    def _tied(self, joints: _Joints, mass: NDArray[np.float64]) -> csr_array:
+        """Weighted rows that say that both bones of a joint take it to the same place, times their transpose."""
+        child, above, count = joints.child, joints.above, len(joints.child)
+        ends = np.concatenate([(joints.places - self._middle) / self._size, np.ones((count, 1))], axis=1)
+        rows = np.repeat(np.arange(count), 8)
+        columns = np.concatenate([4 * child[:, None] + np.arange(4), 4 * above[:, None] + np.arange(4)], axis=1)
+        values = np.concatenate([ends, -ends], axis=1)
+        ties = csr_array((values.ravel(), (rows, columns.ravel())), shape=(count, 4 * len(mass)))
+        strength = _JOINT * np.maximum(np.minimum(mass[child], mass[above]), _LEAST_MASS)
+        return csr_array(ties.T @ diags_array(strength) @ ties)
+
+    def solved(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Find the transforms of the bones: linear parts (k, 3, 3) and translations (k, 3)."""
+        similar, trust, doubt = self._start, self._areas, _DOUBT * _ROOT_OF_AREA * self._lengths
+        count = len(similar)
+        unknowns = np.zeros((4 * count, 3))
+        for number in range(_ROUNDS):
+            weighted = csr_array(self._design.T @ diags_array(trust))
+            pull = diags_array(self._pull.ravel() + np.finfo(float).eps)
+            wanted = np.concatenate([similar.transpose(0, 2, 1), np.zeros((count, 1, 3))], axis=1).reshape(-1, 3)
+            right = weighted @ self._positions + self._pull.ravel()[:, None] * wanted
+            unknowns = splu((weighted @ self._design + self._ties + pull).tocsc()).solve(right)
+            similar = self._stretched(unknowns.reshape(count, 4, 3)[:, :3].transpose(0, 2, 1))
+            missed = np.linalg.norm(self._design @ unknowns - self._positions, axis=1)
+            forgiving = doubt * max(1.0, _LENIENT * (1 - 2 * number / _ROUNDS))
+            trust = self._areas / (1 + (missed / forgiving) ** 2)
+        blocks = unknowns.reshape(count, 4, 3)
+        linear = blocks[:, :3].transpose(0, 2, 1) / self._size
+        return linear, blocks[:, 3] - linear @ self._middle
+
+    def _stretched(self, linear: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Find rotations with a stretch along the bone and one across near linear parts (k, 3, 3).
+
+        A limb that is thicker need not be longer: a similarity would make it so, and its points would slide along it.
+        Neither stretch is much unlike that of the rest of the body.
+        """
+        rotations = nearest_rotations(linear)
+        strain = np.einsum("kji,kjl->kil", rotations, linear)
+        along = np.einsum("ki,kij,kj->k", self._axes, strain, self._axes)
+        across = (np.trace(strain, axis1=1, axis2=2) - along) / 2
+        along, across = self._usual(along, _COMMON_LENGTH), self._usual(across, _COMMON_WIDTH)
+        outer = self._axes[:, :, None] * self._axes[:, None, :]
+        stretch = across[:, None, None] * np.eye(3) + (along - across)[:, None, None] * outer
+        return rotations @ stretch
+
+    def _usual(self, scales: NDArray[np.float64], part: float) -> NDArray[np.float64]:
+        """Draw scales (k,) of bones to that of the body."""
+        logarithms = np.log(np.maximum(scales, np.finfo(float).tiny))
+        common = self._mass @ logarithms / self._mass.sum()
+        most = np.log(_MOST_SCALE)
+        usual: NDArray[np.float64] = np.exp(common + np.clip((1 - part) * (logarithms - common), -most, most))
+        return usual

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which bones carry which joints of a rig into another body, also those of bones that move no vertex.
+
+Joints at one place stay at one place: a chain stays connected, and a control that stands at an ankle stands at the
+ankle.  So joints are grouped by their place first, and each group is carried as one point, by one or several bones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...runtime.errors import RigError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from .fitted_rig import FittedRig
+    from .skeleton import Skeleton
+
+__all__ = ["JointCarriers", "carriers_of", "moved_areas", "nearest_on_bones"]
+
+_SAME_PLACE = 1e-4
+"""Joints closer than this, in units of the skeleton's extent, are at one place."""
+
+_MOVES_NOTHING = 1e-3
+"""A bone whose weights sum up to less than this part of a vertex moves nothing."""
+
+_MOST_OF_BODY = 0.5
+"""A bone above more than this part of the body turns with the whole of it."""
+
+_NEARNESS = 4
+"""With what power of the distance the influence of a bone on a control beside it falls."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointCarriers:
+    """Which bones carry which joints.
+
+    Attributes
+    ----------
+    places : (2 b,) array of int
+        For the heads of all bones, and then their tails, the number of their place.
+    of_places : (k, b) array of float
+        For each place the bones that carry it, in parts that sum to one.
+    of_turns : (b, b) array of float
+        For each bone the bones that it turns with, in parts that sum to one: itself, if it moves vertices.
+    moving : (b,) array of bool
+        Which bones move vertices.
+    loose : (b,) array of bool
+        Which bones move no vertices and end where no other bone begins or ends: they stay as long as they are.
+    anchors : (b,) array of int
+        For a bone above most of the body that itself moves no vertices and shares no joint with one that does: the
+        heaviest of those below that do; -1 for all others.
+    above : (b,) array of int
+        The nearest bone above each that moves vertices; -1 if there is none.
+    """
+
+    places: NDArray[np.int64]
+    of_places: NDArray[np.float64]
+    of_turns: NDArray[np.float64]
+    moving: NDArray[np.bool_]
+    loose: NDArray[np.bool_]
+    anchors: NDArray[np.int64]
+    above: NDArray[np.int64]
+
+
+def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
+    """Find which bones carry which joints, for a rig of b bones that moves the body `source`.
+
+    Raises
+    ------
+    RigError
+        If no bone moves a vertex, or the rig moves another body.
+    """
+    skeleton, count = rig.skeleton, len(rig.skeleton)
+    masses = moved_areas(rig, source)
+    moving = masses > 0
+    places = _places(skeleton)
+    above = _moving_above(skeleton, moving)
+    of_turns = np.zeros((count, count))
+    anchors = np.full(count, -1)
+    below = _sums_below(skeleton, masses)
+    for bone in range(count):
+        if moving[bone]:
+            of_turns[bone, bone] = 1
+            continue
+        leader = _joint_leader(skeleton, places, moving, bone)
+        leader = above[bone] if leader < 0 else leader
+        if leader >= 0:
+            of_turns[bone, leader] = 1
+            continue
+        of_turns[bone] = _nearness(skeleton, moving, skeleton.heads[bone])
+        if below[bone] > _MOST_OF_BODY * masses.sum():
+            anchors[bone] = _heaviest_moving(skeleton, moving, below, bone)
+    of_places = np.zeros((places.max() + 1, count))
+    heads, tails = np.split(places, 2)
+    for bone in np.flatnonzero(moving):
+        of_places[[heads[bone], tails[bone]], bone] = 1
+        if above[bone] >= 0:
+            of_places[heads[bone], above[bone]] = 1
+    for ends in (heads, tails):
+        free = ~of_places.any(axis=1)[ends] & ~moving
+        np.add.at(of_places, ends[free], of_turns[free])
+    loose = ~moving & (np.bincount(places)[tails] == 1)
+    return JointCarriers(
+        places, of_places / of_places.sum(axis=1, keepdims=True), of_turns, moving, loose, anchors, above
+    )
+
+
+def moved_areas(rig: FittedRig, source: TriangleMesh) -> NDArray[np.float64]:
+    """Sum the area that each bone moves, (b,); zero for those that move nothing to speak of."""
+    if source.vertex_count != rig.weights.shape[0]:
+        raise RigError(f"The rig moves {rig.weights.shape[0]} vertices, but the body has {source.vertex_count}.")
+    moving = np.asarray(rig.weights.sum(axis=0)).ravel() > _MOVES_NOTHING
+    masses = np.where(moving, np.maximum(source.vertex_areas @ rig.weights, np.finfo(float).tiny), 0.0)
+    if not moving.any():
+        raise RigError("No bone of the rig moves a vertex.")
+    return masses
+
+
+def nearest_on_bones(skeleton: Skeleton, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Find the point of each bone that is nearest to a point, (b, 3)."""
+    axes = skeleton.tails - skeleton.heads
+    squares = np.maximum(np.square(axes).sum(axis=1), np.finfo(float).tiny)
+    along = ((point - skeleton.heads) * axes).sum(axis=1) / squares
+    return skeleton.heads + along.clip(0, 1)[:, None] * axes
+
+
+def _places(skeleton: Skeleton) -> NDArray[np.int64]:
+    """Give each place of heads and then tails a number, (2 b,)."""
+    joints = np.concatenate([skeleton.heads, skeleton.tails])
+    extent = float(np.linalg.norm(np.ptp(joints, axis=0)))
+    pairs = cKDTree(joints).query_pairs(_SAME_PLACE * extent, output_type="ndarray")
+    # The two ends of a very short bone are not one place.
+    pairs = pairs[pairs[:, 1] - pairs[:, 0] != len(skeleton)]
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(joints), len(joints)))
+    return connected_components(graph, directed=False)[1].astype(np.int64)
+
+
+def _moving_above(skeleton: Skeleton, moving: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """For each bone its nearest ancestor that moves vertices, -1 if there is none, (b,)."""
+    found = np.full(len(skeleton), -1)
+    for bone in skeleton.order:
+        parent = skeleton.parents[bone]
+        if parent >= 0:
+            found[bone] = parent if moving[parent] else found[parent]
+    return found
+
+
+def _sums_below(skeleton: Skeleton, masses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sum the masses of each bone and all that hang on it, (b,)."""
+    sums = masses.copy()
+    for bone in skeleton.order[::-1]:
+        if skeleton.parents[bone] >= 0:
+            sums[skeleton.parents[bone]] += sums[bone]
+    return sums
+
+
+def _joint_leader(skeleton: Skeleton, places: NDArray[np.int64], moving: NDArray[np.bool_], bone: int) -> int:
+    """Find the moving bone that starts where a bone starts, or else that ends there; -1 if there is none.
+
+    Of several, the one whose other end is nearest to the bone's own.
+    """
+    heads, tails = np.split(places, 2)
+    for ends, others in ((heads, skeleton.tails), (tails, skeleton.heads)):
+        found = np.flatnonzero(moving & (ends == heads[bone]))
+        if len(found):
+            return int(found[np.linalg.norm(others[found] - skeleton.tails[bone], axis=1).argmin()])
+    return -1
+
+
+def _heaviest_moving(skeleton: Skeleton, moving: NDArray[np.bool_], below: NDArray[np.float64], bone: int) -> np.int64:
+    """Go down from a bone, always to the heaviest child, until a bone moves vertices."""
+    found = np.int64(bone)
+    while not moving[found]:
+        children = skeleton.children(int(found))
+        found = children[below[children].argmax()]
+    return found
+
+
+def _nearness(skeleton: Skeleton, moving: NDArray[np.bool_], point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Share one among the bones, (b,), by how near each moving bone is to a point."""
+    distances = np.linalg.norm(nearest_on_bones(skeleton, point) - point, axis=1)
+    distances = np.where(moving, distances, np.inf)
+    parts = (max(distances.min(), np.finfo(float).tiny) / np.maximum(distances, np.finfo(float).tiny)) ** _NEARNESS
+    return parts / parts.sum()

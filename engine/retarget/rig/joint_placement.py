@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the joints of a rig go in another body, and how its bones are turned there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...geometry.procrustes import nearest_rotations
+from ...runtime.errors import RigError
+from .joint_carriers import carriers_of, moved_areas, nearest_on_bones
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from .fitted_rig import FittedRig
+    from .skeleton import Skeleton
+
+__all__ = ["PlacedJoints", "place_joints", "root_direction", "standing"]
+
+_SHORTEST = 0.02
+"""Least length of a bone, in units of what its scale makes of its length in the source."""
+
+_NEAR_FRAME = np.radians(45.0)
+"""A body is turned by one of the frames if its own rotation is not further away."""
+
+_LEAST_REACH = 0.05
+"""Least part of the body's extent by which a root is away from its middle, and with which it reaches towards it."""
+
+_MEDIAN_ROUNDS, _MEDIAN_SHARPNESS = 20, 0.01
+"""Rounds of weighting by the inverse difference, and the least difference of two rotations that counts there."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedJoints:
+    """The bones of a rig in another body.
+
+    Attributes
+    ----------
+    heads, tails : (b, 3) array of float
+        Their ends; no bone is without length.
+    normals : (b, 3) array of float
+        A direction across each bone that turns with it, such as its local z axis: of length one.
+    rotations : (b, 3, 3) array of float
+        How each bone is turned against the source, from its ends and its normal.
+    """
+
+    heads: NDArray[np.float64]
+    tails: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+
+
+def place_joints(
+    rig: FittedRig, source: TriangleMesh, normals: NDArray[np.float64], frames: NDArray[np.float64] | None = None
+) -> PlacedJoints:
+    """Place all bones of a fitted rig in the target.
+
+    A joint between two bones goes to the mean of where both take it.  Bones that move no vertex follow the bone whose
+    joint they share, else the nearest one above them that does move some, else the bones around them; one above most
+    of the body, such as a root on the ground, stands to the whole body as it did.
+
+    Parameters
+    ----------
+    rig : FittedRig
+        The rig.
+    source : TriangleMesh
+        The body that it moves, n_x vertices.
+    normals : (b, 3) array of float
+        For each bone a direction across it in the source, such as its local z axis.
+    frames : (k, 3, 3) array of float, optional
+        Rotations that the whole body may be turned by: see `standing`.
+
+    Returns
+    -------
+    PlacedJoints
+        In the space of the target.
+
+    Raises
+    ------
+    RigError
+        If no bone moves a vertex, or the arrays do not fit the rig.
+    """
+    skeleton = rig.skeleton
+    if normals.shape != (len(skeleton), 3):
+        raise RigError(f"{len(skeleton)} bones need one normal each, but got an array of the shape {normals.shape}.")
+    carriers = carriers_of(rig, source)
+    count = len(carriers.of_places)
+    joints = np.concatenate([skeleton.heads, skeleton.tails])
+    points = _means(joints, carriers.places, count)  # (k, 3)
+    placed = np.zeros((count, 3))
+    for place, bone in np.argwhere(carriers.of_places > 0):
+        placed[place] += carriers.of_places[place, bone] * _carried(rig, bone, points[place])
+    upright = standing(rig, source, frames)
+    turns = nearest_rotations(np.einsum("bc,cij->bij", carriers.of_turns, rig.rotations))
+    for bone in np.flatnonzero(carriers.anchors >= 0):
+        turns[bone] = upright
+        placed[carriers.places[bone]] = _rooted(rig, source, upright, bone, carriers.anchors[bone])
+    heads, tails = np.split(placed[carriers.places], 2)
+    scales = np.exp(carriers.of_turns @ np.log(np.maximum(rig.scales, np.finfo(float).tiny)))
+    rigid = np.einsum("bij,bj->bi", turns, skeleton.tails - skeleton.heads) * scales[:, None]
+    tails = np.where(carriers.loose[:, None], heads + rigid, tails)
+    heads, tails = _with_lengths(skeleton, heads, tails, rigid, carriers.places)
+    rotations = _swung(turns, skeleton.tails - skeleton.heads, tails - heads)
+    across = np.einsum("bij,bj->bi", rotations, _across(normals, skeleton.tails - skeleton.heads))
+    return PlacedJoints(heads, tails, across, rotations)
+
+
+def standing(rig: FittedRig, source: TriangleMesh, frames: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    """Find how the whole body is turned, whatever its limbs do.
+
+    Parameters
+    ----------
+    rig : FittedRig
+        The rig.
+    source : TriangleMesh
+        The body that it moves.
+    frames : (k, 3, 3) array of float, optional
+        Rotations that it may well be turned by exactly, such as none at all.
+
+    Returns
+    -------
+    (3, 3) array of float
+        The nearest of the frames, or the median rotation of all bones if none is near.
+    """
+    masses = moved_areas(rig, source)
+    middle = nearest_rotations(np.einsum("b,bij->ij", _median_shares(rig.rotations, masses), rig.rotations)[None])[0]
+    if frames is None or not len(frames):
+        return middle
+    cosines = (np.einsum("kij,ij->k", frames, middle) - 1) / 2
+    return frames[cosines.argmax()] if cosines.max() > np.cos(_NEAR_FRAME) else middle
+
+
+def _means(points: NDArray[np.float64], groups: NDArray[np.int64], count: int) -> NDArray[np.float64]:
+    """Mean of the points (n, 3) in each group, (count, 3)."""
+    sums = np.zeros((count, 3))
+    np.add.at(sums, groups, points)
+    return sums / np.bincount(groups, minlength=count)[:, None]
+
+
+def _median_shares(rotations: NDArray[np.float64], masses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Share one among the bones, (b,), so that the blended rotation is their median by mass: limbs tilt no body."""
+    shares = masses / masses.sum()
+    for _ in range(_MEDIAN_ROUNDS):
+        middle = nearest_rotations(np.einsum("b,bij->ij", shares, rotations)[None])[0]
+        apart = np.linalg.norm(rotations - middle, axis=(1, 2))
+        shares = masses / np.maximum(apart, _MEDIAN_SHARPNESS)
+        shares /= shares.sum()
+    return shares
+
+
+def root_direction(rig: FittedRig, source: TriangleMesh, root: int) -> NDArray[np.float64]:
+    """Find the way from the middle of the source's body to a root outside of it, of length one; zero if inside."""
+    middle = source.vertex_areas @ source.vertices / source.area
+    away = rig.skeleton.heads[root] - middle
+    outside = np.linalg.norm(away) > _LEAST_REACH * np.linalg.norm(np.ptp(source.vertices, axis=0))
+    return _unit(away[None])[0] if outside else np.zeros(3)
+
+
+def _rooted(
+    rig: FittedRig, source: TriangleMesh, upright: NDArray[np.float64], bone: int, anchor: int
+) -> NDArray[np.float64]:
+    """Place the head of a root: as far beyond its anchor as before, measured by how far the body reaches that way.
+
+    So a root on the ground stands on the ground, however the legs are bent.
+    """
+    start = rig.skeleton.heads[anchor]
+    away = rig.skeleton.heads[bone] - start
+    moved = rig.linear[anchor] @ start + rig.translations[anchor]
+    direction = root_direction(rig, source, bone)
+    reach = float(((source.vertices - start) @ direction).max())
+    new_reach = float(((rig.registered - moved) @ (upright @ direction)).max())
+    usable = reach > _LEAST_REACH * np.linalg.norm(np.ptp(source.vertices, axis=0)) and new_reach > 0
+    growth = new_reach / reach - rig.scales[anchor] if usable else 0.0
+    return moved + upright @ (rig.scales[anchor] * away + growth * (away @ direction) * direction)
+
+
+def _carried(rig: FittedRig, bone: int, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Move a point with a bone: on the bone as its vertices move, and from there on without shear."""
+    start = nearest_on_bones(rig.skeleton, point)[bone]
+    moved = rig.linear[bone] @ start + rig.translations[bone]
+    return moved + rig.scales[bone] * rig.rotations[bone] @ (point - start)
+
+
+def _with_lengths(
+    skeleton: Skeleton,
+    heads: NDArray[np.float64],
+    tails: NDArray[np.float64],
+    rigid: NDArray[np.float64],
+    places: NDArray[np.int64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give bones that became too short the vectors `rigid` from head to tail; what was connected to them follows."""
+    heads, tails = heads.copy(), tails.copy()
+    head_places, tail_places = np.split(places, 2)
+    lengths = np.linalg.norm(rigid, axis=1)
+    usual = float(np.median(lengths[lengths > 0])) if (lengths > 0).any() else 1.0
+    for bone in skeleton.order:
+        parent = skeleton.parents[bone]
+        if parent >= 0 and head_places[bone] == tail_places[parent]:
+            heads[bone] = tails[parent]
+        if np.linalg.norm(tails[bone] - heads[bone]) > _SHORTEST * max(lengths[bone], _SHORTEST * usual):
+            continue
+        if lengths[bone] > _SHORTEST * _SHORTEST * usual:
+            tails[bone] = heads[bone] + rigid[bone]
+        else:
+            tails[bone] = heads[bone] + [0, 0, _SHORTEST * usual]
+    return heads, tails
+
+
+def _swung(
+    rotations: NDArray[np.float64], before: NDArray[np.float64], after: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Turn rotations (b, 3, 3) by the least angle so that they take vectors (b, 3) to the direction of others."""
+    start = _unit(np.einsum("bij,bj->bi", rotations, before))
+    return _least_turns(start, _unit(after)) @ rotations
+
+
+def _least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Find the rotations by the least angle from unit vectors (b, 3) to others, (b, 3, 3)."""
+    # Two reflections: first the start to its negative, then that to the end; the other way round near half a turn.
+    cosine = (start * end).sum(axis=1)
+    middle = _unit(start + end)
+    opposite = cosine < -1 + 1e-9
+    if opposite.any():
+        least = np.abs(start[opposite]).argmin(axis=1)
+        middle[opposite] = _across(np.eye(3)[least], start[opposite])
+    first = np.eye(3) - 2 * start[:, :, None] * start[:, None]
+    second = np.eye(3) - 2 * middle[:, :, None] * middle[:, None]
+    return second @ first
+
+
+def _across(vectors: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Take what of the vectors (b, 3) lies across the axes, to length one; any direction across if nothing does."""
+    axes = _unit(axes)
+    flat = vectors - (vectors * axes).sum(axis=1, keepdims=True) * axes
+    lost = np.linalg.norm(flat, axis=1) <= 1e-6 * np.maximum(np.linalg.norm(vectors, axis=1), np.finfo(float).tiny)
+    if lost.any():
+        other = np.eye(3)[np.abs(axes[lost]).argmin(axis=1)]
+        flat[lost] = other - (other * axes[lost]).sum(axis=1, keepdims=True) * axes[lost]
+    return _unit(flat)
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale vectors (b, 3) to length one; zero stays zero."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(float).tiny)

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rest pose of a body that was delivered in another pose: the rotations of its bones undone, their lengths kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.errors import RigError
+from .joint_carriers import carriers_of, moved_areas
+from .joint_placement import root_direction, standing
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from scipy.sparse import csr_array
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from .fitted_rig import FittedRig
+    from .joint_placement import PlacedJoints
+
+__all__ = ["RestPose", "bend_angles", "is_posed", "rest_pose", "unposed"]
+
+_LARGE_PART = 0.01
+"""A bone is judged by its angle if it moves more than this part of the body: that of a finger is mostly noise."""
+
+_POSED_ANGLE = np.radians(40.0)
+"""A body is posed if a bone is bent more than this against the source: other proportions bend them by up to 25 degrees
+as well, and the mildest walk by more than 55."""
+
+_LEAST_DETERMINANT = 0.05
+"""Blended transforms that shrink space more than this are not inverted."""
+
+
+@dataclass(frozen=True, eq=False)
+class RestPose:
+    """How the bones of a rig move from the pose that a body was delivered in to rest.
+
+    Attributes
+    ----------
+    posed_heads : (b, 3) array of float
+        Heads of the bones as delivered.
+    heads : (b, 3) array of float
+        Heads at rest.
+    turns : (b, 3, 3) array of float
+        How each bone turns.
+    """
+
+    posed_heads: NDArray[np.float64]
+    heads: NDArray[np.float64]
+    turns: NDArray[np.float64]
+
+
+def bend_angles(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> NDArray[np.float64]:
+    """Find by what angle the large bones of a body are bent against those above, in addition to the source.
+
+    Parameters
+    ----------
+    rig : FittedRig
+        The rig.
+    source : TriangleMesh
+        The body that it moves.
+    placed : PlacedJoints
+        Its bones in the target.
+
+    Returns
+    -------
+    (b,) array of float
+        Angles in radians; zero for bones that move little of the body, and where no bone above moves any.
+    """
+    areas = moved_areas(rig, source)
+    above = carriers_of(rig, source).above
+    judged = np.flatnonzero((areas > _LARGE_PART * areas.sum()) & (above >= 0))
+    relative = np.einsum("bji,bjk->bik", placed.rotations[above[judged]], placed.rotations[judged])
+    angles = np.zeros(len(rig.skeleton))
+    angles[judged] = np.arccos(((np.trace(relative, axis1=1, axis2=2) - 1) / 2).clip(-1, 1))
+    return angles
+
+
+def is_posed(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> bool:
+    """Tell whether the target is in another pose than the source, not just of another build."""
+    return bool(bend_angles(rig, source, placed).max(initial=0.0) > _POSED_ANGLE)
+
+
+def rest_pose(
+    rig: FittedRig, source: TriangleMesh, placed: PlacedJoints, frames: NDArray[np.float64] | None = None
+) -> RestPose:
+    """Turn all bones of the target as they are turned in the source.
+
+    The target stays where it is, and stands as high above its root as it was delivered.  Bones that move no vertex
+    follow those that carry them.
+
+    Parameters
+    ----------
+    rig : FittedRig
+        The rig.
+    source : TriangleMesh
+        The body that it moves.
+    placed : PlacedJoints
+        Its bones in the target, from `place_joints`.
+    frames : (k, 3, 3) array of float, optional
+        Rotations that the whole body may be turned by: see `standing`.
+
+    Returns
+    -------
+    RestPose
+        In the space of the target.
+    """
+    carriers, upright = carriers_of(rig, source), standing(rig, source, frames)
+    turns = upright @ placed.rotations.transpose(0, 2, 1)
+    heads = placed.heads.copy()
+    for bone in rig.skeleton.order:
+        above = carriers.above[bone]
+        if carriers.moving[bone] and above >= 0:
+            heads[bone] = heads[above] + turns[above] @ (placed.heads[bone] - placed.heads[above])
+    rooted = carriers.anchors >= 0
+    for bone in np.flatnonzero(~carriers.moving & ~rooted):
+        parts = carriers.of_places[carriers.places[bone]]
+        offsets = np.einsum("cij,cj->ci", turns, placed.heads[bone] - placed.heads)
+        heads[bone] = parts @ (heads + offsets)
+    if rooted.any():
+        down = upright @ root_direction(rig, source, int(np.flatnonzero(rooted)[0]))
+        lying = unposed(rig.registered, rig.weights, RestPose(placed.heads, heads, turns))
+        heads[~rooted] += ((rig.registered @ down).max() - (lying @ down).max()) * down
+    return RestPose(placed.heads, heads, turns)
+
+
+def unposed(vertices: NDArray[np.float64], weights: csr_array, rest: RestPose) -> NDArray[np.float64]:
+    """Bring vertices of the target to rest: the inverse of linear blend skinning, which posed them.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float
+        The target as delivered.
+    weights : (n, b) csr_array of float
+        How much each bone moves each vertex; rows sum to one, or are empty: such vertices stay.
+    rest : RestPose
+        The pose.
+
+    Returns
+    -------
+    (n, 3) array of float
+        Positions at rest.
+
+    Raises
+    ------
+    RigError
+        If the weights are not of these vertices and bones.
+    """
+    if weights.shape != (len(vertices), len(rest.heads)):
+        raise RigError(
+            f"Weights of {len(vertices)} vertices and {len(rest.heads)} bones are needed, but got {weights.shape}."
+        )
+    back = rest.turns.transpose(0, 2, 1)
+    shifts = rest.posed_heads - np.einsum("bij,bj->bi", back, rest.heads)
+    blended = (weights @ back.reshape(-1, 9)).reshape(-1, 3, 3)
+    # Where bones turn nearly opposite ways the blend collapses; forward blending is the better guess there.
+    sound = np.linalg.det(blended) > _LEAST_DETERMINANT
+    blended[~sound] = np.eye(3)
+    inverse = np.linalg.solve(blended, (vertices - weights @ shifts)[:, :, None])[:, :, 0]
+    forward = weights @ (rest.heads - np.einsum("bij,bj->bi", rest.turns, rest.posed_heads))
+    forward += np.einsum("nij,nj->ni", (weights @ rest.turns.reshape(-1, 9)).reshape(-1, 3, 3), vertices)
+    weighted = np.asarray(weights.sum(axis=1)).ravel() > 0
+    return np.where(weighted[:, None], np.where(sound[:, None], inverse, forward), vertices)

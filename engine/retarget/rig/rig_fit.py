@@ -1,0 +1,373 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A rig is fitted into another body, and the map between the two becomes better for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array, vstack
+
+from ...dense.components.extended_maps import whole_maps_steps
+from ...geometry.laplacian import laplace_beltrami
+from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.surface_points import SurfacePoints
+from ...repair.clean_surface import StandIn
+from ...repair.cleaning import clean
+from ...runtime.errors import RigError
+from ...runtime.progress import Progress, Steps, run, within
+from ...shapes.enclosing_surface import joined_steps, separate_limbs
+from ...shapes.proxy import proxy_steps
+from .bone_fit import BoneTransforms, fit_bones, skinned
+from .digit_fit import with_digits
+from .fitted_rig import FittedRig
+from .match_gate import Homes
+from .posed_registration import PosedRegistration
+from .stunted_digits import stunted_digits, with_stiff_digits
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from ...repair.clean_surface import CleanSurface
+    from ...shapes.proxy import Proxy
+    from .skeleton import Skeleton
+
+__all__ = ["fit_rig", "fit_rig_steps"]
+
+_STIFFNESS = (8e-4, 8e-4, 4e-4, 4e-4, 1.5e-4, 1.5e-4, 8e-5, 8e-5, 8e-5)
+"""How stiff the body is, round after round, against distances in units of the root of the target's area."""
+
+_WORKED = 12_000
+"""About how many vertices stand for a denser mesh while the body slides."""
+
+_FORWARD = 0.2
+"""How much the map from the source counts where the bones are first sought, against that to it: where the two
+contradict each other, the latter is the one that things are carried by."""
+
+_EXPLAINED = 0.05
+"""Median distance, in the same units, from where the maps have the body to where its bones have it, up to which the
+rig is believed: one that does not bend where the body does would spoil the maps."""
+
+_NEAR = 0.02
+"""Distance within which the body should come to lie on the target."""
+
+_LEAST_COVERED = 0.85
+"""Least part of the target on which it should, for the rig to be believed."""
+
+
+def fit_rig(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    source_to_target: SurfaceMap,
+    target_to_source: SurfaceMap,
+    *,
+    weights: csr_array,
+    skeleton: Skeleton,
+    refine: bool = True,
+) -> FittedRig:
+    """Fit a rig into another body; see `fit_rig_steps`."""
+    maps = source_to_target, target_to_source
+    return run(fit_rig_steps(source, target, *maps, weights=weights, skeleton=skeleton, refine=refine))
+
+
+def fit_rig_steps(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    source_to_target: SurfaceMap,
+    target_to_source: SurfaceMap,
+    *,
+    weights: csr_array,
+    skeleton: Skeleton,
+    refine: bool = True,
+) -> Steps[FittedRig]:
+    """Fit a rig into another body, in steps.
+
+    The bones are found that pose the source as the maps say.  Then, in turn, the source slides onto the target, held
+    by the shape that its bones give it, and the bones are found anew: where on a limb a point lies, the bones know
+    better than the surface, and where the surface is, the target knows better than the bones.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The bodies: the source at rest, the target as it stands.
+    source_to_target, target_to_source : SurfaceMap
+        Maps between all their vertices.
+    weights : (n_x, b) csr_array of float
+        How much each bone moves each vertex of the source; normalised here.
+    skeleton : Skeleton
+        The source's bones, b.
+    refine : bool
+        Whether to make the maps better.  Maps that were refined before, or that are exact, should be kept.
+
+    Returns
+    -------
+    FittedRig
+        The bones in the target, and the maps.
+
+    Raises
+    ------
+    RigError
+        If the weights do not fit the source and the bones, or no bone moves the main part of the source.
+    """
+    weights = _checked(weights, source, skeleton)
+    yield Progress(0.0, "Cleaning")
+    x = yield from within(_cleaned_steps(source, "source"), 0.0, 0.02)
+    y = yield from within(_cleaned_steps(target, "target"), 0.02, 0.05)
+    body, there = x.mesh, _on_main(y, source_to_target, x)
+    back = _on_main(x, target_to_source, y)
+    moving = _of_main(x, weights)
+    if not moving.nnz:
+        raise RigError("No bone moves the main part of the source. Give it weights, or choose another source.")
+    yield Progress(0.05, "Fitting the bones")
+    forward = _FORWARD * body.vertex_areas / body.area * (x.main.original_vertices >= 0)
+    backward = y.mesh.vertex_areas / y.mesh.area * (y.main.original_vertices >= 0)
+    images = y.mesh.vertices[y.mesh.triangles[there.triangles]]
+    positions = np.einsum("kc,kcd->kd", there.barycentric, images)
+    evidence = _Evidence(body, moving, y.mesh, skeleton)
+    bones = evidence.bones(positions, back, forward, backward)
+    maps = source_to_target, target_to_source
+    missed = np.linalg.norm(bones.posed - positions, axis=1)[x.main.original_vertices >= 0]
+    if refine and np.median(missed) < _EXPLAINED * np.sqrt(y.mesh.area):
+        sliding = _sliding_steps(_Pair(x, y, moving, skeleton), bones, back)
+        found = yield from within(sliding, 0.1, 1.0, "Fitting the rig")
+        if found is not None:
+            bones, positions, maps = found.bones, found.positions, found.maps
+    posed = skinned(source.vertices, weights, bones.linear, bones.translations)
+    registered = _spread(x, posed, positions, bones.posed)
+    return FittedRig(
+        skeleton,
+        weights,
+        bones.linear,
+        bones.translations,
+        bones.rotations,
+        bones.scales,
+        posed,
+        registered,
+        *maps,
+    )
+
+
+def _cleaned_steps(mesh: TriangleMesh, name: str) -> Steps[CleanSurface]:
+    """Clean a mesh, and put one surface around it if limbs are pieces of their own: bones move these, too."""
+    cleaned = clean(mesh, name)
+    return (yield from joined_steps(cleaned, name)) if separate_limbs(cleaned).any() else cleaned
+
+
+def _checked(weights: csr_array, source: TriangleMesh, skeleton: Skeleton) -> csr_array:
+    """Normalise weights that fit."""
+    if weights.shape != (source.vertex_count, len(skeleton)):
+        raise RigError(
+            f"{len(skeleton)} bones that move {source.vertex_count} vertices need weights of the shape "
+            f"({source.vertex_count}, {len(skeleton)}), but got {weights.shape}."
+        )
+    weights = csr_array(weights, dtype=np.float64)
+    if not (np.isfinite(weights.data).all() and (weights.data >= 0).all()):
+        raise RigError("The weights of the bones should be finite numbers that are not negative.")
+    total = np.asarray(weights.sum(axis=1)).ravel()
+    scaled: csr_array = weights.multiply(1 / np.where(total > 0, total, 1)[:, None]).tocsr()
+    return csr_array(scaled)
+
+
+def _of_main(x: CleanSurface, weights: csr_array) -> csr_array:
+    """Weights of the vertices of the main part; the centres of holes have none."""
+    own = x.main.original_vertices
+    kept = np.flatnonzero(own >= 0)
+    rows = csr_array((np.ones(len(kept)), (kept, own[kept])), shape=(len(own), weights.shape[0]))
+    return csr_array(rows @ weights)
+
+
+def _on_main(image: CleanSurface, surface_map: SurfaceMap, domain: CleanSurface) -> FoundPoints:
+    """Name the images of the main part's vertices on the main part of the other mesh; holes' centres get any."""
+    if isinstance(domain.main, StandIn):
+        own = SurfacePoints.at_vertices(domain.mesh, np.arange(domain.mesh.vertex_count))
+        triangles, barycentric = domain.main.to_original(own.triangles, own.barycentric)
+        points = SurfacePoints.from_barycentric(domain.original, triangles, barycentric)
+        positions, vertices = points.interpolate(surface_map.positions), points.nearest_vertices
+    else:
+        vertices = np.maximum(domain.main.original_vertices, 0)
+        positions = surface_map.positions[vertices]
+    corners = surface_map.nearest_vertices[vertices]
+    search = ClosestPoints(image.mesh)
+    starts = np.where(image.vertex_parts[corners] == 0, image.vertex_images[corners], -1)
+    lost = np.flatnonzero(starts < 0)
+    if len(lost):
+        starts[lost] = search.nearest_vertices(positions[lost])
+    return search.walk(positions, starts)
+
+
+def _spread(
+    x: CleanSurface, posed: NDArray[np.float64], positions: NDArray[np.float64], posed_body: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Positions of all vertices of the original mesh: of the main part (n, 3), posed (n, 3), and as posed elsewhere."""
+    whole = posed.copy()
+    main = np.flatnonzero(x.vertex_parts == 0)
+    if isinstance(x.main, StandIn):
+        whole[main] += x.main.places(main).interpolate(positions - posed_body)
+    else:
+        whole[main] = positions[x.vertex_images[main]]
+    return whole
+
+
+@dataclass(frozen=True, eq=False)
+class _Evidence:
+    """What says where the bones are: the body's vertices, and the target's, each with its image.
+
+    Attributes
+    ----------
+    body : TriangleMesh
+        The body at rest, n vertices.
+    weights : (n, b) csr_array of float
+        How the bones move it.
+    target : TriangleMesh
+        The target, m vertices.
+    skeleton : Skeleton
+        The bones.
+    """
+
+    body: TriangleMesh
+    weights: csr_array
+    target: TriangleMesh
+    skeleton: Skeleton
+
+    def bones(
+        self,
+        positions: NDArray[np.float64],
+        back: FoundPoints,
+        forward_shares: NDArray[np.float64],
+        back_shares: NDArray[np.float64],
+    ) -> BoneTransforms:
+        """Fit the bones.
+
+        Parameters
+        ----------
+        positions : (n, 3) array of float
+            Images of the body's vertices.
+        back : FoundPoints
+            Images of the target's vertices on the body, m.
+        forward_shares, back_shares : (n,) and (m,) array of float
+            How much each counts.
+
+        Returns
+        -------
+        BoneTransforms
+            The bones; `posed` are the body's vertices.
+        """
+        evaluate = _evaluation(back, self.body)
+        vertices = np.concatenate([self.body.vertices, evaluate @ self.body.vertices])
+        there = np.concatenate([positions, self.target.vertices])
+        shares = np.concatenate([forward_shares, back_shares])
+        weights = csr_array(vstack([self.weights, evaluate @ self.weights]))
+        fitted = fit_bones(vertices, there, shares, weights, self.skeleton)
+        return BoneTransforms(
+            fitted.linear, fitted.translations, fitted.rotations, fitted.scales, fitted.posed[: len(positions)]
+        )
+
+
+def _evaluation(points: FoundPoints | SurfacePoints, mesh: TriangleMesh) -> csr_array:
+    """Matrix (k, n) that interpolates values at the vertices of a mesh at points."""
+    rows = np.repeat(np.arange(len(points)), 3)
+    corners = mesh.triangles[points.triangles].ravel()
+    return csr_array((points.barycentric.ravel(), (rows, corners)), shape=(len(points), mesh.vertex_count))
+
+
+@dataclass(frozen=True, eq=False)
+class _Pair:
+    """The main parts of both meshes, and the rig of the first."""
+
+    x: CleanSurface
+    y: CleanSurface
+    weights: csr_array
+    skeleton: Skeleton
+
+
+@dataclass(frozen=True, eq=False)
+class _Slid:
+    """What the sliding found: the bones, positions of the main part's vertices, and maps of the original meshes."""
+
+    bones: BoneTransforms
+    positions: NDArray[np.float64]
+    maps: tuple[SurfaceMap, SurfaceMap]
+
+
+def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Steps[_Slid | None]:
+    """Let the body slide onto the target and find its bones, in turn; None if it does not come to lie there."""
+    proxy = yield from within(proxy_steps(pair.x.mesh, _WORKED), 0.0, 0.1)
+    target_proxy = yield from within(proxy_steps(pair.y.mesh, _WORKED), 0.1, 0.2)
+    body, target = proxy.mesh, target_proxy.mesh
+    weights = _proxy_weights(proxy, pair.weights)
+    evidence = _Evidence(body, weights, target, pair.skeleton)
+    found = _on_proxies(pair, back, proxy, target_proxy)
+    registration = PosedRegistration(body, laplace_beltrami(body), target, Homes.of(body, target, found))
+    bones = with_digits(body, weights, pair.skeleton, target, found, bones=bones)
+    yield Progress(0.3, "Posing hands")
+    positions, matches = bones.posed, registration.matched(bones.posed)
+    shares = body.vertex_areas / body.area, target.vertex_areas / target.area
+    seeking = None
+    if stunted := stunted_digits(body, weights, pair.skeleton, target, matches):
+        # Digits that the target lacks would crumple to lie on what there is.
+        evidence = _Evidence(body, with_stiff_digits(weights, stunted), target, pair.skeleton)
+        seeking = 1 - weights[:, np.concatenate([group.bones[1:] for group in stunted])].sum(axis=1)
+        bones = evidence.bones(positions, matches, *shares)
+        positions, matches = bones.posed, registration.matched(bones.posed)
+    posed = bones.posed
+    for number, stiffness in enumerate(_STIFFNESS):
+        # Each third takes some tenths of a second: whoever drives this may stop in between.
+        done = [Progress(0.3 + 0.5 * (number + part / 3) / len(_STIFFNESS), "Sliding") for part in (1, 2, 3)]
+        positions = registration.slid(positions, posed, matches, stiffness, seeking=seeking)
+        yield done[0]
+        matches = registration.matched(positions)
+        yield done[1]
+        bones = evidence.bones(positions, matches, *shares)
+        posed = bones.posed
+        yield done[2]
+    covered = matches.squared_distances <= _NEAR**2 * target.area
+    if shares[1][covered].sum() < _LEAST_COVERED:
+        return None
+    whole = skinned(pair.x.mesh.vertices, pair.weights, bones.linear, bones.translations)
+    if not proxy.is_identity:
+        positions = whole + _evaluation(proxy.points, body) @ (positions - posed)
+    yield Progress(0.85, "Mapping every vertex")
+    steps = _maps_steps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back))
+    maps = yield from within(steps, 0.85, 1.0)
+    bones = BoneTransforms(bones.linear, bones.translations, bones.rotations, bones.scales, whole)
+    return _Slid(bones, positions, maps)
+
+
+def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Proxy) -> FoundPoints:
+    """Name the images of the vertices of the target's proxy on that of the body."""
+    rows = target_proxy.vertices
+    chosen = FoundPoints(back.triangles[rows], back.barycentric[rows], back.squared_distances[rows])
+    if proxy.is_identity:
+        return chosen
+    corners = pair.x.mesh.triangles[chosen.triangles]
+    places = np.einsum("kc,kcd->kd", chosen.barycentric, pair.x.mesh.vertices[corners])
+    starts = proxy.points.nearest_vertices[corners[np.arange(len(corners)), chosen.barycentric.argmax(axis=1)]]
+    return ClosestPoints(proxy.mesh).walk(places, starts)
+
+
+def _proxy_weights(proxy: Proxy, weights: csr_array) -> csr_array:
+    """Carry weights of a dense mesh to the proxy's vertices: the means of those that each stands for."""
+    if proxy.is_identity:
+        return weights
+    gathered = _evaluation(proxy.points, proxy.mesh).T @ weights
+    total = np.asarray(gathered.sum(axis=1)).ravel()
+    averaged: csr_array = csr_array(gathered.multiply(1 / np.where(total > 0, total, 1)[:, None]))
+    return averaged
+
+
+def _maps_steps(pair: _Pair, positions: NDArray[np.float64], homes: Homes) -> Steps[tuple[SurfaceMap, SurfaceMap]]:
+    """Read the maps between the original meshes off the body that lies on the target at positions (n, 3)."""
+    x, y = pair.x, pair.y
+    size = float(np.sqrt(y.mesh.area))
+    lying = ClosestPoints(x.mesh).moved(positions)
+    lies_on = ClosestPoints(y.mesh)
+    there = homes.on_target(lies_on, facing(lies_on, positions, lying.vertex_normals, size), positions)
+    back = homes.on_body(lying, facing(lying, y.mesh.vertices, y.mesh.vertex_normals, size), y.mesh.vertices)
+    on_y = SurfacePoints.from_barycentric(y.mesh, there.triangles, there.barycentric)
+    on_x = SurfacePoints.from_barycentric(x.mesh, back.triangles, back.barycentric)
+    forth, home = yield from whole_maps_steps(x, y, on_y, on_x)
+    forward = SurfaceMap(forth.points, forth.confidence, y.original.vertex_count)
+    return forward, SurfaceMap(home.points, home.confidence, x.original.vertex_count)

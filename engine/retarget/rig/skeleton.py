@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bones: where their joints are, and which hangs on which."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.errors import RigError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Skeleton"]
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """The bones of a rig at rest.
+
+    Attributes
+    ----------
+    parents : (b,) array of int
+        Parent of each bone, -1 for one without.
+    heads, tails : (b, 3) array of float
+        Its two ends, in the space and units of the mesh that it moves.  A bone turns around its head.
+
+    Raises
+    ------
+    RigError
+        If the arrays do not fit together, a number is not finite, or bones are their own ancestors.
+    """
+
+    parents: NDArray[np.int64]
+    heads: NDArray[np.float64]
+    tails: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        parents = np.asarray(self.parents, np.int64)
+        heads, tails = np.asarray(self.heads, np.float64), np.asarray(self.tails, np.float64)
+        count = len(parents)
+        if parents.ndim != 1 or heads.shape != (count, 3) or tails.shape != (count, 3):
+            raise RigError(
+                f"A skeleton of {count} bones needs {count} heads and tails with three coordinates each, but got "
+                f"arrays of the shapes {heads.shape} and {tails.shape}."
+            )
+        if not (np.isfinite(heads).all() and np.isfinite(tails).all()):
+            raise RigError("The skeleton has a joint whose position is not a finite number.")
+        if count and not ((parents >= -1) & (parents < count)).all():
+            raise RigError(f"Parents of the bones should be numbers from -1 to {count - 1}.")
+        for name, value in (("parents", parents), ("heads", heads), ("tails", tails)):
+            object.__setattr__(self, name, value)
+        if len(self.order) < count:
+            raise RigError("Some bones of the skeleton are their own ancestors.")
+
+    def __len__(self) -> int:
+        return len(self.parents)
+
+    @cached_property
+    def order(self) -> NDArray[np.int64]:
+        """All bones, parents before their children, (b,)."""
+        found: list[int] = []
+        layer = np.flatnonzero(self.parents < 0)
+        while len(layer):
+            found.extend(layer.tolist())
+            layer = np.flatnonzero(np.isin(self.parents, layer))
+        return np.array(found, np.int64)
+
+    def children(self, bone: int) -> NDArray[np.int64]:
+        """Bones that hang directly on a bone."""
+        return np.flatnonzero(self.parents == bone)

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surface cut into sheets where values at its corners jump: the islands of a UV layer, the sides of a hard edge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ...mesh.closest_points import ClosestPoints
+from ...mesh.connectivity.halfedges import following, group_half_edges, pair_half_edges
+from ...mesh.connectivity.triangle_components import triangle_components
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.errors import MeshError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.polygons import Polygons
+
+__all__ = ["CornerSheets", "cut_into_sheets"]
+
+
+@dataclass(frozen=True, eq=False)
+class CornerSheets:
+    """A triangle mesh cut along all edges across which corner values jump.
+
+    Half-edge 3 t + i leads from corner i of triangle t to corner i + 1.
+
+    Attributes
+    ----------
+    values : (t, 3, d) array of float
+        The values at the corners of each triangle.
+    labels : (t,) array of int
+        The sheet of each triangle: triangles hang together where values are continuous.
+    surface : TriangleMesh
+        The cut surface: triangles of the same numbers and places, but vertices doubled along the cuts.
+    borders : (3 t,) array of bool
+        Which half-edges are at a cut, or at a boundary of the uncut surface.
+    """
+
+    values: NDArray[np.float64]
+    labels: NDArray[np.int64]
+    surface: TriangleMesh
+    borders: NDArray[np.bool_]
+
+    @cached_property
+    def search(self) -> ClosestPoints:
+        """Search for closest points that never walks across a cut."""
+        return ClosestPoints(self.surface)
+
+    @property
+    def count(self) -> int:
+        """Number of sheets."""
+        return int(self.labels.max()) + 1
+
+    @cached_property
+    def border_vertices(self) -> NDArray[np.bool_]:
+        """Which vertices of the cut surface are at a border."""
+        triangle, slot = np.divmod(np.flatnonzero(self.borders), 3)
+        result = np.zeros(self.surface.vertex_count, bool)
+        for end in (slot, (slot + 1) % 3):
+            result[self.surface.triangles[triangle, end]] = True
+        return result
+
+    @cached_property
+    def border_ends(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where the half-edges at borders begin and end, (b, 3) each."""
+        triangle, slot = np.divmod(np.flatnonzero(self.borders), 3)
+        ends = (self.surface.triangles[triangle, end] for end in (slot, (slot + 1) % 3))
+        first, second = (self.surface.vertices[end] for end in ends)
+        return first, second
+
+    def is_at_border(self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Say which places, triangles (k,) and coordinates (k, 3), are on a border."""
+        absent = barycentric <= 0
+        # Half-edge i is opposite to corner i + 2.
+        on_side = (absent[:, [2, 0, 1]] & self.borders.reshape(-1, 3)[triangles]).any(axis=1)
+        corner = self.surface.triangles[triangles, barycentric.argmax(axis=1)]
+        return on_side | ((absent.sum(axis=1) >= 2) & self.border_vertices[corner])
+
+    def at(self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Interpolate the values at places, (k, d)."""
+        return np.einsum("kc,kcd->kd", barycentric, self.values[triangles])
+
+    @cached_property
+    def gradients(self) -> NDArray[np.float64]:
+        """How values change with the place around each vertex of the cut surface, (w, d, 3): the mean by area."""
+        a, b, c = (self.surface.vertices[corner] for corner in self.surface.triangles.T)
+        normals = self.surface.triangle_normals
+        # The gradient of a linear function, times the area: the opposite sides turned by a right angle.
+        turned = np.stack([np.cross(normals, side) for side in (c - b, a - c, b - a)], axis=1) / 2
+        products = np.einsum("tcd,tcx->tdx", self.values, turned)
+        areas = np.maximum(self.surface.sum_at_vertices(self.surface.triangle_areas), np.finfo(float).tiny)
+        columns = [self.surface.sum_at_vertices(column) for column in products.reshape(len(products), -1).T]
+        return (np.stack(columns, axis=1) / areas[:, None]).reshape(-1, *products.shape[1:])
+
+    @cached_property
+    def density(self) -> float:
+        """How far values of two numbers change, on the whole, over a unit of length: the root of the ratio of areas."""
+        first, second = (self.values[:, side] - self.values[:, 0] for side in (1, 2))
+        areas = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2
+        return float(np.sqrt(areas.sum() / self.surface.area))
+
+    def beyond(
+        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64], offsets: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Continue the values linearly from places by offsets in space, (k, 3): what to add to `at`, (k, d)."""
+        slopes = np.einsum("kc,kcdx->kdx", barycentric, self.gradients[self.surface.triangles[triangles]])
+        return np.einsum("kdx,kx->kd", slopes, offsets)
+
+
+def cut_into_sheets(
+    mesh: TriangleMesh, polygons: Polygons, values: NDArray[np.float64], tolerance: float
+) -> CornerSheets:
+    """Cut a surface along all edges across which corner values jump.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    polygons : Polygons
+        Its faces, cut as the mesh is.
+    values : (l, d) array of float
+        Values at the corners of the faces.
+    tolerance : float
+        Values that differ by no more than this in each of their numbers are the same.
+
+    Raises
+    ------
+    MeshError
+        If there is not one value for each corner, or one is not a finite number.
+    """
+    if values.ndim != 2 or len(values) != polygons.corner_count:
+        raise MeshError(f"There should be one value for each of {polygons.corner_count} corners, not {values.shape}.")
+    if not np.isfinite(values).all():
+        raise MeshError("Some values at the corners of faces are not finite numbers. Repair them, or leave them out.")
+    at_triangles = values[polygons.triangle_corners]  # (t, 3, d)
+    twins = pair_half_edges(mesh.vertices, mesh.triangles, group_half_edges(mesh.triangles, mesh.vertex_count))
+    slots = at_triangles.reshape(-1, values.shape[1])
+    one = np.flatnonzero(twins >= 0)
+    other = twins[one]
+    starts = mesh.triangles.ravel()
+    # The twin runs the other way, unless its triangle is turned the wrong way round.
+    opposite = starts[one] == starts[following(other)]
+    mates = (np.where(opposite, following(other), other), np.where(opposite, other, following(other)))
+    ends = (one, following(one))
+    close = [(np.abs(slots[end] - slots[mate]) <= tolerance).all(axis=1) for end, mate in zip(ends, mates, strict=True)]
+    joined = close[0] & close[1]
+    open_twins = np.full(len(twins), -1)
+    open_twins[one[joined]] = other[joined]
+    tail, head = (np.concatenate([pair[0][joined], pair[1][joined]]) for pair in (ends, mates))
+    graph = coo_array((np.ones(len(tail), bool), (tail, head)), shape=(len(twins), len(twins)))
+    wedges, wedge = connected_components(graph, directed=False)
+    positions = np.empty((wedges, 3))
+    positions[wedge] = mesh.vertices[starts]
+    surface = TriangleMesh(positions, wedge.reshape(-1, 3).astype(np.int64))
+    return CornerSheets(at_triangles, triangle_components(open_twins), surface, open_twins < 0)

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values at the corners of faces and at points, such as colours and normals, carried from one mesh to another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...runtime.errors import MatchError, MeshError
+from .charts import cut_into_sheets
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...mesh.polygons import Polygons
+    from ...mesh.surface_map import SurfaceMap
+    from ...mesh.triangle_mesh import TriangleMesh
+    from .face_correspondence import FacePlaces
+
+__all__ = ["carry_corner_values", "carry_normals", "carry_point_marks", "carry_point_values"]
+
+_SAME = 1e-3
+"""Values that differ by less than this part of their range are the same; a byte has steps four times as large."""
+
+_SAME_DIRECTION = 0.02
+"""Unit vectors that differ by less are the same: one degree."""
+
+
+def carry_corner_values(values: ArrayLike, source: Polygons, places: FacePlaces) -> NDArray[Any]:
+    """Carry values at the corners of the source's faces to those of the target's.
+
+    Where the values jump from face to face, they jump on the target as well: a face takes all of its corners from the
+    side of the edge where its centre lies.
+
+    Parameters
+    ----------
+    values : (l_x, ...) array_like
+        For each corner of the source, a number, a vector, or anything else.
+    source : Polygons
+        Faces of the source, cut as the image of `places` is.
+    places : FacePlaces
+        Where the faces of the target lie on the source.
+
+    Returns
+    -------
+    (l_y, ...) array
+        For each corner of the target; interpolated if the values are real numbers, else that of the nearest corner.
+
+    Raises
+    ------
+    MatchError
+        If there is not one value for each corner.
+    """
+    array = np.asarray(values)
+    if array.ndim == 0 or len(array) != source.corner_count:
+        raise MatchError(f"There should be one value for each of {source.corner_count} corners, not {array.shape}.")
+    flat = array.reshape(len(array), -1)
+    if np.issubdtype(array.dtype, np.inexact):
+        tolerance = _SAME * float(np.ptp(flat, axis=0).max(initial=0.0)) if len(flat) else 0.0
+        return _interpolated(flat.astype(np.float64), source, places, tolerance).reshape(-1, *array.shape[1:])
+    _, code = np.unique(flat, axis=0, return_inverse=True)
+    sheets = cut_into_sheets(places.image, source, code.reshape(-1, 1).astype(np.float64), 0.5)
+    found = places.on_sheets(sheets)
+    return array[source.triangle_corners[found.triangles, found.nearest_slots]]
+
+
+def carry_point_values(values: ArrayLike, target_to_source: SurfaceMap) -> NDArray[Any]:
+    """Carry values at the vertices of the source, (n_x, ...), to those of the target, (n_y, ...).
+
+    As `SurfaceMap.transfer` does; but truth values are interpolated too, and true from one half on, so that the border
+    between them does not follow the edges of the source.
+    """
+    array = np.asarray(values)
+    if array.dtype == bool:
+        return np.asarray(target_to_source.transfer(array.astype(np.float64)) >= 0.5)
+    return target_to_source.transfer(array)
+
+
+def carry_point_marks(values: NDArray[np.float64], source_to_target: SurfaceMap) -> NDArray[np.float64]:
+    """Carry numbers that mark single vertices of the source, (n_x,), such as creases, to single ones of the target.
+
+    Each goes to the vertex nearest to its place; of several that meet there the largest counts.  All others are zero.
+    """
+    marked = np.flatnonzero(values)
+    carried = np.zeros(source_to_target.image_vertex_count)
+    np.maximum.at(carried, source_to_target.nearest_vertices[marked], values[marked])
+    return carried
+
+
+def carry_normals(
+    normals: NDArray[np.float64],
+    source: Polygons,
+    places: FacePlaces,
+    target: TriangleMesh,
+    rotations: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Carry normals at the corners of faces that differ from those of the surface.
+
+    What is carried is how they deviate from the smooth normals of the source: where they do not, the target gets its
+    own smooth normals.
+
+    Parameters
+    ----------
+    normals : (l_x, 3) array of float
+        Unit normals at the corners of the source.
+    source : Polygons
+        Faces of the source, cut as the image of `places` is.
+    places : FacePlaces
+        Where the faces of the target lie on the source.
+    target : TriangleMesh
+        The target.
+    rotations : (n_y, 3, 3) array of float
+        How directions on the source, around the image of each vertex of the target, have to turn.
+
+    Returns
+    -------
+    (l_y, 3) array of float
+        Unit normals at the corners of the target.
+
+    Raises
+    ------
+    MeshError
+        If there is not one normal for each corner.
+    """
+    if normals.shape != (source.corner_count, 3):
+        raise MeshError(f"There should be one normal for each of {source.corner_count} corners, not {normals.shape}.")
+    carried = _interpolated(np.asarray(normals, np.float64), source, places, _SAME_DIRECTION)
+    vertices = places.polygons.corner_vertices
+    smooth = places.map.transfer(places.image.vertex_normals)
+    turned = np.einsum("nij,nj->ni", rotations, smooth)
+    last = _shortest_rotations(_unit(turned), target.vertex_normals)
+    whole = last @ rotations
+    result = _unit(np.einsum("lij,lj->li", whole[vertices], carried))
+    # Where normals cancel out there is none; the target's own is as good as any.
+    return np.where(result.any(axis=1, keepdims=True), result, target.vertex_normals[vertices])
+
+
+def _interpolated(
+    values: NDArray[np.float64], source: Polygons, places: FacePlaces, tolerance: float
+) -> NDArray[np.float64]:
+    """Carry real values (l_x, d), interpolated on the sheets on which they are continuous."""
+    sheets = cut_into_sheets(places.image, source, values, tolerance)
+    found = places.on_sheets(sheets)
+    return sheets.at(found.triangles, found.barycentric)
+
+
+def _shortest_rotations(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotations that turn unit vectors (n, 3) into others by the least angle; none where these are opposite."""
+    axis, cosine = np.cross(start, end), np.einsum("nd,nd->n", start, end)
+    zero = np.zeros(len(axis))
+    x, y, z = axis.T
+    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
+    proper = start.any(axis=1) & end.any(axis=1) & (cosine > -1 + 1e-9)
+    factor = np.where(proper, 1 / np.where(proper, 1 + cosine, 1), 0)
+    turn = np.eye(3) + cross + factor[:, None, None] * (cross @ cross)
+    return np.where(proper[:, None, None], turn, np.eye(3))
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale vectors (n, 3) to length one; those that nearly cancelled out become zero."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 1e-6)

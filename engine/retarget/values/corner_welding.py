@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values at corners of faces that meet: made the same where they belong together, and told apart elsewhere."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.polygons import Polygons
+
+__all__ = ["groups_of", "jumps", "weld"]
+
+_WELD = 0.25
+"""Corners that meet on the same sheet belong together if they differ by less than this part of the edge there."""
+
+_WELD_GUESSES = 0.5
+"""The same where one of them was guessed."""
+
+_UNKNOWN_WEIGHT = 1e-6
+"""What a corner whose value was guessed counts where it is welded to one that is known."""
+
+_TOOTH = 0.52
+"""A face reaches into another part if more of its outline than this is against it; a little more than one half."""
+
+_LARGE = 20.0
+"""How many times the area of a face the parts on both sides have, so that no small part is eaten up."""
+
+
+def weld(
+    values: NDArray[np.float64],
+    polygons: Polygons,
+    labels: NDArray[np.int64],
+    known: NDArray[np.bool_],
+    tolerance: float,
+) -> NDArray[np.float64]:
+    """Give corners that meet at an edge of two faces on one sheet the same values, if they nearly are already.
+
+    Parameters
+    ----------
+    values : (l, d) array of float
+        Values at the corners.
+    polygons : Polygons
+        The faces.
+    labels : (f,) array of int
+        The sheet that each face is on.
+    known : (l,) array of bool
+        Which values are known; the others are guesses, and follow those that they are welded to.
+    tolerance : float
+        Corners that differ by less are welded in any case.
+
+    Returns
+    -------
+    (l, d) array of float
+        The values, where welded their mean.
+    """
+    meeting = polygons.meeting_corners  # (p, ends, sides)
+    faces = polygons.corner_faces[meeting[:, 0]]
+    lengths = np.linalg.norm(values[meeting[:, 1]] - values[meeting[:, 0]], axis=2)  # (p, sides)
+    apart = np.linalg.norm(values[meeting[:, :, 1]] - values[meeting[:, :, 0]], axis=2)  # (p, ends)
+    part = np.where(known[meeting].all(axis=(1, 2)), _WELD, _WELD_GUESSES)
+    close = apart.max(axis=1) <= np.maximum(part * lengths.min(axis=1), tolerance)
+    joined = meeting[close & (labels[faces[:, 0]] == labels[faces[:, 1]])].reshape(-1, 2)
+    group, count = groups_of(joined, polygons.corner_count)
+    weights = np.where(known, 1.0, _UNKNOWN_WEIGHT)
+    total = np.bincount(group, weights, count)
+    means = np.stack([np.bincount(group, weights * part, count) / total for part in values.T], axis=1)
+    return means[group]
+
+
+def jumps(values: NDArray[np.float64], polygons: Polygons, tolerance: float) -> NDArray[np.bool_]:
+    """Say of each edge (e,) whether corner values (l, d) differ by more than a tolerance between its faces."""
+    meeting = polygons.meeting_corners
+    apart = (np.abs(values[meeting[:, :, 1]] - values[meeting[:, :, 0]]) > tolerance).any(axis=(1, 2))
+    found = np.zeros(len(polygons.edges), bool)
+    found[polygons.corner_edges[polygons.neighbours[apart, 0]]] = True
+    return found
+
+
+def groups_of(pairs: NDArray[np.int64], count: int) -> tuple[NDArray[np.int64], int]:
+    """Find the group of each of `count` things that hang together by pairs (p, 2), and the number of groups."""
+    graph = coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    groups, group = connected_components(graph, directed=False)
+    return group.astype(np.int64), int(groups)

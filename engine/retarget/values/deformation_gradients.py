@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How a deformation turns and scales a surface around each vertex: what directions on it have to go through as well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import diags_array
+
+from ...geometry.laplacian import laplace_beltrami
+from ...geometry.symmetric_factor import symmetric_factor
+from ...runtime.errors import MeshError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from ..rig.fitted_rig import FittedRig
+
+__all__ = ["LocalFrames", "bone_frames", "surface_frames"]
+
+_RADIUS = 0.1
+"""Over what distance Jacobians are averaged, in sqrt(area): about the size of a face, which turns as a whole."""
+
+_LARGEST_STRETCH = 4.0
+"""By what factor the scale may differ from the mean: more is a place where the map has collapsed or is torn."""
+
+_MOST_AREA = 3.0
+"""How much more than at the median the area of a mapped triangle may count, per area of its own."""
+
+_TINY = np.finfo(float).tiny
+
+
+@dataclass(frozen=True, eq=False)
+class LocalFrames:
+    """A rotation and a scale at each vertex of a surface.
+
+    Attributes
+    ----------
+    rotations : (n, 3, 3) array of float
+        Orthogonal matrices; reflections if the deformation mirrors the surface.
+    scales : (n,) array of float
+        How many times as long lengths become.
+    overall : float
+        How many times as long they become on the whole: root of the mean growth of areas.
+    """
+
+    rotations: NDArray[np.float64]
+    scales: NDArray[np.float64]
+    overall: float
+
+    def __len__(self) -> int:
+        return len(self.scales)
+
+    def turned(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Turn vectors (..., n, 3), one for each vertex, without a change of length."""
+        return np.einsum("nij,...nj->...ni", self.rotations, vectors)
+
+
+def surface_frames(
+    mesh: TriangleMesh, images: NDArray[np.float64], *, radius: float = _RADIUS, mirrored: bool = False
+) -> LocalFrames:
+    r"""Find what a deformation does to a surface from positions before and after.
+
+    The Jacobian of each triangle maps its sides to those of the deformed one, and its normal, which is as long as its
+    sides are on average, to that of the other.  Jacobians are averaged by area over a neighbourhood, with the weights
+    of heat that has spread from the vertex, and the rotation is the orthogonal factor of their polar decomposition.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    images : (n, 3) array of float
+        Where its vertices are after the deformation.
+    radius : float
+        How far heat spreads, in sqrt(area).
+    mirrored : bool
+        Whether the deformation turns the surface over, as a map to the mirror image does: the normals of the deformed
+        triangles are then on their other side, and the rotations are reflections.
+
+    Returns
+    -------
+    LocalFrames
+        For each vertex; where it has no triangle, the mean of the whole surface.
+
+    Raises
+    ------
+    MeshError
+        If there is not one finite position for each vertex.
+    """
+    if images.shape != mesh.vertices.shape or not np.isfinite(images).all():
+        raise MeshError(
+            f"The deformed surface needs one finite position for each of the {mesh.vertex_count} vertices, "
+            f"but got an array of the shape {images.shape}."
+        )
+    before, after = (
+        _sides(mesh.vertices, mesh.triangles, 1.0),
+        _sides(images, mesh.triangles, -1.0 if mirrored else 1.0),
+    )
+    # The transpose of the Jacobian times the area: large triangles count more, and needles are no division by zero.
+    areas = np.maximum(mesh.triangle_areas, _TINY)
+    jacobians = after @ np.linalg.pinv(before)  # (m, 3, 3)
+    grown = np.linalg.norm(np.cross(after[:, :, 0], after[:, :, 1]), axis=1) / (2 * areas)
+    most = _MOST_AREA * np.maximum(_median(grown, areas), _TINY)
+    grown = np.minimum(grown, most)
+    stretches, overall = np.sqrt(grown), float(np.sqrt(areas @ grown / areas.sum()))
+    columns = np.concatenate([jacobians.reshape(-1, 9), stretches[:, None]], axis=1) * areas[:, None]
+    sums = np.stack([mesh.sum_at_vertices(column) for column in (columns / 3).T], axis=1)
+    spread = _spread(mesh, sums, radius)
+    rotations = _orthogonal(spread[:, :9].reshape(-1, 3, 3), -1.0 if mirrored else 1.0)
+    return LocalFrames(rotations, _bounded(spread[:, 9]), overall)
+
+
+def bone_frames(rig: FittedRig, otherwise: LocalFrames) -> LocalFrames:
+    """Blend the rotations and scales of the bones of a fitted rig, as they move each vertex of the source.
+
+    Parameters
+    ----------
+    rig : FittedRig
+        The rig.
+    otherwise : LocalFrames
+        What holds for vertices that no bone moves, (n_x,).
+
+    Returns
+    -------
+    LocalFrames
+        For each vertex of the source.
+
+    Raises
+    ------
+    MeshError
+        If the rig belongs to another surface.
+    """
+    weights = rig.weights
+    if weights.shape[0] != len(otherwise):
+        raise MeshError(f"The rig moves {weights.shape[0]} vertices, but the surface has {len(otherwise)}.")
+    total = np.asarray(weights.sum(axis=1)).ravel()
+    moved = total > 0
+    blended = (weights @ rig.rotations.reshape(-1, 9)).reshape(-1, 3, 3)
+    scales = np.divide(weights @ rig.scales, total, out=otherwise.scales.copy(), where=moved)
+    rotations = np.where(moved[:, None, None], _orthogonal(blended, 1.0), otherwise.rotations)
+    return LocalFrames(rotations, scales, otherwise.overall)
+
+
+def _sides(points: NDArray[np.float64], triangles: NDArray[np.int64], side: float) -> NDArray[np.float64]:
+    """Two sides of each triangle and a normal of the length of a mean side, as columns, (m, 3, 3)."""
+    a, b, c = (points[corner] for corner in triangles.T)
+    first, second = b - a, c - a
+    normal = np.cross(first, second)
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = side * normal / np.sqrt(np.maximum(length, _TINY))
+    return np.stack([first, second, normal], axis=2)
+
+
+def _median(values: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
+    """Median of values of such weights."""
+    order = np.argsort(values, kind="stable")
+    total = np.cumsum(weights[order])
+    return float(values[order[np.searchsorted(total, total[-1] / 2)]])
+
+
+def _spread(mesh: TriangleMesh, sums: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+    """Let integrals over the vertices' areas (n, k) spread like heat, and divide them by the area that they come from.
+
+    A vertex that no heat reaches, without a triangle, gets the mean.
+    """
+    laplace = laplace_beltrami(mesh)
+    mass = laplace.mass
+    lone = mass <= 0
+    # A length r is the root mean square way of heat after the time r^2 / 4, in the plane.
+    time = radius**2 * mesh.area / 4
+    factor = symmetric_factor(diags_array(mass + lone) + time * laplace.stiffness)
+    heat = factor.solve(np.concatenate([sums, mesh.vertex_areas[:, None]], axis=1))
+    mean = sums.sum(axis=0) / mesh.area
+    reached = heat[:, -1:] > 0
+    return np.where(reached, heat[:, :-1] / np.where(reached, heat[:, -1:], 1), mean)
+
+
+def _bounded(scales: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Bound scales (n,) around their middle."""
+    middle = float(np.maximum(np.median(scales), _TINY))
+    bounded: NDArray[np.float64] = scales.clip(middle / _LARGEST_STRETCH, middle * _LARGEST_STRETCH)
+    return bounded
+
+
+def _orthogonal(matrices: NDArray[np.float64], handedness: float) -> NDArray[np.float64]:
+    """Orthogonal matrices of such a determinant, 1 or -1, that are nearest to matrices (n, 3, 3)."""
+    left, _, right = np.linalg.svd(matrices)
+    left[:, :, 2] *= (handedness * np.sign(np.linalg.det(left @ right)))[:, None]
+    return left @ right

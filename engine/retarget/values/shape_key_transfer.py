@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Offsets of vertices, as shape keys hold them, carried from one surface to another in another pose."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from scipy.sparse import csc_array
+from scipy.sparse.csgraph import connected_components
+
+from ...geometry.laplacian import laplace_beltrami
+from ...geometry.symmetric_factor import symmetric_factor
+from ...runtime.errors import MatchError
+from ...runtime.progress import Progress
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...mesh.surface_map import SurfaceMap
+    from ...mesh.triangle_mesh import TriangleMesh
+    from ...runtime.progress import Steps
+    from .deformation_gradients import LocalFrames
+
+__all__ = ["Scaling", "carry_offsets_steps"]
+
+Scaling = Literal["auto", "none", "overall", "local"]
+"""How lengths of offsets change: as the whole surface has grown if the two are of clearly different sizes; not at all;
+as the whole has grown in any case; or as the surface has around each vertex."""
+
+_SAME_SIZE = 1.25
+"""Up to this factor two surfaces count as bodies of one size, on which a smile is as wide: for `auto`."""
+
+_LEAST_CONFIDENCE = 0.02
+"""Below it, a place is taken from its neighbours: only what is surely wrong, because that blurs the offsets."""
+
+_TINY = np.finfo(float).tiny
+
+
+def carry_offsets_steps(
+    offsets: ArrayLike,
+    frames: LocalFrames,
+    target: TriangleMesh,
+    target_to_source: SurfaceMap,
+    *,
+    scaling: Scaling = "auto",
+    threshold: float = 0.001,
+) -> Steps[NDArray[np.float64]]:
+    """Carry offsets at the vertices of the source to those of the target.
+
+    At each vertex of the source an offset is turned as the surface is there, so that a smile follows a turned head.
+    Turned offsets are interpolated inside the triangles of the source.  Where the map cannot be trusted at all, they
+    are continued from the surroundings on the target: harmonically, in the manner of a soap film.
+
+    Parameters
+    ----------
+    offsets : (k, n_x, 3) array_like of float
+        For each key, by how much each vertex of the source moves.
+    frames : LocalFrames
+        What the source goes through on its way to the target, at each of its vertices.
+    target : TriangleMesh
+        The target.
+    target_to_source : SurfaceMap
+        Where each vertex of the target lies on the source.
+    scaling : {"auto", "none", "overall", "local"}
+        What becomes of the length of offsets.
+    threshold : float
+        As a part of the largest offset of a key: shorter ones become exactly zero.
+
+    Yields
+    ------
+    Progress
+        After each key.
+
+    Returns
+    -------
+    (k, n_y, 3) array of float
+        By how much each vertex of the target moves.
+
+    Raises
+    ------
+    MatchError
+        If offsets, frames and maps do not belong to the same two surfaces, or an offset is not a finite number.
+    """
+    array = np.asarray(offsets, np.float64)
+    _check(array, frames, target, target_to_source)
+    yield Progress(0.0, "Finding regions without confidence")
+    fill = _Filling(target, target_to_source.confidence >= _LEAST_CONFIDENCE)
+    factors = _factors(frames, scaling)
+    carried = np.zeros((len(array), target.vertex_count, 3))
+    for number, key in enumerate(array):
+        moved = target_to_source.transfer(factors[:, None] * frames.turned(key))
+        moved = fill(moved)
+        lengths = np.linalg.norm(moved, axis=1)
+        least = threshold * float((factors * np.linalg.norm(key, axis=1)).max(initial=0.0))
+        carried[number] = np.where((lengths > least)[:, None], moved, 0.0)
+        yield Progress((number + 1) / len(array), "Carrying offsets")
+    return carried
+
+
+def _check(
+    offsets: NDArray[np.float64], frames: LocalFrames, target: TriangleMesh, target_to_source: SurfaceMap
+) -> None:
+    """Make sure that all belong together."""
+    count = target_to_source.image_vertex_count
+    if offsets.ndim != 3 or offsets.shape[1:] != (count, 3):
+        raise MatchError(
+            f"Offsets should have the shape (k, {count}, 3), one for each vertex that the map leads to, "
+            f"but have {offsets.shape}."
+        )
+    if len(frames) != count or len(target_to_source) != target.vertex_count:
+        raise MatchError(
+            f"There are {len(frames)} local frames for {count} vertices, and a map of {len(target_to_source)} vertices "
+            f"for a mesh of {target.vertex_count}: they do not belong together."
+        )
+    if not np.isfinite(offsets).all():
+        raise MatchError("A shape key of the source moves a vertex by what is not a finite number. Repair that key.")
+
+
+def _factors(frames: LocalFrames, scaling: Scaling) -> NDArray[np.float64]:
+    """By what to multiply the offset of each vertex, (n_x,)."""
+    if scaling == "local":
+        return frames.scales
+    same = scaling == "auto" and 1 / _SAME_SIZE <= frames.overall <= _SAME_SIZE
+    return np.full(len(frames), 1.0 if same or scaling == "none" else frames.overall)
+
+
+class _Filling:
+    """Replaces values at vertices of a mesh that are not known by the harmonic continuation of those around.
+
+    Parts of the surface of which nothing is known are left as they are.
+    """
+
+    def __init__(self, mesh: TriangleMesh, known: NDArray[np.bool_]) -> None:
+        self._unknown = np.zeros(0, np.int64)
+        if known.all():
+            return
+        stiffness = laplace_beltrami(mesh).stiffness
+        labels = connected_components(stiffness, directed=False)[1]
+        reachable = np.zeros(labels.max() + 1, bool)
+        reachable[labels[known]] = True
+        self._known = np.flatnonzero(known)
+        self._unknown = np.flatnonzero(~known & reachable[labels])
+        rows = stiffness[self._unknown]
+        self._boundary = rows[:, self._known]
+        inner = csc_array(rows[:, self._unknown])
+        # Some vertices may hang on by edges without weight only: a little of what they have holds them.
+        weights = np.abs(inner.diagonal())
+        self._held = np.full(len(weights), 1e-9 * np.maximum(weights.mean(), _TINY) if len(weights) else 0.0)
+        if len(weights):
+            inner.setdiag(inner.diagonal() + self._held)
+            self._factor = symmetric_factor(inner)
+
+    def __call__(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Fill values (n, d)."""
+        if not len(self._unknown):
+            return values
+        filled = values.copy()
+        right = self._held[:, None] * values[self._unknown] - self._boundary @ values[self._known]
+        filled[self._unknown] = self._factor.solve(right)
+        return filled

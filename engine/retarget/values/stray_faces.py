@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces that lie on the wrong side of a seam: cut off from their sheet, or reaching into another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .corner_welding import groups_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.polygons import Polygons
+
+__all__ = ["splinters", "teeth"]
+
+_SPLINTER = 0.005
+"""Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
+
+_TOOTH = 0.52
+"""A face reaches into another part if more of its outline than this is against it; a little more than one half."""
+
+_LARGE = 20.0
+"""How many times the area of a face the parts on both sides have, so that no small part is eaten up."""
+
+_TINY = float(np.finfo(float).tiny)
+
+
+def splinters(
+    polygons: Polygons, seams: NDArray[np.bool_], labels: NDArray[np.int64], areas: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find faces that were cut off from the rest of their sheet, and for each a neighbour to go with instead.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        The faces.
+    seams : (e,) array of bool
+        Edges across which faces do not hang together.
+    labels : (f,) array of int
+        The sheet that each face is on.
+    areas : (f,) array of float
+        Area of each face.
+
+    Returns
+    -------
+    faces, neighbours : (k,) array of int
+        Small faces apart from the main part of their sheet, and of each a face of a larger part beside it.
+    """
+    pairs = polygons.neighbours
+    sides = polygons.corner_faces[pairs]  # (p, 2)
+    cut = seams[polygons.corner_edges[pairs[:, 0]]]
+    part, count = groups_of(sides[~cut], polygons.face_count)
+    area = np.bincount(part, areas, count)
+    largest = np.zeros(int(labels.max(initial=0)) + 1)
+    np.maximum.at(largest, labels, area[part])
+    small = area[part] < _SPLINTER * largest[labels]
+    across = np.concatenate([sides[cut], sides[cut][:, ::-1]])
+    across = across[small[across[:, 0]] & (area[part[across[:, 1]]] > area[part[across[:, 0]]])]
+    # Of several neighbours that in the largest part.
+    across = across[np.lexsort((across[:, 1], -area[part[across[:, 1]]], across[:, 0]))]
+    faces, first = np.unique(across[:, 0], return_index=True)
+    return faces, across[first, 1]
+
+
+def teeth(
+    polygons: Polygons,
+    seams: NDArray[np.bool_],
+    movable: NDArray[np.bool_],
+    areas: NDArray[np.float64],
+    lengths: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find faces that reach from one part into another, so that the seam would be shorter without them.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        The faces.
+    seams : (e,) array of bool
+        Edges across which faces do not hang together.
+    movable : (f,) array of bool
+        Which faces may be found: those that lie on both sides of a border.
+    areas : (f,) array of float
+        Area of each face.
+    lengths : (e,) array of float
+        Length of each edge.
+
+    Returns
+    -------
+    faces, neighbours : (k,) array of int
+        Such faces of large parts, no two of them side by side, and of each the face across its longest seam.
+    """
+    pairs = polygons.neighbours
+    sides = polygons.corner_faces[pairs]  # (p, 2)
+    edge = polygons.corner_edges[pairs[:, 0]]
+    cut = seams[edge]
+    part, count = groups_of(sides[~cut], polygons.face_count)
+    area = np.bincount(part, areas, count)
+    across = np.concatenate([sides[cut], sides[cut][:, ::-1]])
+    face, other = across.T
+    length = np.tile(lengths[edge[cut]], 2)
+    # What counts is the length against one other part.
+    keys, group = np.unique(face * count + part[other], return_inverse=True)
+    against = np.bincount(group.ravel(), length, len(keys))[group.ravel()]
+    outline = np.bincount(polygons.corner_faces, lengths[polygons.corner_edges], polygons.face_count)
+    large = (area[part[face]] > _LARGE * areas[face]) & (area[part[other]] > _LARGE * areas[face])
+    reaching = np.flatnonzero(movable[face] & large & (against > _TOOTH * outline[face]))
+    reaching = reaching[np.lexsort((other[reaching], -length[reaching], face[reaching]))]
+    faces, first = np.unique(face[reaching], return_index=True)
+    beside = other[reaching][first]
+    # Of two side by side only the better one goes.
+    gain = (against / np.maximum(outline[face], _TINY))[reaching][first]
+    rank = np.full(polygons.face_count, -1)
+    rank[faces[np.lexsort((-faces, gain))]] = np.arange(len(faces))
+    best = np.full(polygons.face_count, -1)
+    np.maximum.at(best, sides[:, 0], rank[sides[:, 1]])
+    np.maximum.at(best, sides[:, 1], rank[sides[:, 0]])
+    goes = rank[faces] > best[faces]
+    return faces[goes], beside[goes]

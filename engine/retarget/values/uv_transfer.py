@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""UVs at the corners of faces, carried from one mesh to another so that islands stay islands and seams stay seams."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.errors import MatchError
+from ...runtime.progress import Progress
+from .charts import cut_into_sheets
+from .corner_welding import jumps, weld
+from .stray_faces import splinters, teeth
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...mesh.polygons import Polygons
+    from ...runtime.progress import Steps
+    from .charts import CornerSheets
+    from .face_correspondence import CornerPlaces, FacePlaces
+
+__all__ = ["CarriedUVs", "carry_uvs_steps"]
+
+_SAME = 1e-5
+"""UVs that differ by less than this part of the extent of the layer are the same; Blender's own rule for a layer that
+fills the unit square is ten times as generous."""
+
+_MOST_STRETCH = 3.0
+"""A corner near a border that is so many times as far from the centre of its face as it would be by what the layer does
+around that, and on the whole, has come there by a detour."""
+
+_ROUNDING = 1e-7
+"""Rounding of coordinates of single precision, as a part of them."""
+
+_ROUNDS = 3
+"""How often stray faces are moved at most: some lie beside others."""
+
+_LEAST_CONFIDENCE = 0.1
+"""Below it, a place on the target has no trustworthy counterpart."""
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedUVs:
+    """UVs of the faces of a target.
+
+    Attributes
+    ----------
+    uvs : (l, 2) array of float
+        For each corner.
+    seams : (e,) array of bool
+        Edges across which the UVs jump.
+    islands : (f,) array of int
+        The island of the source that each face lies on.
+    island_count : int
+        How many islands the source has.
+    lost : int
+        How many of them no face of the target lies on.
+    untrusted : int
+        How many of the others lie mostly where the map has no confidence.
+    """
+
+    uvs: NDArray[np.float64]
+    seams: NDArray[np.bool_]
+    islands: NDArray[np.int64]
+    island_count: int
+    lost: int
+    untrusted: int
+
+
+def carry_uvs_steps(
+    uvs: ArrayLike, source: Polygons, places: FacePlaces, areas: NDArray[np.float64]
+) -> Steps[CarriedUVs]:
+    """Carry UVs at the corners of the source's faces to those of the target's.
+
+    The source is cut into its islands.  Each face of the target takes the island, and the place there, under its
+    centre.  Corners whose own image cannot be reached from it without crossing a border are continued linearly from
+    where the border is met.  Then corners that meet on the same island are welded.  Faces beside a seam that have come
+    to lie away from the rest of their island, or reach into another, are moved to what is around them.
+
+    Parameters
+    ----------
+    uvs : (l_x, 2) array_like of float
+        UVs at the corners of the source.
+    source : Polygons
+        Faces of the source, cut as the image of `places` is.
+    places : FacePlaces
+        Where the faces of the target lie on the source.
+    areas : (f,) array of float
+        Areas of the target's faces.
+
+    Yields
+    ------
+    Progress
+        Between the parts of the work.
+
+    Returns
+    -------
+    CarriedUVs
+        The UVs.  The coordinates may lie anywhere: neither tiles nor overlapping islands mean anything special.
+
+    Raises
+    ------
+    MatchError
+        If there is not one pair of coordinates for each corner.
+    MeshError
+        If one is not a finite number.
+    """
+    array = np.asarray(uvs, np.float64)
+    if array.shape != (source.corner_count, 2):
+        raise MatchError(f"UVs should have the shape ({source.corner_count}, 2), but have {array.shape}.")
+    yield Progress(0.0, "Cutting islands")
+    tolerance = _SAME * float(np.ptp(array, axis=0).max(initial=0.0)) + _ROUNDING * float(
+        np.abs(array).max(initial=0.0)
+    )
+    sheets = cut_into_sheets(places.image, source, array, tolerance)
+    seats, corners = places.seats, None
+    for number in range(_ROUNDS + 1):
+        yield Progress(0.3 + 0.7 * number / (_ROUNDS + 1), "Laying faces onto islands")
+        corners = places.on_sheets(sheets, seats, corners)
+        carried = _laid_out(places, sheets, corners, tolerance)
+        seams = jumps(carried, places.polygons, tolerance)
+        stray, beside = _strays(seams, sheets, corners, places, areas)
+        if not len(stray) or number == _ROUNDS:
+            break
+        seats = places.seated_beside(sheets, seats, stray, beside)
+    islands = sheets.labels[seats.triangles]
+    lost, untrusted = _misplaced(islands, sheets.count, places.confidence, areas)
+    return CarriedUVs(carried, seams, islands, sheets.count, lost, untrusted)
+
+
+def _laid_out(places: FacePlaces, sheets: CornerSheets, corners: CornerPlaces, tolerance: float) -> NDArray[np.float64]:
+    """UVs (l, 2) of faces, whose corners have these places on islands."""
+    seats = corners.seats
+    carried = sheets.at(corners.triangles, corners.barycentric)
+    beyond = np.flatnonzero(corners.is_beyond)
+    carried[beyond] += sheets.beyond(corners.triangles[beyond], corners.barycentric[beyond], corners.offsets[beyond])
+    known = ~corners.is_beyond
+    # The way along an island to a place beside the face may lead around the end of a cut, as at the pole of a sphere.
+    near = np.flatnonzero(corners.near_border)
+    face = places.polygons.corner_faces[near]
+    triangles, barycentric = seats.triangles[face], seats.barycentric[face]
+    centres = sheets.at(triangles, barycentric)
+    away = places.images[near] - seats.positions(places.image)[face]
+    expected = sheets.beyond(triangles, barycentric, away)
+    usual = np.maximum(np.linalg.norm(expected, axis=1), sheets.density * np.linalg.norm(away, axis=1))
+    astray = np.linalg.norm(carried[near] - centres, axis=1) > _MOST_STRETCH * usual
+    carried[near[astray]] = (centres + expected)[astray]
+    known[near[astray]] = False
+    return weld(carried, places.polygons, sheets.labels[seats.triangles], known, tolerance)
+
+
+def _strays(
+    seams: NDArray[np.bool_],
+    sheets: CornerSheets,
+    corners: CornerPlaces,
+    places: FacePlaces,
+    areas: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find faces that go better with a neighbour's island, and these neighbours, (k,) each."""
+    polygons = places.polygons
+    stray, beside = splinters(polygons, seams, sheets.labels[corners.seats.triangles], areas)
+    straddling = np.zeros(polygons.face_count, bool)
+    straddling[polygons.corner_faces[corners.is_beyond]] = True
+    ends = places.map.positions[polygons.edges]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    tooth, next_to = teeth(polygons, seams, straddling, areas, lengths)
+    fresh = ~np.isin(tooth, stray)
+    return np.append(stray, tooth[fresh]), np.append(beside, next_to[fresh])
+
+
+def _misplaced(
+    islands: NDArray[np.int64], count: int, confidence: NDArray[np.float64], areas: NDArray[np.float64]
+) -> tuple[int, int]:
+    """Count the islands that no face lies on, and of the others those without confidence, by the area of faces."""
+    covered = np.bincount(islands, areas, count)
+    doubtful = np.bincount(islands, areas * (confidence < _LEAST_CONFIDENCE), count)
+    used = np.bincount(islands, minlength=count) > 0
+    return int((~used).sum()), int((used & (2 * doubtful > covered)).sum())

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Skin weights for vertices whose own cannot be trusted, from those around them on the surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+
+from ...geometry.laplacian import laplace_beltrami
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.errors import MeshError, RigError
+from .skin_weights import with_rows
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.connectivity.welded_parts import WeldedParts
+
+__all__ = ["filled"]
+
+_LEAST_WEIGHT = 1e-7
+"""Weights below this, which is what rounding leaves of a zero, are dropped."""
+
+_LEAST_STIFFNESS = 1e-9
+"""Weight of a bond between all neighbours, as a part of the mean stiffness."""
+
+
+def filled(weights: csr_array, trusted: NDArray[np.bool_], parts: WeldedParts) -> csr_array:
+    r"""Give the vertices that are not trusted the weights of those around them.
+
+    Parameters
+    ----------
+    weights : (n, g) csr_array of float
+        The weights; rows of vertices that are not trusted may hold anything.
+    trusted : (n,) array of bool
+        Which rows to keep.
+    parts : WeldedParts
+        The surface.
+
+    Returns
+    -------
+    (n, g) csr_array of float
+        The same rows where they are trusted; if none is, all of them.
+
+    Raises
+    ------
+    RigError
+        If there is not one row for each vertex.
+
+    Notes
+    -----
+    The weights of each bone are continued by the harmonic function, :math:`\Delta w = 0`, that takes the trusted values
+    around the gap.  It has no extremum inside, so that weights stay between 0 and 1 and sum to what they sum to around,
+    and knows only ways along the surface: nothing bleeds from finger to finger.
+
+    A part without any trusted vertex takes the weights of the trusted vertices nearest to it in space: a small one as a
+    whole, so that it keeps its shape, a large one vertex by vertex.
+    """
+    n = parts.mesh.vertex_count
+    if weights.shape[0] != n or trusted.shape != (n,):
+        raise RigError(
+            f"To fill gaps, there should be weights and trust for each of the {n} vertices, but there are "
+            f"{weights.shape[0]} rows and an array of the shape {trusted.shape}."
+        )
+    if trusted.all() or not trusted.any():
+        return weights
+    known = np.zeros(parts.welded_count, bool)
+    known[parts.welded[trusted]] = True
+    values = csr_array(parts.mean_over(trusted) @ weights)
+    reached = np.zeros(parts.part_count, bool)
+    reached[parts.labels[known]] = True
+    gaps = ~known & reached[parts.labels]
+    values = with_rows(values, np.flatnonzero(gaps), _harmonic(values, gaps, parts))
+    apart = np.flatnonzero(~reached[parts.labels])
+    values = with_rows(values, apart, _nearest(values, apart, known, parts))
+    rejected = np.flatnonzero(~trusted)
+    return with_rows(weights, rejected, values[parts.welded[rejected]])
+
+
+def _harmonic(values: csr_array, gaps: NDArray[np.bool_], parts: WeldedParts) -> csr_array:
+    """Continue values (w, g) harmonically into gaps (w,): the rows of these."""
+    unknown = np.flatnonzero(gaps)
+    if not len(unknown):
+        return csr_array((0, values.shape[1]))
+    # Only the triangles around the gaps matter.
+    around = parts.triangles[gaps[parts.triangles].any(axis=1)]
+    involved, corners = np.unique(around, return_inverse=True)
+    stiffness = _stiffness(parts.positions[involved], corners.reshape(-1, 3))
+    inside = gaps[involved]
+    rows = stiffness[inside]
+    given = values[involved[~inside]]
+    columns = np.unique(given.indices)
+    if not len(columns):
+        return csr_array((len(unknown), values.shape[1]))
+    right = -(rows[:, ~inside] @ given[:, columns]).toarray()
+    solved = splu(rows[:, inside].tocsc()).solve(right)
+    # Where more than two triangles meet in an edge, and by rounding, a little may be out of bounds.
+    result = csr_array(np.where(solved < _LEAST_WEIGHT, 0.0, np.minimum(solved, given.data.max())))
+    return csr_array((result.data, columns[result.indices], result.indptr), (len(unknown), values.shape[1]))
+
+
+def _stiffness(positions: NDArray[np.float64], triangles: NDArray[np.int64]) -> csr_array:
+    """Return the Laplacian (k, k) of a piece of surface; without an area, as if all edges were alike."""
+    count = len(positions)
+    tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    one_way = csr_array((np.ones(len(tail)), (tail, head)), shape=(count, count))
+    neighbours = csr_array(one_way + one_way.T)
+    alike = csr_array(diags_array(neighbours.sum(axis=1)) - neighbours)
+    try:
+        surface = laplace_beltrami(TriangleMesh(positions, triangles)).stiffness
+    except MeshError:
+        return alike
+    # The least bit holds on to vertices between needles, whose weights are all but zero.
+    return csr_array(surface + _LEAST_STIFFNESS * float(surface.diagonal().mean()) * alike)
+
+
+def _nearest(values: csr_array, apart: NDArray[np.int64], known: NDArray[np.bool_], parts: WeldedParts) -> csr_array:
+    """Take for welded vertices (k,) the values (w, g) of the nearest known ones, for small parts one mean."""
+    if not len(apart):
+        return csr_array((0, values.shape[1]))
+    positions, sources = parts.positions, np.flatnonzero(known)
+    nearest = sources[cKDTree(positions[sources]).query(positions[apart])[1]]
+    _, group = np.unique(parts.labels[apart], return_inverse=True)
+    group = np.where(parts.small[parts.labels[apart]], group.ravel(), len(apart) + np.arange(len(apart)))
+    _, group = np.unique(group, return_inverse=True)
+    group = group.ravel()
+    shares = 1 / np.bincount(group)[group]
+    means = csr_array((shares, (group, np.arange(len(apart)))), shape=(int(group.max()) + 1, len(apart)))
+    return csr_array((means @ values[nearest])[group])

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One surface laid onto another along a map, whole and without folds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import diags_array
+
+from ..dense.components.similarity_field import Surroundings
+from ..geometry.laplacian import laplace_beltrami
+from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.surface_points import SurfacePoints
+from ..registration.elastic import ElasticSurface
+from ..runtime.errors import MatchError
+from ..runtime.progress import Progress
+from .values.deformation_gradients import surface_frames
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..mesh.surface_map import SurfaceMap
+    from ..mesh.triangle_mesh import TriangleMesh
+    from ..runtime.progress import Steps
+
+__all__ = ["WrappedSurface", "kept_in_place", "wrap_steps"]
+
+_RETURN = 0.04
+"""How far from where it set out, in sqrt(area), a vertex may return from the way there and back: one that returns
+elsewhere lies where the target has no such part."""
+
+_LEAST_CONFIDENCE = 0.05
+"""Places below hold nothing."""
+
+_WEIGHTS = 40.0, 160.0, 640.0, 2560.0, 1e4, 1e4, 1e4, 1e4
+"""How much the distance from the map counts against the elastic energy, round after round; the last rounds are only for
+what is folded still."""
+
+_SOLVES = 3
+"""How often positions and rotations are found in turn in each round."""
+
+_RADIUS = 0.01
+"""Over what distance rotations are averaged, in sqrt(area)."""
+
+_LOOSE = 1e-4
+"""How much, beside others, parts count that nothing holds: they stay near where their surroundings take them."""
+
+
+@dataclass(frozen=True, eq=False)
+class WrappedSurface:
+    """A surface laid onto another.
+
+    Attributes
+    ----------
+    positions : (n_x, 3) array of float
+        Its vertices, in the space of the target.
+    held : (n_x,) array of bool
+        Which of them lie on the target; the others are parts that the target lacks, and follow their surroundings.
+    folded : float
+        Area of its triangles that are turned over against their neighbours, as a part of all, 0 to 1.
+    """
+
+    positions: NDArray[np.float64]
+    held: NDArray[np.bool_]
+    folded: float
+
+
+def wrap_steps(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    source_to_target: SurfaceMap,
+    target_to_source: SurfaceMap,
+    registered: NDArray[np.float64] | None = None,
+) -> Steps[WrappedSurface]:
+    """Lay the source onto the target.
+
+    The source is an elastic surface, at rest in the size of the target, that the map draws onto the target with a
+    growing force.  A vertex is not drawn if the way to the target and back leads elsewhere, if the map has no
+    confidence in it, or if a triangle there is turned over: such places deform as rigidly as possible with their
+    surroundings.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces.
+    source_to_target, target_to_source : SurfaceMap
+        The maps between them.
+    registered : (n_x, 3) array of float, optional
+        Where the vertices of the source belong, if that is known better than from the map.
+
+    Yields
+    ------
+    Progress
+        After each round.
+
+    Returns
+    -------
+    WrappedSurface
+        The source on the target.
+
+    Raises
+    ------
+    MatchError
+        If the maps are not those of the surfaces, or do not hold the source anywhere.
+    """
+    if len(source_to_target) != source.vertex_count or len(target_to_source) != target.vertex_count:
+        raise MatchError("The maps belong to other meshes than those to be wrapped. Match them again.")
+    wanted = source_to_target.positions if registered is None else registered
+    held = _held(source, source_to_target, target_to_source)
+    if not held[source.triangles].all(axis=1).any():
+        raise MatchError(
+            "The map does not hold the source anywhere on the target: the two are too different. Match them again."
+        )
+    yield Progress(0.0, "Placing parts that the target lacks")
+    start = _start(source, target, source_to_target, wanted, held)
+    unit = float(np.sqrt(target.area))
+    growth = unit / float(np.sqrt(source.area))
+    laplace = laplace_beltrami(source)
+    elastic = ElasticSurface(source.vertices * (growth / unit), laplace)
+    mass = laplace.mass / laplace.area
+    mass = np.where(mass > 0, mass, mass.mean())  # of loose vertices
+    positions, goal = start / unit, start / unit
+    folded = np.zeros(source.triangle_count, bool)
+    for number, weight in enumerate(_WEIGHTS):
+        drawn = weight * mass * np.where(held, source_to_target.confidence.clip(min=_LEAST_CONFIDENCE), _LOOSE)
+        factor = symmetric_factor(elastic.stiffness + diags_array(drawn))
+        for solve in range(_SOLVES):
+            yield Progress((number + solve / _SOLVES) / len(_WEIGHTS), "Laying the surface onto the other")
+            pull = elastic.pull(elastic.rotations(positions, _RADIUS))
+            positions = factor.solve(pull + drawn[:, None] * goal)
+        folded = _folded(source, positions)
+        if not folded.any():
+            if weight == max(_WEIGHTS):
+                break
+            continue
+        held = held.copy()
+        held[source.triangles[folded]] = False
+    share = float(source.triangle_areas[folded].sum() / source.area)
+    return WrappedSurface(positions * unit, held, share)
+
+
+def kept_in_place(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn and move a deformed surface back to where the surface was, as well as that goes without deforming it.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    positions : (n, 3) array of float
+        Its vertices when deformed.
+
+    Returns
+    -------
+    (n, 3) array of float
+        The same shape: the distances of the vertices from where they were are least in the sense of least squares, by
+        area.
+    """
+    weights = mesh.vertex_areas / mesh.area
+    before, after = weights @ mesh.vertices, weights @ positions
+    left, _, right = np.linalg.svd((mesh.vertices - before).T @ (weights[:, None] * (positions - after)))
+    left[:, 2] *= np.sign(np.linalg.det(left @ right))
+    return (positions - after) @ (left @ right).T + before
+
+
+def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> NDArray[np.bool_]:
+    """Tell which vertices of the source have a place on the target, (n_x,)."""
+    returned = there.transfer(back.positions)
+    away = np.linalg.norm(returned - source.vertices, axis=1)
+    near = _RETURN * np.sqrt(source.area)
+    return (away <= near) & (there.confidence >= _LEAST_CONFIDENCE)
+
+
+def _start(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    there: SurfaceMap,
+    wanted: NDArray[np.float64],
+    held: NDArray[np.bool_],
+) -> NDArray[np.float64]:
+    """Where the vertices belong, those without a place moved along with what is around them, (n_x, 3)."""
+    if held.all():
+        return wanted
+    part, vertices, _ = source.submesh(held)
+    points = there.points
+    images = SurfacePoints(
+        points.triangles[vertices],
+        points.barycentric[vertices],
+        points.corners[vertices],
+        points.nearest_vertices[vertices],
+        wanted[vertices],
+    )
+    surroundings = Surroundings(part, target, images)
+    free = np.flatnonzero(~held)
+    distances, _ = surroundings.nearest(source.vertices[free])
+    # A loose part moves as one: all of it follows the surroundings of its farthest vertex.
+    labels = source.component_labels
+    with_hold = np.zeros(labels.max() + 1, bool)
+    with_hold[labels[held]] = True
+    reach = np.zeros(labels.max() + 1)
+    np.maximum.at(reach, labels[free], distances)
+    loose = ~with_hold[labels[free]]
+    sums = np.stack([np.bincount(labels, axis) for axis in source.vertices.T], axis=1)
+    centres = sums / np.bincount(labels)[:, None]
+    at = np.where(loose[:, None], centres[labels[free]], source.vertices[free])
+    fitted = surroundings.similarities(at, np.where(loose, reach[labels[free]], distances))
+    start = wanted.copy()
+    start[free] = fitted(source.vertices[free])
+    return start
+
+
+def _folded(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which triangles are turned over against the way the surface around them is turned, (m,)."""
+    frames = surface_frames(mesh, positions, radius=_RADIUS)
+    a, b, c = (positions[corner] for corner in mesh.triangles.T)
+    rotated = frames.rotations[mesh.triangles].sum(axis=1) @ mesh.triangle_normals[:, :, None]
+    facing = np.einsum("md,md->m", np.cross(b - a, c - a), rotated[:, :, 0])
+    return facing < 0

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Weights carried and put in: what is new, locked, shared, and gives way."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_array
+
+from engine import TriangleMesh, run
+from engine.retarget.weights.skin_weights import carried, row_differences, row_sums
+from engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
+from tests.engine.retarget.weights.test_weight_rejection import broken
+from tests.shapes import creature
+from tests.skeletons import creature_weights
+
+
+def sparse(rows):
+    return csr_array(np.array(rows, float))
+
+
+def columns(new, locked=None, shared=None, *, yielding=False):
+    count = len(new)
+    return Columns(
+        np.array(locked or [False] * count), np.array(new), np.array(shared or [True] * count), yielding=yielding
+    )
+
+
+def test_torn_vertices_are_filled_in_and_told():
+    vertices, triangles, rest = creature(0.0, 9)
+    mesh, weights = TriangleMesh(vertices, triangles), creature_weights(rest)
+    surface_map, astray = broken(mesh, [(3, ([0.46, 0.2, -0.8], [-0.5, -0.2, -0.7]))])
+    result = run(carry_weights_steps(weights, mesh, mesh, surface_map))
+    assert result.torn[astray].all()
+    assert row_differences(result.weights, weights)[astray].max() < 0.2
+    plain = run(carry_weights_steps(weights, mesh, mesh, surface_map, fill=False))
+    assert not plain.torn.any()
+    np.testing.assert_array_equal(plain.weights.toarray(), carried(weights, surface_map).toarray())
+    # A mask that is no bone's tears nothing.
+    mask = csr_array((np.arange(mesh.vertex_count) % 2).astype(float)[:, None])
+    both = csr_array(np.concatenate([np.ones((mesh.vertex_count, 1)), mask.toarray()], axis=1))
+    told = run(carry_weights_steps(both, mesh, mesh, surface_map, telling=np.array([True, False])))
+    assert not told.torn.any()
+
+
+def test_new_weights_replace_what_was_there_and_sum_to_one():
+    result = put_in(sparse([[1, 0], [1, 0]]), sparse([[0, 0.5], [0.2, 0.6]]), columns([True, True]))
+    np.testing.assert_allclose(result.toarray(), [[0, 1], [0.25, 0.75]])
+
+
+def test_locked_columns_stay_and_others_share_the_rest():
+    result = put_in(sparse([[0.4, 1]]), sparse([[0.9, 0.1]]), columns([True, True], [True, False]))
+    np.testing.assert_allclose(result.toarray(), [[0.4, 0.6]])
+
+
+def test_columns_that_are_not_shared_are_no_part_of_the_whole():
+    result = put_in(
+        sparse([[0, 0, 0.2]]), sparse([[0.5, 0.5, 0.7]]), columns([True] * 3, shared=[True, True, False]), limit=1
+    )
+    np.testing.assert_allclose(result.toarray(), [[1, 0, 0.7]])
+
+
+def test_other_columns_give_way_to_some():
+    before = sparse([[0.5, 0.5, 0], [0, 0.2, 0.8], [0, 0, 0], [0.9, 0.1, 0]])
+    new = sparse([[0, 0, 0.4], [0, 0, 1], [0, 0, 0.3], [0, 0, 0]])
+    which = columns([False, False, True], [False, True, False], yielding=True)
+    result = put_in(before, new, which).toarray()
+    np.testing.assert_allclose(result, [[0.1, 0.5, 0.4], [0, 0.2, 0.8], [0, 0, 0.3], [0.9, 0.1, 0]])
+    kept = put_in(before, new, which, normalise=False).toarray()
+    np.testing.assert_allclose(kept, [[0.5, 0.5, 0.4], [0, 0.2, 1], [0, 0, 0.3], [0.9, 0.1, 0]])
+
+
+def test_tiny_weights_go_and_tiny_masks_entirely():
+    which = columns([True] * 3, shared=[True, True, False])
+    result = put_in(csr_array((1, 3)), sparse([[0.004, 0.996, 0.004]]), which, threshold=0.01)
+    np.testing.assert_allclose(result.toarray(), [[0, 1, 0]])
+    assert result.nnz == 1
+
+
+@pytest.mark.parametrize("limit", [0, 1, 2, 4])
+def test_limits_and_sums_go_together(limit):
+    random = np.random.default_rng(limit)
+    new = csr_array(random.dirichlet(np.ones(6), 50))
+    result = put_in(csr_array((50, 6)), new, columns([True] * 6), threshold=0.01, limit=limit)
+    np.testing.assert_allclose(row_sums(result), 1)
+    assert np.diff(result.indptr).max() <= (limit or 6)
+
+
+def test_added_weights():
+    result = put_in(sparse([[0.5, 0.5]]), sparse([[1, 0]]), columns([True, True]), factor=0.5, add=True)
+    np.testing.assert_allclose(result.toarray(), [[2 / 3, 1 / 3]])
