@@ -4,8 +4,9 @@
 from .dense.densify import DenseMatch, densify, densify_steps
 from .dense.quality import MatchQuality
 from .hierarchical.settings import MatchSettings
+from .hierarchical.sparse_result import CoarseMatch, Level
 from .matching.matching import match, match_steps
-from .matching.result import CoarseMatch, Level, MatchResult
+from .matching.result import MatchResult
 from .matching.retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
 from .matching.symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
 from .matching.symmetry_map import symmetry_map, symmetry_map_steps

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..mesh.reflection import reflected_mesh, reflected_points
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..registration.fine_registration import Polish, finer_surfaces_steps
@@ -20,7 +21,6 @@ from ..runtime.worker import call_helpers
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.genus_reduction import evened_steps
 from ..shapes.landmarks import placed_at_vertices
-from ..shapes.reflection import reflected_mesh, reflected_points
 from ..shapes.shape import Shape
 from ..shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
 from .components.extended_maps import whole_maps_steps

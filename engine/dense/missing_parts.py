@@ -10,7 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..mesh.connectivity.neighbour_means import neighbour_means
+from ..mesh.connectivity.adjacency import neighbour_means
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

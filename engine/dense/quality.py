@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import expit
 
-from ..mesh.connectivity.neighbour_means import neighbour_means
+from ..mesh.connectivity.adjacency import neighbour_means
 from ..mesh.surface_map import SurfaceMap
 from .missing_parts import round_trips, with_partner
 

@@ -9,9 +9,9 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
+from ..mesh.connectivity.adjacency import neighbour_means
 from ..mesh.connectivity.boundary_loops import boundary_loops
 from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
-from ..mesh.connectivity.neighbour_means import neighbour_means
 from ..runtime.progress import Progress, Steps
 
 if TYPE_CHECKING:

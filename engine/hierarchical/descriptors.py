@@ -14,7 +14,6 @@ __all__ = [
     "bin_difference",
     "distance_histograms",
     "earth_movers_distance",
-    "squared_differences",
     "weighted_correlation",
 ]
 
@@ -101,12 +100,6 @@ def bin_difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> N
     for f, g in zip(first.T, second.T, strict=True):  # one entry at a time keeps memory at n x m
         result += np.abs(f[:, None] - g)
     return result
-
-
-def squared_differences(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Squared Euclidean distance of every row of `first` (n, d) from every row of `second` (m, d): (n, m)."""
-    square = np.square(first).sum(axis=1)[:, None] + np.square(second).sum(axis=1) - 2 * first @ second.T
-    return np.maximum(square, 0)
 
 
 def weighted_correlation(

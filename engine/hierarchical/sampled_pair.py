@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement, signed_areas
+from ..geometry.squared_differences import squared_differences
 from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
-from .descriptors import bin_difference, distance_histograms, earth_movers_distance, squared_differences
+from .descriptors import bin_difference, distance_histograms, earth_movers_distance
 from .diffusion import DiffusionMetric, automatic_time
 from .problem import MatchingProblem
 from .sign_sequences import SignSequence, consistent_sequences

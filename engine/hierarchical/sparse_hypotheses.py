@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement, signed_areas
+from ..geometry.squared_differences import squared_differences
 from ..runtime.progress import Progress, Steps, within
-from .descriptors import squared_differences, weighted_correlation
+from .descriptors import weighted_correlation
 from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .sampled_pair import Pair

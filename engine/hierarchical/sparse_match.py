@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..matching.result import Level
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.progress import Steps, within
 from ..shapes.landmarks import placed_at_vertices
@@ -18,6 +17,7 @@ from .compared.gmds import gmds_steps
 from .compared.stress_descent import Stress, settle_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .sparse_hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
+from .sparse_result import Level
 
 if TYPE_CHECKING:
     from collections.abc import Callable

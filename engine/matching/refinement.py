@@ -10,6 +10,7 @@ import numpy as np
 from ..dense.components.masked_maps import piece_of, with_pieces_only
 from ..dense.dense_registration import EIGENPAIRS, RegisteredPair
 from ..dense.densify import dense_match_steps
+from ..mesh.reflection import reflected_mesh
 from ..mesh.surface_points import SurfacePoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
@@ -18,7 +19,6 @@ from ..runtime.errors import MatchError
 from ..runtime.progress import run, within
 from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
 from ..shapes.landmarks import locate_landmarks
-from ..shapes.reflection import reflected_mesh
 from ..shapes.shape import Shape
 from ..shapes.shape_preparation import finer_shapes
 

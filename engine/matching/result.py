@@ -11,62 +11,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..dense.quality import MatchQuality
+    from ..hierarchical.sparse_result import CoarseMatch, Level
     from ..mesh.surface_map import SurfaceMap
     from ..mesh.surface_points import SurfacePoints
 
-__all__ = ["CoarseMatch", "Level", "MatchResult"]
-
-
-@dataclass(frozen=True, eq=False)
-class CoarseMatch:
-    """The exact first step.
-
-    Attributes
-    ----------
-    source_vertices, target_vertices : (n,) array of int
-        The matched farthest point samples.
-    candidates : int
-        How many points of the target were offered.
-    cost : float
-        Distortion of this matching.
-    lower_bound : float
-        No matching of these points to these candidates (and distinct from the better ones returned before it) costs
-        less.
-    proven : bool
-        Whether `cost` is the optimum.
-    nodes : int
-        Nodes of the search tree visited.
-    """
-
-    source_vertices: NDArray[np.int64]
-    target_vertices: NDArray[np.int64]
-    candidates: int
-    cost: float
-    lower_bound: float
-    proven: bool
-    nodes: int
-
-
-@dataclass(frozen=True, eq=False)
-class Level:
-    """One level of the hierarchy, as it ended.
-
-    Attributes
-    ----------
-    points : int
-        Number of matched points.
-    iterations : int
-        Relaxed solves until convergence.
-    distortion : float
-        Distortion at the end of the level.
-    target_points : SurfacePoints
-        Where on the target the points lie at the end of the level.
-    """
-
-    points: int
-    iterations: int
-    distortion: float
-    target_points: SurfacePoints
+__all__ = ["MatchResult"]
 
 
 @dataclass(frozen=True, eq=False)

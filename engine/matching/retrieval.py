@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..hierarchical.descriptors import distance_histograms, earth_movers_distance, squared_differences
+from ..geometry.squared_differences import squared_differences
+from ..hierarchical.descriptors import distance_histograms, earth_movers_distance
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings

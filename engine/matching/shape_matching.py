@@ -17,6 +17,7 @@ from ..dense.initial_maps import RoughSearch
 from ..hierarchical.hierarchy import refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
+from ..hierarchical.sparse_result import CoarseMatch
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
@@ -24,7 +25,7 @@ from ..shapes.genus_reduction import evened_steps
 from ..shapes.landmarks import locate_landmarks, placed_at_vertices
 from ..shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from ..shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
-from .result import CoarseMatch, MatchResult
+from .result import MatchResult
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

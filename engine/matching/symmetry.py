@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement, signed_areas
-from ..hierarchical.descriptors import squared_differences, weighted_correlation
+from ..geometry.squared_differences import squared_differences
+from ..hierarchical.descriptors import weighted_correlation
 from ..hierarchical.exact.branch_and_bound import Exclusion, branch_and_bound_steps
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.sampled_pair import Pair

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..mesh.closest_points import ClosestPoints, facing
+from ..mesh.reflection import reflected_mesh
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..shapes.reflection import reflected_mesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

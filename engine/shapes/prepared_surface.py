@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..mesh.closest_points import ClosestPoints
+from ..mesh.reflection import reflected_mesh, reflected_points
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.cleaning import clean
@@ -48,6 +49,18 @@ class PreparedSurface:
     cleaned: CleanSurface
     proxy: Proxy
     wanted: int
+
+    def reflected(self) -> PreparedSurface:
+        """Reflect the surface in a plane; vertices and triangles keep their numbers."""
+        original, cleaned, proxy = reflected_mesh(self.original), self.cleaned, self.proxy
+        pieces = tuple(piece.reflected() for piece in cleaned.pieces)
+        coarse = pieces[0].mesh if proxy.mesh is cleaned.mesh else reflected_mesh(proxy.mesh)
+        return replace(
+            self,
+            original=original,
+            cleaned=replace(cleaned, original=original, pieces=pieces),
+            proxy=replace(proxy, mesh=coarse, points=reflected_points(coarse, proxy.points)),
+        )
 
     @property
     def mesh(self) -> TriangleMesh:

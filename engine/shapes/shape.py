@@ -20,7 +20,6 @@ from ..geometry.sampling import FarthestPointSampler
 from ..runtime.progress import Progress, Steps, run
 from .prepared_surface import PreparedSurface, prepared_steps
 from .proxy import Proxy
-from .reflection import reflected_surface
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -245,7 +244,7 @@ class Shape:
     def reflected(self) -> Shape:
         """Return the shape as it is seen in a mirror, with all that does not depend on the side it is seen from."""
         shape = copy.copy(self)
-        shape.surface, shape.joined = reflected_surface(self.surface), None
+        shape.surface, shape.joined = self.surface.reflected(), None
         shape.original, shape.mesh = shape.surface.original, shape.surface.mesh
         shape._views, shape._finer = {}, None  # noqa: SLF001
         shape.__dict__.pop("directions", None)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..hierarchical.descriptors import squared_differences
+from ..geometry.squared_differences import squared_differences
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from ...mesh.surface_map import SurfaceMap
 from ..quality import of_covered_part
@@ -13,13 +13,29 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ...matching.result import MatchResult
     from ...mesh.triangle_mesh import TriangleMesh
     from ..densify import DenseMatch
+    from ..quality import MatchQuality
 
 __all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]
 
-Maps = TypeVar("Maps", "DenseMatch", "MatchResult")
+
+class _HasMaps(Protocol):
+    """A dataclass with the maps of a match, such as `DenseMatch`."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    @property
+    def source_to_target(self) -> SurfaceMap | None: ...
+
+    @property
+    def target_to_source(self) -> SurfaceMap | None: ...
+
+    @property
+    def quality(self) -> MatchQuality | None: ...
+
+
+Maps = TypeVar("Maps", bound=_HasMaps)
 
 _LEAST_LEFT = 0.1
 """Part of a surface without a partner from which on it is left out: less does little harm, and may be a mistake."""

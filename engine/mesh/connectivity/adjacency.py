@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which vertices of a mesh are joined by an edge, as a matrix."""
+"""Adjacent vertices of a mesh: the adjacency matrix, and means over neighbours."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from ..triangle_mesh import TriangleMesh
 
-__all__ = ["vertex_adjacency"]
+__all__ = ["neighbour_means", "vertex_adjacency"]
 
 
 def vertex_adjacency(mesh: TriangleMesh) -> csr_array:
@@ -19,3 +21,10 @@ def vertex_adjacency(mesh: TriangleMesh) -> csr_array:
     n, (a, b) = mesh.vertex_count, mesh.edges.T
     ends = (np.concatenate([a, b]), np.concatenate([b, a]))
     return csr_array(coo_array((np.ones(2 * len(a)), ends), shape=(n, n)))
+
+
+def neighbour_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of values per vertex (n,) over each vertex and its neighbours."""
+    (first, second), n = mesh.edges.T, mesh.vertex_count
+    sums = values + np.bincount(first, values[second], n) + np.bincount(second, values[first], n)
+    return sums / (1 + np.bincount(first, minlength=n) + np.bincount(second, minlength=n))

@@ -16,9 +16,9 @@ from engine import (
     densify_steps,
     match,
     match_steps,
-    polishing,
 )
 from engine.dense.missing_parts import round_trips
+from engine.registration import fine_registration
 from engine.registration.elastic import ElasticSurface
 from tests.bodies import mirrored_body
 from tests.messes import together
@@ -223,14 +223,14 @@ def test_a_coarse_stand_in_gives_nearly_the_same_map(result, bodies, monkeypatch
 
 def test_full_resolution_starts_from_the_strain_that_the_stand_ins_led_to(bodies, monkeypatch):
     strained, registered = [], []
-    own, steps = ElasticSurface.strained, polishing.register_steps
+    own, steps = ElasticSurface.strained, fine_registration.register_steps
 
     def recorded(*given, elastic, **others):
         registered.append(elastic)
         return steps(*given, elastic=elastic, **others)
 
     monkeypatch.setattr(ElasticSurface, "strained", lambda *given: strained.append(own(*given)) or strained[-1])
-    monkeypatch.setattr(polishing, "register_steps", recorded)
+    monkeypatch.setattr(fine_registration, "register_steps", recorded)
     fine = TriangleMesh(*subdivided(bodies[1].vertices, bodies[1].triangles, 2))
     match(bodies[0], Shape(fine, "target", proxy_vertices=700), QUICK)
     assert len(registered) == 2  # there and back

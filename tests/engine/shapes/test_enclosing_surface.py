@@ -12,7 +12,6 @@ from engine.mesh.surface_points import SurfacePoints
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
 from engine.shapes.enclosing_surface import separate_limbs, with_limbs_steps
-from engine.shapes.reflection import reflected_surface
 from tests.limbs import modular_creature
 from tests.messes import together
 from tests.shapes import creature, icosphere, permuted, rotation
@@ -105,7 +104,7 @@ def test_gaps_are_bridged(body):
 
 
 def test_seen_in_a_mirror_it_stands_for_the_mirrored_body(surface, body):
-    mirrored = reflected_surface(surface)
+    mirrored = surface.reflected()
     back = mirrored.on_original(mirrored.cleaned.main.places(np.arange(body.mesh.vertex_count)))
     away = np.linalg.norm(back.positions - body.mesh.vertices * [-1, 1, 1], axis=1) / 2.48
     assert np.median(away) < 0.004

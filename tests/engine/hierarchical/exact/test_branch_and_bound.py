@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
-from engine import branch_and_bound as module
-from engine import incumbent as incumbent_module
+from engine.hierarchical.exact import branch_and_bound as module
+from engine.hierarchical.exact import incumbent as incumbent_module
 from engine.hierarchical.exact.branch_and_bound import (
     TOLERANCE,
     Exclusion,

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The exact first step and the levels of a hierarchical match, as they are returned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ..mesh.surface_points import SurfacePoints
+
+__all__ = ["CoarseMatch", "Level"]
+
+
+@dataclass(frozen=True, eq=False)
+class CoarseMatch:
+    """The exact first step.
+
+    Attributes
+    ----------
+    source_vertices, target_vertices : (n,) array of int
+        The matched farthest point samples.
+    candidates : int
+        How many points of the target were offered.
+    cost : float
+        Distortion of this matching.
+    lower_bound : float
+        No matching of these points to these candidates (and distinct from the better ones returned before it) costs
+        less.
+    proven : bool
+        Whether `cost` is the optimum.
+    nodes : int
+        Nodes of the search tree visited.
+    """
+
+    source_vertices: NDArray[np.int64]
+    target_vertices: NDArray[np.int64]
+    candidates: int
+    cost: float
+    lower_bound: float
+    proven: bool
+    nodes: int
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """One level of the hierarchy, as it ended.
+
+    Attributes
+    ----------
+    points : int
+        Number of matched points.
+    iterations : int
+        Relaxed solves until convergence.
+    distortion : float
+        Distortion at the end of the level.
+    target_points : SurfacePoints
+        Where on the target the points lie at the end of the level.
+    """
+
+    points: int
+    iterations: int
+    distortion: float
+    target_points: SurfacePoints

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces as they are seen in a mirror: with the same vertices and distances, but with left and right exchanged."""
+
+from __future__ import annotations
+
+from .surface_points import SurfacePoints
+from .triangle_mesh import TriangleMesh
+
+__all__ = ["reflected_mesh", "reflected_points"]
+
+
+def reflected_mesh(mesh: TriangleMesh) -> TriangleMesh:
+    """Reflect a mesh; its normals still point outwards, because the last two corners of triangles are exchanged."""
+    return TriangleMesh(mesh.vertices * [-1, 1, 1], mesh.triangles[:, [0, 2, 1]])
+
+
+def reflected_points(reflection: TriangleMesh, points: SurfacePoints) -> SurfacePoints:
+    """Name points of a mesh as points of its reflection, or the other way round."""
+    return SurfacePoints.from_barycentric(reflection, points.triangles, points.barycentric[:, [0, 2, 1]])
