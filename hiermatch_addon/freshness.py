@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 from bpy.app.handlers import persistent
 
-from .access import summary_of
 from .halves import find_carriers
 from .landmark_layer import has_landmarks
+from .panel_state import summary_of
 from .redraw import redraw_sidebars
 from .steering_lists import sync_lists
 from .writing import is_marked

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 import bpy
 
 from ..engine import HierMatchError
-from .access import progress_of, view_layer_of, window_manager_of
+from .access import view_layer_of, window_manager_of
+from .panel_state import progress_of
 from .redraw import redraw_sidebars
 from .translated_text import translated
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..engine import HierMatchError
-from .access import state_of, window_manager_of
+from .access import window_manager_of
 from .errors import ObjectError
 from .pair import check_writable, find_pair
+from .panel_state import state_of
 from .running import is_running
 from .steering_lists import sync_lists
 from .translated_text import translated

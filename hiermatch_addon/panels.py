@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from .access import layout_of, state_of
+from .access import layout_of
 from .pair import selected_meshes
+from .panel_state import state_of
 from .panel_text import draw_text
 from .phrases import counted
 from .preset_menu import HIERMATCH_PT_presets

@@ -15,7 +15,7 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
-from .access import state_of
+from .panel_state import state_of
 from .properties import OPTION_NAMES
 from .retarget_options import KINDS, option_names
 from .retarget_properties import retarget_of

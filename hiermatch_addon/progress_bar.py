@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from .access import progress_of, window_manager_of
+from .access import window_manager_of
+from .panel_state import progress_of
 from .panel_text import draw_text
 from .running import is_running, running_panel
 from .translated_text import translated

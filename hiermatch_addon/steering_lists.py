@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .access import summary_of
 from .halves import find_common
 from .landmarks import find_landmarks
+from .panel_state import summary_of
 from .stored_match import StoredMatch
 
 if TYPE_CHECKING:

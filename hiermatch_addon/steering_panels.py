@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from .access import layout_of, mesh_of, state_of, window_manager_of
+from .access import layout_of, mesh_of, window_manager_of
 from .job_operator import JobOperator
+from .panel_state import state_of
 from .progress_bar import draw_progress
 from .running import running_panel
 from .steering_lists import steered_pair

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .access import summary_of
+from .panel_state import summary_of
 from .steering_lists import common_match
 from .stored_match import StoredMatch
 

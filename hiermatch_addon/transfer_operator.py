@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from .access import state_of, view_layer_of
+from .access import view_layer_of
 from .errors import ObjectError
 from .freshness import refresh
 from .job import job_options
 from .job_operator import JobOperator
 from .pair import named_object, selected_meshes
+from .panel_state import state_of
 from .properties import PREFIX_LENGTH
 from .retarget_properties import remember_transfer
 from .running import can_start

@@ -13,7 +13,7 @@ from ..runtime.errors import MatchError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["MatchingProblem"]
+__all__ = ["MatchingProblem", "forbidding_cost"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,3 +78,16 @@ class MatchingProblem:
     def cost(self, assignment: NDArray[np.int64]) -> float:
         """Evaluate the distortion of an assignment (n,) of candidate numbers (equation 2)."""
         return self.linear_cost(assignment) + self.quadratic_weight * self.quadratic_cost(assignment)
+
+
+def forbidding_cost(problem: MatchingProblem) -> float:
+    """Return a cost that rules a pair out, without the arithmetic of infinity.
+
+    It is four times what the cost of a feasible matching can be in absolute value, so that with a single such pair
+    any sum exceeds the cost of any feasible matching, and yet the rounding of sums does no harm.
+    """
+    n, _ = problem.size
+    linear = np.abs(problem.linear, where=np.isfinite(problem.linear), out=np.zeros(problem.linear.shape))
+    farthest = max(problem.source_distances.max(initial=0.0), problem.target_distances.max(initial=0.0))
+    most = n * float(linear.max(initial=0.0)) + n * n * problem.quadratic_weight * float(farthest) ** 2
+    return 4 * most if most > 0 else 1.0

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..access import state_of
 from ..freshness import refresh
 from ..match_exchange import apply_match, collect_match
 from ..match_file import load_match, save_match
+from ..panel_state import state_of
 from ..summary import remember
 from .exit_codes import EXIT_CODES
 from .match import add_pair_arguments, load_pair

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from .. import writing
-from ..access import state_of, view_layer_of
+from ..access import view_layer_of
 from ..freshness import refresh
 from ..job import MatchJob, job_options
 from ..match_exchange import collect_match
 from ..match_file import save_match
+from ..panel_state import state_of
 from ..summary import remember
 from .console import Console, drive
 from .exit_codes import EXIT_CODES, ExitCode

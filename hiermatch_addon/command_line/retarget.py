@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..access import state_of
 from ..freshness import refresh
 from ..job import job_options
+from ..panel_state import state_of
 from ..retarget_options import chosen_transfers
 from ..retarget_properties import remember_transfer
 from ..summary import remember

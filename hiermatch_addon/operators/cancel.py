@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..access import progress_of, window_manager_of
+from ..access import window_manager_of
+from ..panel_state import progress_of
 from ..running import is_running
 from ..translated_text import translated
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, cast
 import bpy
 
 from ...engine import HierMatchError
-from ..access import mesh_of, state_of, view_layer_of
+from ..access import mesh_of, view_layer_of
 from ..pair import check_writable, named_object, selected_meshes
+from ..panel_state import state_of
 from ..running import can_start
 from ..steering_lists import sync_lists
 from ..translated_text import translated

@@ -11,11 +11,12 @@ import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from ...engine import HierMatchError
-from ..access import state_of, view_layer_of
+from ..access import view_layer_of
 from ..halves import find_keyed
 from ..match_exchange import collect_match
 from ..match_file import save_match
 from ..pair import find_pair, selected_meshes
+from ..panel_state import state_of
 from ..translated_text import translated
 
 if TYPE_CHECKING:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ..access import state_of, view_layer_of
+from ..access import view_layer_of
 from ..errors import ObjectError
 from ..flipping import FlipJob
 from ..freshness import refresh
 from ..halves import Half, find_half, find_keyed
 from ..job_operator import JobOperator
 from ..pair import named_object
+from ..panel_state import state_of
 from ..running import can_start
 from ..summary import remember
 from ..translated_text import translated

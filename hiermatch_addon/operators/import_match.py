@@ -11,11 +11,11 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 
 from ...engine import HierMatchError
-from ..access import state_of
 from ..freshness import refresh
 from ..match_exchange import apply_match
 from ..match_file import load_match
 from ..pair import find_pair
+from ..panel_state import state_of
 from ..running import can_start
 from ..summary import remember
 from ..translated_text import translated

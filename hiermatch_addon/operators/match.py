@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ..access import layout_of, state_of, view_layer_of
+from ..access import layout_of, view_layer_of
 from ..freshness import refresh
 from ..job import MatchJob, job_options
 from ..job_operator import JobOperator
 from ..pair import find_pair
+from ..panel_state import state_of
 from ..properties import OUTPUT_NAMES, MatchOptions
 from ..running import can_start
 from ..setting_groups import APART, shown_groups

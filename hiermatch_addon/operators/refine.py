@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ..access import state_of
 from ..errors import ObjectError
 from ..freshness import refresh
 from ..job_operator import JobOperator
+from ..panel_state import state_of
 from ..refining import RefineJob
 from ..running import can_start
 from ..steering_lists import common_match

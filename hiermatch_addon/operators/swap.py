@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..access import mesh_of, state_of
+from ..access import mesh_of
 from ..halves import find_common
+from ..panel_state import state_of
 from ..translated_text import translated
 from ..writing import change_kept
 

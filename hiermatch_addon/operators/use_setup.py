@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..access import state_of
+from ..panel_state import state_of
 from ..setups import SETUP_ITEMS, use_setup
 from ..translated_text import translated
 

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...mesh.triangle_mesh import TriangleMesh
-    from ..densify import DenseMatch
     from ..quality import MatchQuality
 
 __all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]
@@ -98,10 +97,10 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: NDArray[np.in
 
 
 def with_pieces_only(
-    maps: DenseMatch,
+    maps: Maps,
     meshes: tuple[TriangleMesh, TriangleMesh],
     pieces: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None],
-) -> DenseMatch:
+) -> Maps:
     """Say of maps what was left out of either mesh, see `with_piece_only`; of None nothing was."""
     for mesh, covered, of_source in zip(meshes, pieces, (True, False), strict=True):
         if covered is not None:

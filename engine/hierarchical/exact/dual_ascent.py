@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ...runtime.progress import Progress
-from .incumbent import forbidding_cost
+from ..problem import forbidding_cost
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

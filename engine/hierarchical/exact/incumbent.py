@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..problem import forbidding_cost
 from .local_search import improve_matching
 
 if TYPE_CHECKING:
@@ -17,23 +18,10 @@ if TYPE_CHECKING:
     from ..problem import MatchingProblem
     from .exclusion import Exclusion
 
-__all__ = ["TOLERANCE", "Incumbent", "forbidding_cost"]
+__all__ = ["TOLERANCE", "Incumbent"]
 
 TOLERANCE = 1e-7
 """Relative tolerance of a proof: no matching costs less than ``(1 - TOLERANCE)`` times a proven one."""
-
-
-def forbidding_cost(problem: MatchingProblem) -> float:
-    """Return a cost that rules a pair out, without the arithmetic of infinity.
-
-    It is four times what the cost of a feasible matching can be in absolute value, so that with a single such pair
-    any sum exceeds the cost of any feasible matching, and yet the rounding of sums does no harm.
-    """
-    n, _ = problem.size
-    linear = np.abs(problem.linear, where=np.isfinite(problem.linear), out=np.zeros(problem.linear.shape))
-    farthest = max(problem.source_distances.max(initial=0.0), problem.target_distances.max(initial=0.0))
-    most = n * float(linear.max(initial=0.0)) + n * n * problem.quadratic_weight * float(farthest) ** 2
-    return 4 * most if most > 0 else 1.0
 
 
 class Incumbent:

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The state of the panels, which is attached to scene and window manager, typed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+if TYPE_CHECKING:
+    import bpy
+
+    from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
+
+__all__ = ["progress_of", "state_of", "summary_of"]
+
+
+def state_of(context: bpy.types.Context) -> HIERMATCH_PG_scene:
+    """Return the panel's state on the scene."""
+    return cast("Any", context.scene).hiermatch
+
+
+def summary_of(scene: bpy.types.Scene) -> HIERMATCH_PG_summary:
+    """Return what a scene's panel remembers of the last match."""
+    return cast("Any", scene).hiermatch.summary
+
+
+def progress_of(context: bpy.types.Context) -> HIERMATCH_PG_progress:
+    """Return the progress of the running match."""
+    return cast("Any", context.window_manager).hiermatch
