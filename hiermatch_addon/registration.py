@@ -9,57 +9,57 @@ import bpy
 
 from ..engine.runtime.worker import close_helpers
 from .command_line import register_command, unregister_command
-from .freshness import start_watching, stop_watching
-from .hover import HIERMATCH_GGT_hover, HIERMATCH_GT_hover
-from .operators.add_landmark import HIERMATCH_OT_add_landmark
+from .common.translations import register_translations, unregister_translations
 from .operators.cancel import HIERMATCH_OT_cancel
+from .operators.carrying.fit_rig import HIERMATCH_OT_fit_rig
+from .operators.carrying.retarget import HIERMATCH_OT_retarget
+from .operators.carrying.symmetrise import HIERMATCH_OT_symmetrise
+from .operators.carrying.transfer_attributes import HIERMATCH_OT_transfer_attributes
+from .operators.carrying.transfer_shape_keys import HIERMATCH_OT_transfer_shape_keys
+from .operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
+from .operators.carrying.transfer_weights import HIERMATCH_OT_transfer_weights
+from .operators.carrying.wrap import HIERMATCH_OT_wrap
 from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
-from .operators.edit_landmarks import (
+from .operators.export_match import HIERMATCH_OT_export_match
+from .operators.flip import HIERMATCH_OT_flip
+from .operators.import_match import HIERMATCH_OT_import_match
+from .operators.match import HIERMATCH_OT_match
+from .operators.refine import HIERMATCH_OT_refine
+from .operators.show import HIERMATCH_OT_show, HIERMATCH_OT_write_regions
+from .operators.steering.add_landmark import HIERMATCH_OT_add_landmark
+from .operators.steering.edit_landmarks import (
     HIERMATCH_OT_clear_landmarks,
     HIERMATCH_OT_remove_landmark,
     HIERMATCH_OT_select_landmark,
     HIERMATCH_OT_switch_landmark,
 )
-from .operators.edit_pairs import (
+from .operators.steering.edit_pairs import (
     HIERMATCH_OT_lock_pair,
     HIERMATCH_OT_remove_pair,
     HIERMATCH_OT_select_pair,
 )
-from .operators.export_match import HIERMATCH_OT_export_match
-from .operators.fit_rig import HIERMATCH_OT_fit_rig
-from .operators.flip import HIERMATCH_OT_flip
-from .operators.import_match import HIERMATCH_OT_import_match
-from .operators.landmark_files import HIERMATCH_OT_load_landmarks, HIERMATCH_OT_save_landmarks
-from .operators.match import HIERMATCH_OT_match
-from .operators.mirror_landmarks import HIERMATCH_OT_mirror_landmarks
-from .operators.pick_landmarks import HIERMATCH_OT_pick_landmarks
-from .operators.refine import HIERMATCH_OT_refine
-from .operators.retarget import HIERMATCH_OT_retarget
-from .operators.show import HIERMATCH_OT_show, HIERMATCH_OT_write_regions
+from .operators.steering.landmark_files import HIERMATCH_OT_load_landmarks, HIERMATCH_OT_save_landmarks
+from .operators.steering.mirror_landmarks import HIERMATCH_OT_mirror_landmarks
+from .operators.steering.pick_landmarks import HIERMATCH_OT_pick_landmarks
 from .operators.swap import HIERMATCH_OT_swap
-from .operators.symmetrise import HIERMATCH_OT_symmetrise
-from .operators.transfer_attributes import HIERMATCH_OT_transfer_attributes
-from .operators.transfer_shape_keys import HIERMATCH_OT_transfer_shape_keys
-from .operators.transfer_uvs import HIERMATCH_OT_transfer_uvs
-from .operators.transfer_weights import HIERMATCH_OT_transfer_weights
 from .operators.use_setup import HIERMATCH_OT_use_setup
-from .operators.wrap import HIERMATCH_OT_wrap
-from .overlay import start_overlay, stop_overlay
-from .panels import HIERMATCH_PT_match
-from .preset_menu import HIERMATCH_OT_add_preset, HIERMATCH_PT_presets, register_presets, unregister_presets
-from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
-from .retarget_panels import HIERMATCH_PT_retarget, HIERMATCH_PT_symmetry
-from .retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
-from .steering_panels import (
+from .overlay.drawing import start_overlay, stop_overlay
+from .overlay.hover import HIERMATCH_GGT_hover, HIERMATCH_GT_hover
+from .panels.match_panels import HIERMATCH_PT_match
+from .panels.preset_menu import HIERMATCH_OT_add_preset, HIERMATCH_PT_presets, register_presets, unregister_presets
+from .panels.retarget_panels import HIERMATCH_PT_retarget, HIERMATCH_PT_symmetry
+from .panels.steering_panels import (
     HIERMATCH_PT_landmarks,
     HIERMATCH_PT_overlay,
     HIERMATCH_PT_pairs,
     HIERMATCH_UL_landmarks,
     HIERMATCH_UL_pairs,
 )
-from .steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
-from .translations import register_translations, unregister_translations
+from .properties.freshness import start_watching, stop_watching
+from .properties.properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
+from .properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
+from .transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
 
 __all__ = ["CLASSES", "register", "unregister"]
 

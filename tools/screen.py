@@ -22,7 +22,7 @@ _ROOM = 1.25
 _ASIDE = 0.09
 """How far they stand left of the middle, where the sidebar covers nothing, in units of that distance."""
 
-_PANELS = ("panels", "retarget_panels")
+_PANELS = ("match_panels", "retarget_panels")
 """Modules whose panels have collapsible sections."""
 
 _shown: set[str] = set()
@@ -69,7 +69,7 @@ def show_panels(*labels: str) -> None:
 def fold(*opened: str) -> None:
     """Draw the panels with these sections open, and all others closed."""
     for name in _PANELS:
-        panels: Any = importlib.import_module(f"{PACKAGE}.hiermatch_addon.{name}")
+        panels: Any = importlib.import_module(f"{PACKAGE}.hiermatch_addon.panels.{name}")
         own = getattr(panels, "own_layout_of", panels.layout_of)
         panels.own_layout_of = own
         panels.layout_of = lambda owner, own=own: FoldedLayout(own(owner), opened)

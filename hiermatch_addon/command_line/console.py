@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from ..access import view_layer_of
+from ..common.access import view_layer_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     import bpy
 
-    from ..job_operator import Job
+    from ..jobs.job_operator import Job
 
 __all__ = ["Console", "Interruption", "drive", "interruptible"]
 

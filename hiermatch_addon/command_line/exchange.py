@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..freshness import refresh
-from ..match_exchange import apply_match, collect_match
-from ..match_file import load_match, save_match
-from ..panel_state import state_of
-from ..summary import remember
+from ..properties.freshness import refresh
+from ..properties.panel_state import state_of
+from ..properties.summary import remember
+from ..storage.match_exchange import apply_match, collect_match
+from ..storage.match_file import load_match, save_match
 from .exit_codes import EXIT_CODES
 from .match import add_pair_arguments, load_pair
 from .outputs import output_argument, save

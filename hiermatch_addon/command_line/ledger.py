@@ -9,7 +9,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..file_writing import write_whole
+from ..common.file_writing import write_whole
 from .reports import FORMAT, STATUSES, file_state
 
 if TYPE_CHECKING:

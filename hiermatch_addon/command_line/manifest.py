@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import ObjectError
+from ..common.errors import ObjectError
 from .exit_codes import UsageError
 from .options import option_names, to_arguments
 from .retarget import NOT_OF_THE_MATCH

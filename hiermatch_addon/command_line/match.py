@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from .. import writing
-from ..access import view_layer_of
-from ..freshness import refresh
-from ..job import MatchJob, job_options
-from ..match_exchange import collect_match
-from ..match_file import save_match
-from ..panel_state import state_of
-from ..summary import remember
+from ..common.access import view_layer_of
+from ..jobs.job import MatchJob, job_options
+from ..properties.freshness import refresh
+from ..properties.panel_state import state_of
+from ..properties.summary import remember
+from ..storage import writing
+from ..storage.match_exchange import collect_match
+from ..storage.match_file import save_match
 from .console import Console, drive
 from .exit_codes import EXIT_CODES, ExitCode
 from .meshes import load_meshes, mesh_argument

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
 
-from ..access import mesh_of, view_layer_of
-from ..errors import ObjectError
+from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
 from .operator_errors import said_by
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import bpy
 
-from ..access import view_layer_of
-from ..errors import ObjectError
-from ..file_writing import beside
+from ..common.access import view_layer_of
+from ..common.errors import ObjectError
+from ..common.file_writing import beside
 from .meshes import has_operator
 from .operator_errors import said_by
 

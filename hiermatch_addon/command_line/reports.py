@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...engine import HierMatchError
-from ..access import mesh_of
-from ..file_writing import write_whole
+from ..common.access import mesh_of
+from ..common.file_writing import write_whole
 from .console import Console, interruptible
 from .exit_codes import ExitCode
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Sequence
 
-    from ..stored_match import StoredMatch
-    from ..transfer_job import Carried
+    from ..jobs.transfer_job import Carried
+    from ..storage.stored_match import StoredMatch
     from .meshes import MeshArgument
 
 __all__ = ["FORMAT", "STATUSES", "Report", "add_report_options", "file_state", "run_reported"]

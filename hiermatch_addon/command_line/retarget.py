@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..freshness import refresh
-from ..job import job_options
-from ..panel_state import state_of
-from ..retarget_options import chosen_transfers
-from ..retarget_properties import remember_transfer
-from ..summary import remember
-from ..transfer_job import TransferJob, TransferOptions
+from ..jobs.job import job_options
+from ..jobs.transfer_job import TransferJob, TransferOptions
+from ..properties.freshness import refresh
+from ..properties.panel_state import state_of
+from ..properties.summary import remember
+from ..transfers.options.retarget import chosen_transfers
+from ..transfers.retarget_properties import remember_transfer
 from .console import drive
 from .exit_codes import EXIT_CODES
 from .match import add_pair_arguments, add_result_options, load_pair, save_results, warn_if_nothing_is_written

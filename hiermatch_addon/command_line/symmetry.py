@@ -9,14 +9,14 @@ import bpy
 import numpy as np
 
 from ...engine import symmetry_map_steps
-from ..access import mesh_of, view_layer_of
-from ..match_file import MatchFile, save_match
-from ..mesh_io import position_digest, read_mesh, topology
-from ..pair import check_object
-from ..stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
+from ..common.access import mesh_of, view_layer_of
+from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.pair import check_object
+from ..storage.match_file import MatchFile, save_match
+from ..storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
+from ..storage.vertex_maps import StoredMaps
+from ..transfers.options.symmetrise import symmetrise_settings
 from ..transfers.symmetrise import SymmetriseJob
-from ..transfers.symmetrise_options import symmetrise_settings
-from ..vertex_maps import StoredMaps
 from .console import drive
 from .exit_codes import EXIT_CODES
 from .match import add_result_options

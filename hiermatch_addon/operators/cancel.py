@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..access import window_manager_of
-from ..panel_state import progress_of
-from ..running import is_running
-from ..translated_text import translated
+from ..common.access import window_manager_of
+from ..common.translated_text import translated
+from ..jobs.running import is_running
+from ..properties.panel_state import progress_of
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

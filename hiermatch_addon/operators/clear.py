@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, cast
 import bpy
 
 from ...engine import HierMatchError
-from ..access import mesh_of, view_layer_of
-from ..pair import check_writable, named_object, selected_meshes
-from ..panel_state import state_of
-from ..running import can_start
-from ..steering_lists import sync_lists
-from ..translated_text import translated
-from ..writing import clear, is_marked, kept, prefixes
+from ..common.access import mesh_of, view_layer_of
+from ..common.translated_text import translated
+from ..jobs.running import can_start
+from ..properties.panel_state import state_of
+from ..properties.steering_lists import sync_lists
+from ..scene.pair import check_writable, named_object, selected_meshes
+from ..storage.writing import clear, is_marked, kept, prefixes
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..demo_pair import add_demo_pair
-from ..running import can_start
+from ..demo.demo_pair import add_demo_pair
+from ..jobs.running import can_start
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

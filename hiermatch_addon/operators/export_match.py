@@ -11,13 +11,13 @@ import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from ...engine import HierMatchError
-from ..access import view_layer_of
-from ..halves import find_keyed
-from ..match_exchange import collect_match
-from ..match_file import save_match
-from ..pair import find_pair, selected_meshes
-from ..panel_state import state_of
-from ..translated_text import translated
+from ..common.access import view_layer_of
+from ..common.translated_text import translated
+from ..properties.panel_state import state_of
+from ..scene.pair import find_pair, selected_meshes
+from ..storage.halves import find_keyed
+from ..storage.match_exchange import collect_match
+from ..storage.match_file import save_match
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ..access import view_layer_of
-from ..errors import ObjectError
-from ..flipping import FlipJob
-from ..freshness import refresh
-from ..halves import Half, find_half, find_keyed
-from ..job_operator import JobOperator
-from ..pair import named_object
-from ..panel_state import state_of
-from ..running import can_start
-from ..summary import remember
-from ..translated_text import translated
+from ..common.access import view_layer_of
+from ..common.errors import ObjectError
+from ..common.translated_text import translated
+from ..jobs.flipping import FlipJob
+from ..jobs.job_operator import JobOperator
+from ..jobs.running import can_start
+from ..properties.freshness import refresh
+from ..properties.panel_state import state_of
+from ..properties.summary import remember
+from ..scene.pair import named_object
+from ..storage.halves import Half, find_half, find_keyed
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

@@ -11,14 +11,14 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 
 from ...engine import HierMatchError
-from ..freshness import refresh
-from ..match_exchange import apply_match
-from ..match_file import load_match
-from ..pair import find_pair
-from ..panel_state import state_of
-from ..running import can_start
-from ..summary import remember
-from ..translated_text import translated
+from ..common.translated_text import translated
+from ..jobs.running import can_start
+from ..properties.freshness import refresh
+from ..properties.panel_state import state_of
+from ..properties.summary import remember
+from ..scene.pair import find_pair
+from ..storage.match_exchange import apply_match
+from ..storage.match_file import load_match
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ..access import layout_of, view_layer_of
-from ..freshness import refresh
-from ..job import MatchJob, job_options
-from ..job_operator import JobOperator
-from ..pair import find_pair
-from ..panel_state import state_of
-from ..properties import OUTPUT_NAMES, MatchOptions
-from ..running import can_start
-from ..setting_groups import APART, shown_groups
-from ..summary import remember
-from ..translated_text import translated
+from ..common.access import layout_of, view_layer_of
+from ..common.translated_text import translated
+from ..jobs.job import MatchJob, job_options
+from ..jobs.job_operator import JobOperator
+from ..jobs.running import can_start
+from ..properties.freshness import refresh
+from ..properties.panel_state import state_of
+from ..properties.properties import OUTPUT_NAMES, MatchOptions
+from ..properties.setting_groups import APART, shown_groups
+from ..properties.summary import remember
+from ..scene.pair import find_pair
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

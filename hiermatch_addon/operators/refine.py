@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ..errors import ObjectError
-from ..freshness import refresh
-from ..job_operator import JobOperator
-from ..panel_state import state_of
-from ..refining import RefineJob
-from ..running import can_start
-from ..steering_lists import common_match
-from ..summary import remember
-from ..translated_text import translated
+from ..common.errors import ObjectError
+from ..common.translated_text import translated
+from ..jobs.job_operator import JobOperator
+from ..jobs.refining import RefineJob
+from ..jobs.running import can_start
+from ..properties.freshness import refresh
+from ..properties.panel_state import state_of
+from ..properties.steering_lists import common_match
+from ..properties.summary import remember
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

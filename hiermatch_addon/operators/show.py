@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ...engine import HierMatchError
-from ..access import mesh_of, window_manager_of
-from ..errors import ObjectError
-from ..pair import check_writable
-from ..redraw import redraw_views
-from ..running import can_start
-from ..steering_lists import common_match, steered_pair
-from ..steering_properties import steering_of
-from ..translated_text import translated
-from ..views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
+from ..common.access import mesh_of, window_manager_of
+from ..common.errors import ObjectError
+from ..common.redraw import redraw_views
+from ..common.translated_text import translated
+from ..jobs.running import can_start
+from ..properties.steering_lists import common_match, steered_pair
+from ..properties.steering_properties import steering_of
+from ..scene.pair import check_writable
+from ..storage.views.views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-    from ..halves import Half
+    from ..storage.halves import Half
 
 __all__ = ["HIERMATCH_OT_show", "HIERMATCH_OT_write_regions"]
 

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..access import mesh_of
-from ..halves import find_common
-from ..panel_state import state_of
-from ..translated_text import translated
-from ..writing import change_kept
+from ..common.access import mesh_of
+from ..common.translated_text import translated
+from ..properties.panel_state import state_of
+from ..storage.halves import find_common
+from ..storage.writing import change_kept
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-    from ..halves import Half
-    from ..properties import HIERMATCH_PG_summary
+    from ..properties.properties import HIERMATCH_PG_summary
+    from ..storage.halves import Half
 
 __all__ = ["HIERMATCH_OT_swap"]
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..panel_state import state_of
-from ..setups import SETUP_ITEMS, use_setup
-from ..translated_text import translated
+from ..common.translated_text import translated
+from ..properties.panel_state import state_of
+from ..properties.setups import SETUP_ITEMS, use_setup
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

@@ -12,9 +12,11 @@ from ...engine.retarget.values.corner_transfer import carry_normals
 from ...engine.retarget.values.deformation_gradients import surface_frames
 from ...engine.retarget.values.face_transfer import carry_face_values
 from ...engine.runtime.progress import Progress, within
-from ..access import mesh_of
-from ..attribute_choice import SEAMS, choose_attributes, taken_note
-from ..attribute_io import (
+from ..common.access import mesh_of
+from ..common.errors import ObjectError
+from ..common.phrases import counted
+from ..jobs.transfer import TransferReport
+from ..scene.attribute_io import (
     is_blended,
     is_free,
     read_attribute,
@@ -25,10 +27,8 @@ from ..attribute_io import (
     write_corner_normals,
     write_seams,
 )
-from ..errors import ObjectError
-from ..material_slots import assign_materials, read_materials
-from ..phrases import counted
-from ..transfer import TransferReport
+from ..scene.material_slots import assign_materials, read_materials
+from .attribute_choice import SEAMS, choose_attributes, taken_note
 
 if TYPE_CHECKING:
     from typing import Any
@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from ...engine.mesh.polygons import Polygons
     from ...engine.retarget.values.attribute_transfer import Domain
     from ...engine.runtime.progress import Steps
-    from ..attribute_io import AttributeLayout
-    from ..transfer import Passage
-    from .attributes_options import AttributeSettings
+    from ..jobs.transfer import Passage
+    from ..scene.attribute_io import AttributeLayout
+    from .options.attributes import AttributeSettings
 
 __all__ = ["AttributeTransfer"]
 

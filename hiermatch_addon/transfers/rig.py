@@ -10,17 +10,17 @@ import numpy as np
 from ...engine.retarget.rig.joint_placement import place_joints
 from ...engine.retarget.rig.rest_pose import is_posed, rest_pose
 from ...engine.runtime.progress import Progress
-from ..access import view_layer_of
-from ..armature_copy import copy_armature, move_joints, repoint
-from ..armatures import armature_of, find_armature, moving_armatures, read_rig
-from ..binding import bind, made_rig, mark_made
-from ..bone_constraints import adapt_constraints, displaced_bones
-from ..errors import ObjectError
-from ..key_drivers import counterparts
-from ..pair import check_writable
-from ..phrases import counted, listed
-from ..rest_action import keep_pose, pose_bases
-from ..transfer import TransferReport
+from ..common.access import view_layer_of
+from ..common.errors import ObjectError
+from ..common.phrases import counted, listed
+from ..jobs.transfer import TransferReport
+from ..scene.armature_copy import copy_armature, move_joints, repoint
+from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
+from ..scene.binding import bind, made_rig, mark_made
+from ..scene.bone_constraints import adapt_constraints, displaced_bones
+from ..scene.key_drivers import counterparts
+from ..scene.pair import check_writable
+from ..scene.rest_action import keep_pose, pose_bases
 
 if TYPE_CHECKING:
     import bpy
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from ...engine.retarget.rig.joint_placement import PlacedJoints
     from ...engine.retarget.rig.rest_pose import RestPose
     from ...engine.runtime.progress import Steps
-    from ..transfer import Passage
-    from .rig_options import RigSettings
+    from ..jobs.transfer import Passage
+    from .options.rig import RigSettings
 
 __all__ = ["RigTransfer"]
 

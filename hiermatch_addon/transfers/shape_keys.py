@@ -9,12 +9,13 @@ import numpy as np
 
 from ...engine.retarget.values.deformation_gradients import bone_frames, surface_frames
 from ...engine.retarget.values.shape_key_transfer import carry_offsets_steps
-from ..armatures import find_armature
-from ..errors import ObjectError
-from ..key_actions import share_key_action
-from ..key_drivers import copy_key_drivers, counterparts
-from ..phrases import counted, listed
-from ..shape_key_io import (
+from ..common.errors import ObjectError
+from ..common.phrases import counted, listed
+from ..jobs.transfer import TransferReport
+from ..scene.armatures import find_armature
+from ..scene.key_actions import share_key_action
+from ..scene.key_drivers import copy_key_drivers, counterparts
+from ..scene.shape_key_io import (
     KeySettings,
     add_keys,
     can_be_absolute,
@@ -26,15 +27,14 @@ from ..shape_key_io import (
     read_offsets,
     shape_key_names,
 )
-from ..transfer import TransferReport
 
 if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
     from ...engine.runtime.progress import Steps
-    from ..transfer import Passage
-    from .shape_keys_options import ShapeKeySettings
+    from ..jobs.transfer import Passage
+    from .options.shape_keys import ShapeKeySettings
 
 __all__ = ["ShapeKeyTransfer"]
 

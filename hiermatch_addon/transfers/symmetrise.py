@@ -14,14 +14,17 @@ from scipy.sparse import csr_array
 from ...engine import Progress, symmetry_map_steps
 from ...engine.retarget.values.symmetrising import Symmetriser
 from ...engine.runtime.progress import within
-from ..access import mesh_of, view_layer_of
-from ..attribute_io import attribute_layouts, read_attribute, write_attribute
-from ..deform_layer import check_weights_writable, read_weights, write_weights
-from ..errors import ObjectError
-from ..mesh_io import corner_vertices, position_digest, read_mesh, topology, vertex_positions
-from ..pair import check_object
-from ..phrases import counted
-from ..shape_key_io import (
+from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
+from ..common.phrases import counted
+from ..common.side_names import flipped_name, partners, side_of
+from ..jobs.stepped_job import SteppedJob
+from ..jobs.transfer import TransferReport
+from ..scene.attribute_io import attribute_layouts, read_attribute, write_attribute
+from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
+from ..scene.mesh_io import corner_vertices, position_digest, read_mesh, topology, vertex_positions
+from ..scene.pair import check_object
+from ..scene.shape_key_io import (
     KeySettings,
     add_keys,
     check_keys_writable,
@@ -31,17 +34,14 @@ from ..shape_key_io import (
     read_offsets,
     shape_key_names,
 )
-from ..side_names import flipped_name, partners, side_of
-from ..stepped_job import SteppedJob
-from ..transfer import TransferReport
-from ..written_names import written_names
+from ..storage.written_names import written_names
 from .wrap import wrap_key_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...engine.runtime.progress import Steps
-    from .symmetrise_options import SymmetriseSettings
+    from .options.symmetrise import SymmetriseSettings
 
 __all__ = ["SymmetriseJob"]
 

@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Any
 from ...engine.retarget.values.face_correspondence import FacePlaces
 from ...engine.retarget.values.uv_transfer import carry_uvs_steps
 from ...engine.runtime.progress import Progress, within
-from ..access import mesh_of
-from ..attribute_io import (
+from ..common.access import mesh_of
+from ..common.errors import ObjectError
+from ..common.phrases import counted
+from ..jobs.transfer import TransferReport
+from ..scene.attribute_io import (
     AttributeLayout,
     is_free,
     read_attribute,
@@ -17,9 +20,6 @@ from ..attribute_io import (
     write_attribute,
     write_seams,
 )
-from ..errors import ObjectError
-from ..phrases import counted
-from ..transfer import TransferReport
 
 if TYPE_CHECKING:
     import bpy
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from ...engine.mesh.polygons import Polygons
     from ...engine.retarget.values.uv_transfer import CarriedUVs
     from ...engine.runtime.progress import Steps
-    from ..transfer import Passage
-    from .uvs_options import UVSettings
+    from ..jobs.transfer import Passage
+    from .options.uvs import UVSettings
 
 __all__ = ["UVTransfer"]
 

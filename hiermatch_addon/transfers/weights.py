@@ -11,15 +11,15 @@ from scipy.sparse import csr_array
 
 from ...engine.retarget.weights.skin_weights import row_sums
 from ...engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
-from .. import mesh_io
-from ..access import mesh_of
-from ..deform_layer import check_weights_writable, read_weights, write_weights
-from ..errors import ObjectError
-from ..phrases import counted, listed
-from ..side_names import flipped_name
-from ..transfer import TransferReport
-from ..weight_groups import chosen_groups, deforming_bones, locked_groups
-from ..written_names import written_names
+from ..common.access import mesh_of
+from ..common.errors import ObjectError
+from ..common.phrases import counted, listed
+from ..common.side_names import flipped_name
+from ..jobs.transfer import TransferReport
+from ..scene import mesh_io
+from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
+from ..storage.written_names import written_names
+from .weight_groups import chosen_groups, deforming_bones, locked_groups
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...engine.runtime.progress import Steps
-    from ..transfer import Passage
-    from .weights_options import WeightSettings
+    from ..jobs.transfer import Passage
+    from .options.weights import WeightSettings
 
 __all__ = ["WeightTransfer"]
 

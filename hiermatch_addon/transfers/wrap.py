@@ -10,10 +10,10 @@ import numpy as np
 from ...engine.retarget.morphing import in_between
 from ...engine.retarget.wrapping import kept_in_place, wrap_steps
 from ...engine.runtime.progress import Progress, within
-from .. import writing
-from ..access import mesh_of
-from ..mesh_io import vertex_positions
-from ..shape_key_io import (
+from ..common.access import mesh_of
+from ..jobs.transfer import TransferReport
+from ..scene.mesh_io import vertex_positions
+from ..scene.shape_key_io import (
     KeySettings,
     add_keys,
     check_keys_writable,
@@ -22,15 +22,15 @@ from ..shape_key_io import (
     keys_of,
     world_matrix,
 )
-from ..transfer import TransferReport
+from ..storage import writing
 
 if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
     from ...engine.runtime.progress import Steps
-    from ..transfer import Passage
-    from .wrap_options import WrapSettings
+    from ..jobs.transfer import Passage
+    from .options.wrap import WrapSettings
 
 __all__ = ["WrapTransfer", "wrap_key_name"]
 

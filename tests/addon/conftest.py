@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 HAS_BLENDER = importlib.util.find_spec("bpy") is not None
 
 if not HAS_BLENDER:
-    collect_ignore_glob = ["test_*.py"]
+    collect_ignore_glob = ["*test_*.py"]
 
 
 def load_extension():

@@ -7,10 +7,10 @@ import bpy
 import numpy as np
 from hiermatch.engine import FittedRig, SurfaceMap
 from hiermatch.engine.retarget.rig.bone_fit import fit_bones
-from hiermatch.hiermatch_addon.armatures import find_armature, read_rig
-from hiermatch.hiermatch_addon.mesh_io import read_mesh
-from hiermatch.hiermatch_addon.transfer import Passage
-from hiermatch.hiermatch_addon.vertex_maps import MapPair
+from hiermatch.hiermatch_addon.jobs.transfer import Passage
+from hiermatch.hiermatch_addon.scene.armatures import find_armature, read_rig
+from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
+from hiermatch.hiermatch_addon.storage.vertex_maps import MapPair
 from mathutils import Matrix
 
 from tests.shapes import creature

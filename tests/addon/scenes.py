@@ -8,7 +8,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 from hiermatch.engine import CoarseMatch, MatchResult, SurfaceMap, SurfacePoints
-from hiermatch.hiermatch_addon import job
+from hiermatch.hiermatch_addon.jobs import job
 
 QUICK = {"points": 12, "coarse_points": 4, "coarse_candidates": 8, "samples": 48, "hypotheses": 2, "dense": False}
 """Settings with which a small mesh is matched in some tenths of a second."""

@@ -9,8 +9,8 @@ from dataclasses import fields
 import bpy
 import pytest
 from hiermatch.engine import MatchSettings
-from hiermatch.hiermatch_addon import freshness
-from hiermatch.hiermatch_addon.properties import OPTION_NAMES, SETTING_NAMES, match_settings
+from hiermatch.hiermatch_addon.properties import freshness
+from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, SETTING_NAMES, match_settings
 from hiermatch.hiermatch_addon.registration import CLASSES
 
 OPERATORS = [cls for cls in CLASSES if issubclass(cls, bpy.types.Operator)]

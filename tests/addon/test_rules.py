@@ -97,7 +97,7 @@ def test_only_what_is_called_so_moves_arrays(path):
 
 
 def test_the_colours_are_computed_without_blender():
-    assert not BLENDER & set(imported(ROOT / "hiermatch_addon" / "colors.py"))
+    assert not BLENDER & set(imported(ROOT / "hiermatch_addon" / "storage" / "views" / "colors.py"))
 
 
 def test_importing_the_root_needs_nothing():

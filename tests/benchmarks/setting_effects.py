@@ -25,7 +25,7 @@ from tools.source_extension import registered_extension
 registered_extension()
 
 from hiermatch.engine import MatchSettings, TriangleMesh, match  # noqa: E402
-from hiermatch.hiermatch_addon.mesh_io import read_mesh  # noqa: E402
+from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 

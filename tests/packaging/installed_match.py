@@ -101,8 +101,8 @@ def dense_map(source, target):
 
 def staleness():
     """Return what the panel says of the match now; in the background nothing looks by itself."""
-    addon = bpy.types.HIERMATCH_PT_match.__module__.rpartition(".")[0]
-    importlib.import_module(f"{addon}.freshness").refresh(bpy.context.scene)
+    addon = bpy.types.HIERMATCH_PT_match.__module__.rsplit(".", 2)[0]
+    importlib.import_module(f"{addon}.properties.freshness").refresh(bpy.context.scene)
     return bpy.context.scene.hiermatch.summary.stale
 
 

@@ -85,7 +85,7 @@ def test_operators_are_called_by_their_names_and_options(block):
         source = path.read_text(encoding="utf-8")
         classes |= dict.fromkeys(re.findall(r'bl_idname = "hiermatch\.(\w+)"', source), source)
     options = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "hiermatch_addon").rglob("*.py"))
-    options += (ROOT / "engine" / "settings.py").read_text(encoding="utf-8")
+    options += (ROOT / "engine" / "hierarchical" / "settings.py").read_text(encoding="utf-8")
     for node in ast.walk(ast.parse(block)):
         if isinstance(node, ast.Call) and ast.unparse(node.func).startswith("bpy.ops.hiermatch."):
             assert ast.unparse(node.func).rpartition(".")[2] in classes

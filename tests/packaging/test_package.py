@@ -64,7 +64,7 @@ def test_zips_hold_the_runtime_and_nothing_else(packed_names):
         for package in ("engine", "hiermatch_addon")
         for path in (ROOT / package).rglob("*.py")
     }
-    assert "engine/mesh.py" in sources
+    assert "engine/mesh/triangle_mesh.py" in sources
     for names in packed_names.values():
         wheels = {name for name in names if name.startswith("wheels/")}
         assert names - wheels == sources | {"__init__.py", "blender_manifest.toml", "LICENSE"}

@@ -39,8 +39,8 @@ def evaluated(bpy, obj):
 
 
 def test_a_walking_cat_gets_the_rig_of_a_standing_one(bpy, tmp_path):
-    from hiermatch.hiermatch_addon.armatures import find_armature
-    from hiermatch.hiermatch_addon.deform_layer import read_weights
+    from hiermatch.hiermatch_addon.scene.armatures import find_armature
+    from hiermatch.hiermatch_addon.scene.deform_layer import read_weights
     from scipy.spatial import cKDTree
 
     # The demo cats, the standing one rigged; the walking one is a bare mesh in other units and axes.  One button.

@@ -47,7 +47,7 @@ def test_a_folder_of_files_is_retargeted(tmp_path):
     folder.mkdir()
     output.mkdir()
     with blender_session() as bpy:
-        from hiermatch.hiermatch_addon.armatures import find_armature
+        from hiermatch.hiermatch_addon.scene.armatures import find_armature
 
         from tests.addon.rigs import add_rigged, add_target
         from tests.addon.scenes import DENSE

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Errors about objects of the scene, beside the engine's errors about shapes and settings."""
+
+from __future__ import annotations
+
+from ...engine import HierMatchError
+
+__all__ = ["ObjectError"]
+
+
+class ObjectError(HierMatchError):
+    """An object that cannot be matched or written to as it stands; the message says why and what to do."""

@@ -1,0 +1,340 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A match of two objects as a piece of work: the operator, scripts and tests drive it alike."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
+from ...engine.matching.refinement import distortion_after, placed_by_map
+from ...engine.runtime.progress import within
+from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
+from ..properties.properties import match_settings
+from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.pair import check_pair
+from ..storage import writing
+from ..storage.contents import contents_steps
+from ..storage.excluded_regions import excluded_vertices
+from ..storage.landmarks import find_landmarks, landmark_array
+from ..storage.stored_match import Answer, CornerPoints, StoredMatch, Written
+from ..storage.vertex_maps import StoredMaps, add_maps
+from .stepped_job import SteppedJob
+
+if TYPE_CHECKING:
+    from ...engine import DenseMatch, MatchResult
+    from ...engine.runtime.progress import Steps
+    from ..properties.properties import MatchOptions
+    from ..storage.contents import Content
+    from ..storage.vertex_maps import MapPair
+
+__all__ = ["JobOptions", "MatchJob", "Outcome", "job_options"]
+
+_MATCHED = 0.98
+"""Where on the bar of progress the match ends, and what is written is prepared."""
+
+
+@dataclass(frozen=True)
+class JobOptions:
+    """What to match and what to write.
+
+    Attributes
+    ----------
+    settings : MatchSettings
+        The engine's settings.
+    use_modifiers : bool
+        Whether to match the meshes as shape keys and modifiers show them.
+    use_mirrored : bool
+        Whether to write the mirrored answer, if there is one.
+    use_landmarks : bool
+        Whether to keep to the landmarks that the two meshes have in common.
+    exclude_source, exclude_target : str
+        Names of the regions to leave out; empty if there are none.
+    prefix : str
+        What all names written start with.
+    vertex_groups, match_colors, distortion, confidence : bool
+        Which kinds to write; confidence only if the match has dense maps.
+    """
+
+    settings: MatchSettings
+    use_modifiers: bool = False
+    use_mirrored: bool = False
+    use_landmarks: bool = True
+    exclude_source: str = ""
+    exclude_target: str = ""
+    prefix: str = "HM"
+    vertex_groups: bool = True
+    match_colors: bool = True
+    distortion: bool = True
+    confidence: bool = True
+
+    def __post_init__(self) -> None:
+        if not self.prefix.strip():
+            raise SettingsError("The Prefix is empty. Enter what the names of the vertex groups shall start with.")
+
+
+def job_options(options: MatchOptions) -> JobOptions:
+    """Read the options of a match, from an operator or from the panel's state.
+
+    Raises
+    ------
+    SettingsError
+        If they contradict each other, or the prefix is empty.
+    """
+    return JobOptions(
+        settings=match_settings(options),
+        use_modifiers=options.use_modifiers,
+        use_mirrored=options.use_mirrored,
+        use_landmarks=options.use_landmarks,
+        exclude_source=options.exclude_source,
+        exclude_target=options.exclude_target,
+        prefix=options.prefix,
+        vertex_groups=options.write_vertex_groups,
+        match_colors=options.write_colors,
+        distortion=options.write_distortion,
+        confidence=options.write_confidence,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A finished match.
+
+    Attributes
+    ----------
+    source, target : str
+        Names of the objects.
+    result : MatchResult
+        What was written.
+    maps : MapPair or None
+        Its dense maps, if it has any, in the precision in which they are kept.
+    stored : StoredMatch
+        What is kept of it in the file: both answers.
+    seconds : float
+        How long it took, from reading to writing.
+    """
+
+    source: str
+    target: str
+    result: MatchResult
+    maps: MapPair | None
+    stored: StoredMatch
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What the engine found.
+
+    Attributes
+    ----------
+    result : MatchResult
+        The result.
+    mirrored : DenseMatch or None
+        The dense maps of its mirrored answer, if they are wanted.
+    """
+
+    result: MatchResult
+    mirrored: DenseMatch | None
+
+    def maps(self, *, mirrored: bool) -> StoredMaps | None:
+        """Return what is kept of the dense maps of one answer; None if they were not made."""
+        found = self.mirrored if mirrored else self.result
+        if found is None or found.source_to_target is None or found.target_to_source is None:
+            return None
+        return StoredMaps.of(found.source_to_target, found.target_to_source)
+
+
+@dataclass(frozen=True, eq=False)
+class _Prepared:
+    """The answer that is written, its maps, and what is written of it on source and target."""
+
+    result: MatchResult
+    maps: MapPair | None
+    contents: tuple[Content, Content]
+
+
+class MatchJob(SteppedJob):
+    """The match of two objects, from reading them to writing on them.
+
+    Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
+    them up again, and ends with an error if they are not what they were.  Nothing is written before `finish`.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the objects are.
+    source, target : bpy.types.Object
+        The objects.
+    options : JobOptions
+        What to match and to write.
+
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
+
+    Raises
+    ------
+    HierMatchError
+        If the objects or settings do not allow a match.
+    """
+
+    def __init__(
+        self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, options: JobOptions
+    ) -> None:
+        self._start = time.perf_counter()
+        self._options = options
+        depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
+        check_pair(view_layer_of(context), source, target)
+        for obj in (source, target):
+            _check_points(obj, options.settings.points)
+        self._uids = (source.session_uid, target.session_uid)
+        self._names = (source.name, target.name)
+        self._meshes = (
+            read_mesh(source, depsgraph, use_modifiers=options.use_modifiers),
+            read_mesh(target, depsgraph, use_modifiers=options.use_modifiers),
+        )
+        self._topologies = (topology(mesh_of(source)), topology(mesh_of(target)))
+        self._positions = (position_digest(mesh_of(source)), position_digest(mesh_of(target)))
+        self._landmarks = landmark_array(find_landmarks(source, target)) if options.use_landmarks else None
+        self._excluded = (
+            excluded_vertices(source, options.exclude_source),
+            excluded_vertices(target, options.exclude_target),
+        )
+        self._found: _Found | None = None
+        self._prepared: _Prepared | None = None
+        super().__init__()
+
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+        self._objects(view_layer)
+
+    def _all_steps(self) -> Steps[None]:
+        """Match, and prepare what is to be written."""
+        self._found = yield from within(self._match_steps(), 0.0, _MATCHED)
+        self._prepared = yield from within(self._prepare_steps(self._found), _MATCHED, 1.0)
+
+    def _match_steps(self) -> Steps[_Found]:
+        """Match, and make the dense maps of the mirrored answer if that is to be written."""
+        options, (source, target) = self._options, self._meshes
+        both = options.use_mirrored and options.settings.dense
+        steps = match_steps(source, target, options.settings, landmarks=self._landmarks, excluded=self._excluded)
+        result = yield from within(steps, 0.0, 0.7 if both else 1.0)
+        mirrored = result.mirrored
+        if not both or mirrored is None:
+            return _Found(result, None)
+        points = mirrored.source_points
+        maps = result.source_to_target, result.target_to_source
+        mapping = densify_steps(source, target, points, mirrored.target_points, maps=maps)
+        dense = yield from within(mapping, 0.7, 1.0)
+        images, distortion = placed_by_map(source, target, points, dense.source_to_target)
+        moved = replace(
+            mirrored,
+            target_points=images,
+            point_distortion=distortion,
+            distortion=distortion_after(mirrored.distortion, mirrored.point_distortion, distortion),
+        )
+        return _Found(replace(result, mirrored=moved), dense)
+
+    def _prepare_steps(self, found: _Found) -> Steps[_Prepared]:
+        """Prepare what is to be written of either answer."""
+        prefix, direct, mirrored = self._options.prefix, found.result, self._writes_mirrored(found)
+        result = direct.mirrored if mirrored and direct.mirrored is not None else direct
+        kept, maps = found.maps(mirrored=mirrored), None
+        if kept is not None:
+            yield Progress(0.0, "Preparing what is written")
+            maps = kept.between(*self._meshes)
+        contents = yield from within(contents_steps(result, prefix, self._options, maps), 0.3, 1.0)
+        if kept is not None:
+            add_maps(contents, prefix, kept, found.maps(mirrored=not mirrored))
+        return _Prepared(result, maps, contents)
+
+    def _writes_mirrored(self, found: _Found) -> bool:
+        return self._options.use_mirrored and found.result.mirrored is not None
+
+    @property
+    def maps(self) -> StoredMaps | None:
+        """The dense maps of the answer that is to be written, as they are kept; None as long as there are none."""
+        if self._found is None:
+            return None
+        return self._found.maps(mirrored=self._writes_mirrored(self._found))
+
+    def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
+        """Write the result on both objects.
+
+        Raises
+        ------
+        HierMatchError
+            If the objects have changed, or the user's own vertex groups or attributes are in the way.
+        """
+        if self._found is None or self._prepared is None:
+            raise RuntimeError("The match has not come to its end yet.")
+        objects = self._objects(view_layer)
+        for obj, read in zip(objects, self._topologies, strict=True):
+            if topology(mesh_of(obj)) != read:
+                raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
+        names, prefix = (objects[0].name, objects[1].name), self._options.prefix
+        stored, prepared = self._stored(self._found, names), self._prepared
+        for obj, content, kept in zip(objects, prepared.contents, stored.to_plain(), strict=True):
+            writing.check_names(obj, content, prefix)
+            content.keep.update(kept)
+        writing.write(list(zip(objects, prepared.contents, strict=True)), prefix)
+        return Outcome(*names, prepared.result, prepared.maps, stored, time.perf_counter() - self._start)
+
+    def _stored(self, found: _Found, names: tuple[str, str]) -> StoredMatch:
+        """Collect what is kept of the match in the file."""
+        options, result, notes = self._options, found.result, list(found.result.notes)
+        if options.use_mirrored and result.mirrored is None:
+            notes.append("There is no mirrored match, so the only one was written.")
+        answers = [Answer.of(result, result.quality)]
+        if result.mirrored is not None:
+            answers.append(Answer.of(result.mirrored, found.mirrored.quality if found.mirrored else None))
+        return StoredMatch(
+            names=names,
+            topologies=self._topologies,
+            positions=self._positions,
+            written=Written(
+                options.use_modifiers,
+                options.vertex_groups,
+                options.match_colors,
+                options.distortion,
+                options.confidence,
+                dense=result.source_to_target is not None,
+            ),
+            source_points=CornerPoints.of(result.source_points),
+            answers=tuple(answers),
+            mirrored=self._writes_mirrored(found),
+            notes=tuple(notes),
+        )
+
+    def _objects(self, view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
+        """Look the objects up again and make sure that they are still what was read."""
+        found = {obj.session_uid: obj for obj in bpy.data.objects if obj.session_uid in self._uids}
+        for uid, name in zip(self._uids, self._names, strict=True):
+            if uid not in found:
+                raise ObjectError(f'"{name}" was deleted while it was being matched. Nothing was written.')
+        objects = [found[uid] for uid in self._uids]
+        try:
+            check_pair(view_layer, *objects)
+        except ObjectError as error:
+            raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
+        for obj, mesh in zip(objects, self._meshes, strict=True):
+            if len(mesh_of(obj).vertices) != mesh.vertex_count:
+                raise ObjectError(
+                    f'"{obj.name}" got another number of vertices while it was being matched. Nothing was written.'
+                )
+        return objects
+
+
+def _check_points(obj: bpy.types.Object, points: int) -> None:
+    """Make sure that there are vertices enough."""
+    count = len(mesh_of(obj).vertices)
+    if points > count:
+        raise ObjectError(
+            f'"{obj.name}" has {count} vertices, too few for {points} Points. Set Points to {count} or fewer, '
+            "or subdivide the mesh."
+        )

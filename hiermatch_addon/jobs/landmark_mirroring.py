@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmarks of one side carried to the other, by the symmetry of each of the two meshes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ...engine import symmetry_map_steps
+from ...engine.runtime.progress import within
+from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
+from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.pair import check_pair
+from ..storage.halves import find_common
+from ..storage.landmarks import add_landmarks, find_landmarks, landmark_array
+from ..storage.vertex_maps import StoredMaps, map_name
+from .stepped_job import SteppedJob
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...engine import TriangleMesh
+    from ...engine.runtime.progress import Steps
+    from ..storage.landmarks import Landmark
+
+__all__ = ["MirrorJob"]
+
+_MIDDLE = 0.02
+"""A place that is not farther from its mirror image, in sqrt(area), is called the middle."""
+
+_ASTRAY = 0.1
+"""So much farther, in sqrt(area), from where a match takes it a mirror image may be than its landmark is."""
+
+
+class MirrorJob(SteppedJob):
+    """Finds the mirror images of the landmarks of two meshes.
+
+    Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
+    them up again.  Nothing is written before `finish`.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the objects are.
+    source, target : bpy.types.Object
+        The objects, in Object Mode.
+
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
+    left_out : int
+        Once finished, how many mirror images were left out because they contradict the match of the two meshes.
+
+    Raises
+    ------
+    ObjectError
+        If the objects cannot be read or written, or have no landmarks in common.
+    """
+
+    def __init__(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        depsgraph = context.evaluated_depsgraph_get()
+        check_pair(view_layer_of(context), source, target)
+        found = landmark_array(find_landmarks(source, target))
+        if found is None:
+            raise ObjectError(
+                f'"{source.name}" and "{target.name}" have no landmarks in common that are on. Add some first.'
+            )
+        self._landmarks = found
+        self._objects = tuple((obj.session_uid, obj.name, _state(obj)) for obj in (source, target))
+        self._meshes = tuple(read_mesh(obj, depsgraph, use_modifiers=False) for obj in (source, target))
+        self._maps = _fresh_maps(source, target)
+        self._images: list[NDArray[np.int64]] = []
+        self.left_out = 0
+        super().__init__()
+
+    def finish(self, view_layer: bpy.types.ViewLayer) -> list[Landmark]:
+        """Add the mirror images as landmarks, except for those of landmarks in the middle or that are there already.
+
+        Raises
+        ------
+        ObjectError
+            If the objects have changed.
+        """
+        objects = []
+        for uid, name, state in self._objects:
+            obj = next((obj for obj in bpy.data.objects if obj.session_uid == uid), None)
+            if obj is None or _state(obj) != state:
+                raise ObjectError(f'"{name}" was deleted or edited meanwhile. No landmark was added.')
+            objects.append(obj)
+        source, target = objects
+        check_pair(view_layer, source, target)
+        taken = {vertex for landmark in find_landmarks(source, target) for vertex in [("s", landmark.source)]}
+        taken |= {("t", landmark.target) for landmark in find_landmarks(source, target)}
+        pairs: list[tuple[int, int]] = []
+        astray = self._astray()
+        for (x, y), image_x, image_y, wrong in zip(self._landmarks.tolist(), *self._images, astray, strict=True):
+            if _in_middle(self._meshes[0], x, image_x) or _in_middle(self._meshes[1], y, image_y):
+                continue
+            new = {("s", int(image_x)), ("t", int(image_y))}
+            if wrong:
+                self.left_out += 1
+            elif not new & taken:
+                taken |= new
+                pairs.append((int(image_x), int(image_y)))
+        return add_landmarks(source, target, pairs)
+
+    def _all_steps(self) -> Steps[None]:
+        """Find the symmetry of one mesh after the other."""
+        for number, mesh in enumerate(self._meshes):
+            dense = yield from within(symmetry_map_steps(mesh), number / 2, (number + 1) / 2)
+            self._images.append(dense.source_to_target.nearest_vertices[self._landmarks[:, number]])
+
+    def _astray(self) -> NDArray[np.bool_]:
+        """Tell which mirror images do not correspond by the match of the two meshes, if they carry one.
+
+        A shape may be nearly symmetric in more than one way, and then the two meshes may be mirrored differently.
+        """
+        if self._maps is None:
+            return np.zeros(len(self._landmarks), np.bool_)
+        target = self._meshes[1]
+        there = self._maps.between(*self._meshes).source_to_target.positions
+        before, after = (
+            np.linalg.norm(there[at] - target.vertices[to], axis=1) for at, to in (self._landmarks.T, self._images)
+        )
+        return after > before + _ASTRAY * np.sqrt(target.area)
+
+
+def _fresh_maps(source: bpy.types.Object, target: bpy.types.Object) -> StoredMaps | None:
+    """Read the dense maps of a match that is not out of date, from source to target; None if there is none."""
+    for half, partner in find_common(source, target):
+        if not (half.staleness() or partner.staleness()):
+            first, second = (half, partner) if half.role == "source" else (partner, half)
+            maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(half.prefix))
+            if maps is not None:
+                return maps if first is half else maps.reverse
+    return None
+
+
+def _state(obj: bpy.types.Object) -> tuple[str, str]:
+    return topology(mesh_of(obj)), position_digest(mesh_of(obj))
+
+
+def _in_middle(mesh: TriangleMesh, vertex: int, image: int) -> bool:
+    apart = float(np.linalg.norm(mesh.vertices[vertex] - mesh.vertices[image]))
+    return apart <= _MIDDLE * float(np.sqrt(mesh.vertex_areas.sum()))

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work in steps between which Blender may do anything."""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
+
+from ...engine import Progress
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ...engine.runtime.progress import Steps
+
+__all__ = ["SteppedJob"]
+
+
+class SteppedJob(ABC):
+    """What jobs have in common: a generator that is driven for some time again and again.
+
+    A job holds no references to Blender's data, but looks its objects up again in `_check`.
+
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
+    """
+
+    def __init__(self) -> None:
+        self.progress = Progress(0.0, "Starting")
+        self._steps: Steps[Any] = self._all_steps()
+        self._done = False
+
+    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
+        """Work for about so long, but for one step at least; return whether everything is computed.
+
+        Raises
+        ------
+        HierMatchError
+            If the engine or a change of the objects ends the work.
+        """
+        self._check(view_layer)
+        end = time.perf_counter() + seconds
+        while not self._done:
+            try:
+                self.progress = next(self._steps)
+            except StopIteration:
+                self._done = True
+            if time.perf_counter() >= end:
+                break
+        return self._done
+
+    def close(self) -> None:
+        """Drop the work; nothing has been written."""
+        self._steps.close()
+
+    @abstractmethod
+    def _all_steps(self) -> Steps[Any]:
+        """Do the work; what comes of it is kept on the job."""
+
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:  # noqa: B027 - few jobs need no check
+        """Make sure that the objects are still what was read."""

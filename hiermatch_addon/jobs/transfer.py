@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What can be carried from one matched mesh to another, seen from outside: each kind reads, computes and writes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ...engine import FittedRig
+    from ...engine.runtime.progress import Steps
+    from ..storage.vertex_maps import MapPair
+
+__all__ = ["Passage", "Transfer", "TransferReport"]
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """The way from a source to a target.
+
+    Attributes
+    ----------
+    pair : MapPair
+        The two meshes without their modifiers, in world space, and the maps between all their vertices; refined with
+        the rig if there is one.
+    rig : FittedRig or None
+        The source's rig, fitted into the target: in world space as well.  None if the source has none, or nobody
+        asked for it.
+    bone_names : tuple of str
+        Names of the rig's bones, in its order.
+    """
+
+    pair: MapPair
+    rig: FittedRig | None = None
+    bone_names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class TransferReport:
+    """What became of a transfer.
+
+    Attributes
+    ----------
+    done : str
+        What was written, such as "53 vertex groups"; empty if nothing was.
+    notes : tuple of str
+        What was left out, or is to be known, and why: one sentence each.
+    """
+
+    done: str
+    notes: tuple[str, ...] = ()
+
+
+class Transfer(Protocol):
+    """One kind of thing that is carried from one source to one target.
+
+    Attributes
+    ----------
+    label : str
+        What is carried, for the progress bar: "Weights".
+    uses_rig : bool
+        Whether it goes better with the source's rig fitted into the target first.
+    """
+
+    label: str
+    uses_rig: bool
+
+    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        """Read everything from both objects and make sure that it can be written.
+
+        Raises
+        ------
+        HierMatchError
+            If it cannot be carried over, in a sentence that says why and what to do.
+        """
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Compute what is to be written, without touching Blender's data."""
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+        """Write it."""

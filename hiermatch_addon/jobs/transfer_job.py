@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Carrying things from one mesh to others as a piece of work: matching where needed, computing, and writing at last."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...engine import HierMatchError, Progress, fit_rig_steps
+from ...engine.runtime.progress import within
+from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
+from ..scene.armatures import read_rig
+from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.pair import check_object, check_pair
+from ..storage.halves import find_common
+from ..storage.stored_map import find_maps, keep_refined
+from ..storage.vertex_maps import MapPair, StoredMaps
+from .job import MatchJob
+from .stepped_job import SteppedJob
+from .transfer import Passage, TransferReport
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from ...engine import TriangleMesh
+    from ...engine.runtime.progress import Steps
+    from ..scene.armatures import SourceRig
+    from .job import JobOptions, Outcome
+    from .transfer import Transfer
+
+__all__ = ["Carried", "TransferJob", "TransferOptions"]
+
+_MATCHED, _FITTED = 0.5, 0.85
+"""Where on a target's part of the progress bar a match, and the fitting of the rig, end."""
+
+
+@dataclass(frozen=True)
+class TransferOptions:
+    """How the way from the source to each target is found.
+
+    Attributes
+    ----------
+    match : JobOptions
+        How two objects are matched that carry no match yet, or one that is out of date.
+    prefix : str
+        What the names of the match to use start with; may be empty if the two carry one match only.
+    refine : bool
+        Whether the map is refined with the source's rig, for what goes better with one.
+    optional : bool
+        Whether what cannot be carried over is left out with a note, if anything else can be.
+    """
+
+    match: JobOptions
+    prefix: str = ""
+    refine: bool = True
+    optional: bool = False
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What became of one target.
+
+    Attributes
+    ----------
+    target : str
+        Its name.
+    outcome : Outcome or None
+        The match, if it was made (and written) on the way.
+    reports : tuple of TransferReport
+        One for each transfer, those that were left out last.
+    seconds : float
+        How long it took until here since the job began.
+    """
+
+    target: str
+    outcome: Outcome | None
+    reports: tuple[TransferReport, ...]
+    seconds: float
+
+
+class _Leg:
+    """The way to one target."""
+
+    def __init__(
+        self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, options: TransferOptions
+    ) -> None:
+        self.uid, self.name = target.session_uid, target.name
+        self.stored: StoredMaps | None = None
+        self.refined = False
+        self.prefix = options.prefix
+        if _carry_fresh_match(source, target, options.prefix):
+            found = find_maps(source, target, options.prefix)
+            self.stored, self.refined, self.prefix = found.maps, found.refined, found.source.prefix
+        self.match: MatchJob | None = None
+        if self.stored is None:
+            self.match = MatchJob(context, source, target, _with_maps(options.match))
+            self.prefix = options.match.prefix
+        self.mesh = read_mesh(target, context.evaluated_depsgraph_get(), use_modifiers=False)
+        self.state = _state(target)
+        self.transfers: list[Transfer] = []
+        self.left_out: list[TransferReport] = []
+        self.better: StoredMaps | None = None
+        self._optional = options.optional
+
+    def read(
+        self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, made: list[Transfer]
+    ) -> None:
+        """Read what is to be carried over.
+
+        Raises
+        ------
+        HierMatchError
+            If something cannot be, or, of optional kinds, none can.
+        """
+        errors = []
+        for transfer in made:
+            try:
+                transfer.read(context, source, target)
+            except HierMatchError as error:
+                errors.append((transfer.label, error))
+            else:
+                self.transfers.append(transfer)
+        if errors and not (self._optional and self.transfers):
+            raise errors[0][1]
+        self.left_out = [TransferReport("", (f"{label} left out: {error}",)) for label, error in errors]
+
+
+def _carry_fresh_match(source: bpy.types.Object, target: bpy.types.Object, prefix: str) -> bool:
+    """Tell whether two objects carry one dense match at least that is not out of date."""
+    found = [pair for pair in find_common(source, target) if prefix in ("", pair[0].prefix)]
+    fresh = [pair for pair in found if not any(half.staleness() for half in pair)]
+    return bool(fresh) and any(half.kept.get("written", {}).get("dense") for pair in fresh for half in pair)
+
+
+def _with_maps(options: JobOptions) -> JobOptions:
+    """Return the options of a match that things can be carried across: dense, and of the meshes' own vertices."""
+    return replace(options, use_modifiers=False, settings=replace(options.settings, dense=True))
+
+
+def _state(obj: bpy.types.Object) -> tuple[str, str]:
+    return topology(mesh_of(obj)), position_digest(mesh_of(obj))
+
+
+class TransferJob(SteppedJob):
+    """Carries things from one source to several targets.
+
+    Between two calls of `advance` Blender may do anything, so the job holds no references to its objects but looks
+    them up again, and ends with an error if they are not what they were.  Nothing is written before `finish`.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the objects are.
+    source : bpy.types.Object
+        What is carried from.
+    targets : sequence of bpy.types.Object
+        Where it is carried to.
+    make : callable
+        Makes the transfers for one target.
+    options : TransferOptions
+        How the way is found.
+
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
+
+    Raises
+    ------
+    HierMatchError
+        If the objects do not allow it.
+    """
+
+    def __init__(
+        self,
+        context: bpy.types.Context,
+        source: bpy.types.Object,
+        targets: Sequence[bpy.types.Object],
+        make: Callable[[], list[Transfer]],
+        options: TransferOptions,
+    ) -> None:
+        self._start = time.perf_counter()
+        self._options = options
+        depsgraph = context.evaluated_depsgraph_get()
+        view_layer = view_layer_of(context)
+        check_object(view_layer, source)
+        for target in targets:
+            check_pair(view_layer, source, target)
+        self._source, self._source_name, self._source_state = source.session_uid, source.name, _state(source)
+        self._mesh: TriangleMesh = read_mesh(source, depsgraph, use_modifiers=False)
+        self._legs: list[_Leg] = []
+        for target in targets:
+            leg = _Leg(context, source, target, options)
+            leg.read(context, source, target, make())
+            self._legs.append(leg)
+        wanted = any(transfer.uses_rig for leg in self._legs for transfer in leg.transfers)
+        self._rig: SourceRig | None = read_rig(source) if wanted else None
+        self._view_layer = view_layer
+        super().__init__()
+
+    def close(self) -> None:
+        """Drop the work, and the matches that are being made."""
+        super().close()
+        for leg in self._legs:
+            if leg.match is not None:
+                leg.match.close()
+
+    def finish(self, context: bpy.types.Context) -> list[Carried]:
+        """Write everything, target after target.
+
+        Raises
+        ------
+        HierMatchError
+            If an object has changed since it was read.
+        """
+        if not self._done:
+            raise RuntimeError("The work has not come to its end yet.")
+        view_layer = view_layer_of(context)
+        source, targets = self._objects(view_layer)
+        for obj, state in ((source, self._source_state), *zip(targets, (leg.state for leg in self._legs), strict=True)):
+            if _state(obj) != state:
+                raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
+        carried = []
+        for leg, target in zip(self._legs, targets, strict=True):
+            outcome = self._write_match(context, leg, source, target)
+            reports = (*(transfer.write(context, source, target) for transfer in leg.transfers), *leg.left_out)
+            carried.append(Carried(target.name, outcome, reports, time.perf_counter() - self._start))
+        return carried
+
+    def _write_match(
+        self, context: bpy.types.Context, leg: _Leg, source: bpy.types.Object, target: bpy.types.Object
+    ) -> Outcome | None:
+        """Write the match if it is new, and the better maps.
+
+        A source carries one match of a prefix only: with several targets, the new matches are used but not kept.
+        """
+        outcome = None
+        if leg.match is not None:
+            if len(self._legs) > 1:
+                return None
+            outcome = leg.match.finish(view_layer_of(context))
+        if leg.better is not None:
+            keep_refined(context, source, target, leg.prefix, leg.better)
+        return outcome
+
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+        self._objects(view_layer)
+        self._view_layer = view_layer
+
+    def _all_steps(self) -> Steps[None]:
+        """Go all ways, one after another."""
+        count = len(self._legs)
+        for number, leg in enumerate(self._legs):
+            yield from within(self._leg_steps(leg), number / count, (number + 1) / count)
+
+    def _leg_steps(self, leg: _Leg) -> Steps[None]:
+        """Find the way to one target, and compute what is carried there."""
+        begin = 0.0
+        if leg.match is not None:
+            while not leg.match.advance(self._view_layer, 0.0):
+                yield Progress(_MATCHED * leg.match.progress.fraction, leg.match.progress.label)
+            leg.stored, begin = leg.match.maps, _MATCHED
+        if leg.stored is None:
+            raise ObjectError(
+                f'The match of "{self._source_name}" and "{leg.name}" has no dense map. Match them with Dense Map on.'
+            )
+        passage = Passage(leg.stored.between(self._mesh, leg.mesh))
+        if self._rig is not None and any(transfer.uses_rig for transfer in leg.transfers):
+            passage = yield from within(self._fitted_steps(leg, passage, self._rig), begin, _FITTED)
+            begin = _FITTED
+        share = (1 - begin) / max(len(leg.transfers), 1)
+        for number, transfer in enumerate(leg.transfers):
+            start = begin + number * share
+            yield Progress(start, transfer.label)
+            yield from within(transfer.steps(passage), start, start + share, transfer.label)
+
+    def _fitted_steps(self, leg: _Leg, passage: Passage, rig: SourceRig) -> Steps[Passage]:
+        """Fit the source's rig into the target, and take the better maps that come with it."""
+        refine = self._options.refine and not leg.refined
+        there, back = passage.pair.source_to_target, passage.pair.target_to_source
+        fitted = yield from fit_rig_steps(
+            self._mesh, leg.mesh, there, back, weights=rig.weights, skeleton=rig.skeleton, refine=refine
+        )
+        if refine:
+            leg.better = StoredMaps.of(fitted.source_to_target, fitted.target_to_source)
+        pair = MapPair(self._mesh, leg.mesh, fitted.source_to_target, fitted.target_to_source)
+        return Passage(pair, fitted, rig.names)
+
+    def _objects(self, view_layer: bpy.types.ViewLayer) -> tuple[bpy.types.Object, list[bpy.types.Object]]:
+        """Look the objects up again and make sure that they are still what was read."""
+        wanted = {self._source: self._source_name} | {leg.uid: leg.name for leg in self._legs}
+        found = {obj.session_uid: obj for obj in bpy.data.objects if obj.session_uid in wanted}
+        for uid, name in wanted.items():
+            if uid not in found:
+                raise ObjectError(f'"{name}" was deleted meanwhile. Nothing was written.')
+            check_object(view_layer, found[uid])
+        return found[self._source], [found[leg.uid] for leg in self._legs]

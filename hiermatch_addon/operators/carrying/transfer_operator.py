@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""What all operators have in common that carry something from a source to targets."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from ...common.access import view_layer_of
+from ...common.errors import ObjectError
+from ...common.translated_text import translated
+from ...jobs.job import job_options
+from ...jobs.job_operator import JobOperator
+from ...jobs.running import can_start
+from ...jobs.transfer_job import TransferJob, TransferOptions
+from ...properties.freshness import refresh
+from ...properties.panel_state import state_of
+from ...properties.properties import PREFIX_LENGTH
+from ...properties.summary import remember
+from ...scene.pair import named_object, selected_meshes
+from ...transfers.retarget_properties import remember_transfer
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    from ...jobs.transfer import Transfer
+    from ...jobs.transfer_job import Carried
+
+__all__ = ["TransferOperator"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+class TransferOperator(JobOperator):
+    """To be inherited from before `bpy.types.Operator`; what is carried says `_transfers`."""
+
+    __annotations__ = {
+        "source": _props.StringProperty(
+            name="Source",
+            description="Name of the object to carry from; if empty, the one picked in the panel or else the active "
+            "object",
+            options={"SKIP_SAVE"},
+        ),
+        "target": _props.StringProperty(
+            name="Target",
+            description="Name of the object to carry to; if empty, the one picked in the panel or else all other "
+            "selected meshes",
+            options={"SKIP_SAVE"},
+        ),
+        "targets": _props.CollectionProperty(
+            name="Targets",
+            description="Names of several objects to carry to",
+            type=bpy.types.OperatorFileListElement,
+            options={"HIDDEN", "SKIP_SAVE"},
+        ),
+        "prefix": _props.StringProperty(
+            name="Prefix",
+            description="What the names start with that the match to use wrote; if empty, the one match that the "
+            "objects carry",
+            maxlen=PREFIX_LENGTH,
+            options={"SKIP_SAVE"},
+        ),
+        "refine": _props.BoolProperty(
+            name="Refine with Rig",
+            description="If the source has a rig, fit it into the target and make the map of the match better with it, "
+            "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
+            default=True,
+        ),
+    }
+
+    if TYPE_CHECKING:
+        source: str
+        target: str
+        targets: Any
+        prefix: str
+        refine: bool
+
+    doing = "Carrying over"
+    cancelled = "It was cancelled. Nothing was written"
+    panel = "HIERMATCH_PT_retarget"
+    optional = False
+
+    def _transfers(self) -> list[Transfer]:
+        """Make the transfers for one target, of the operator's options."""
+        raise NotImplementedError
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it in Object Mode, when nothing else is running and there are two meshes."""
+        operator = cast("type[bpy.types.Operator]", cls)
+        if not can_start(operator, context):
+            return False
+        if sum(obj.type == "MESH" for obj in view_layer_of(context).objects) < 2:
+            operator.poll_message_set(translated("Two mesh objects are needed in this view layer"))
+            return False
+        return True
+
+    def _start(self, context: bpy.types.Context) -> TransferJob:
+        """Read all objects."""
+        state = state_of(context)
+        source, targets = self._pick(context)
+        match = replace(job_options(state), prefix=self.prefix or state.prefix)
+        options = TransferOptions(match, self.prefix, refine=self.refine, optional=self.optional)
+        job = TransferJob(context, source, targets, self._transfers, options)
+        # So that Adjust Last Operation repeats it with the same ones, whatever is selected by then.
+        self.source = source.name
+        self.targets.clear()
+        for target in targets:
+            self.targets.add().name = target.name
+        return job
+
+    def _finish(self, context: bpy.types.Context, job: TransferJob) -> set[OperatorReturnItems]:
+        """Write, remember and report."""
+        carried = job.finish(context)
+        scene = cast("bpy.types.Scene", context.scene)
+        for one in carried:
+            if one.outcome is not None:
+                outcome = one.outcome
+                names = (outcome.source, outcome.target)
+                prefix = self.prefix or state_of(context).prefix
+                remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
+        refresh(scene)
+        remember_transfer(context, carried)
+        self._report(carried)
+        return {"FINISHED"}
+
+    def _report(self, carried: list[Carried]) -> None:
+        """Say what was done for each target, and what is to be known."""
+        for one in carried:
+            for report in one.reports:
+                for note in report.notes:
+                    self.report({"WARNING"}, translated(note))
+            done = [report.done for report in one.reports if report.done]
+            said = ", ".join(done) if done else "nothing"
+            self.report({"INFO"}, translated(f'Carried to "{one.target}" in {one.seconds:.1f} s: {said}'))
+
+    def _pick(self, context: bpy.types.Context) -> tuple[bpy.types.Object, list[bpy.types.Object]]:
+        """Find the source and the targets: by name, else as picked in the panel, else as selected.
+
+        Raises
+        ------
+        ObjectError
+            If a name is unknown, or the selection leaves open what is meant.
+        """
+        state, active = state_of(context), view_layer_of(context).objects.active
+        names = [item.name for item in self.targets] or ([self.target] if self.target else [])
+        targets = [named_object(name) for name in dict.fromkeys(names)]
+        source = named_object(self.source) if self.source else state.source
+        if not targets and state.target is not None and state.target != source:
+            targets = [state.target]
+        if source is None and active is not None and active.type == "MESH" and active not in targets:
+            source = active
+        if source is None:
+            raise ObjectError("Which mesh is the Source is open: pick it in the panel, or make it the active object.")
+        if not targets:
+            targets = selected_meshes(context, without=source)
+        if not targets:
+            raise ObjectError(
+                "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source."
+            )
+        return source, targets

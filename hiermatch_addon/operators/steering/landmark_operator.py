@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""What operators on the landmarks and matched points of two meshes have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from ....engine import HierMatchError
+from ...common.access import window_manager_of
+from ...common.errors import ObjectError
+from ...common.translated_text import translated
+from ...jobs.running import is_running
+from ...properties.panel_state import state_of
+from ...properties.steering_lists import sync_lists
+from ...scene.pair import check_writable, find_pair
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    _Operator = bpy.types.Operator
+else:
+    _Operator = object
+
+__all__ = ["LandmarkOperator", "pick_pair", "steerable_pair"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+def steerable_pair(
+    context: bpy.types.Context, names: tuple[str, str] = ("", "")
+) -> tuple[bpy.types.Object, bpy.types.Object]:
+    """Find the two meshes that are meant: by name, else as picked in the panel, else as selected.
+
+    Raises
+    ------
+    ObjectError
+        If that leaves open which, or one of them is no mesh of this file's own.
+    """
+    state = state_of(context)
+    source, target = find_pair(context, names, (state.source, state.target))
+    if source == target or source.data == target.data:
+        raise ObjectError(
+            f'Source and Target are both "{source.name}", or share the same mesh data. Choose two meshes of their own.'
+        )
+    for obj in (source, target):
+        if obj.type != "MESH":
+            raise ObjectError(f'"{obj.name}" is not a mesh. Pick two mesh objects as Source and Target.')
+        check_writable(obj)
+        if obj.mode not in ("OBJECT", "EDIT"):
+            raise ObjectError(f'"{obj.name}" is in {obj.mode.replace("_", " ").title()} Mode. Leave it first.')
+    return source, target
+
+
+def pick_pair(context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    """Pick two meshes in the panel where nothing is picked, so that it goes on showing what they have in common."""
+    state = state_of(context)
+    if state.source is None and state.target in (None, target):
+        state.source = source
+    if state.target is None and state.source == source:
+        state.target = target
+
+
+class LandmarkOperator(_Operator):
+    """An operator on two meshes, in Object Mode or in Edit Mode; to be inherited from before `bpy.types.Operator`."""
+
+    __annotations__ = {
+        "source": _props.StringProperty(
+            name="Source",
+            description="Name of the object that is the source; if empty, the one picked in the panel or else the "
+            "active object",
+            options={"SKIP_SAVE"},
+        ),
+        "target": _props.StringProperty(
+            name="Target",
+            description="Name of the object that is the target; if empty, the one picked in the panel or else the "
+            "other selected mesh",
+            options={"SKIP_SAVE"},
+        ),
+    }
+
+    if TYPE_CHECKING:
+        source: str
+        target: str
+
+    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+        """Do it, and return what to report."""
+        raise NotImplementedError
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it in Object and in Edit Mode, when nothing else is running."""
+        operator = cast("type[bpy.types.Operator]", cls)
+        if is_running(window_manager_of(context)):
+            operator.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
+            return False
+        if context.mode not in ("OBJECT", "EDIT_MESH"):
+            operator.poll_message_set(translated("Switch to Object Mode or to Edit Mode first"))
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
+        """Do it, bring the lists up to date, and report."""
+        try:
+            source, target = steerable_pair(context, (self.source, self.target))
+            done = self._do(context, source, target)
+        except HierMatchError as error:
+            self.report({"ERROR"}, translated(str(error)))
+            return {"CANCELLED"}
+        pick_pair(context, source, target)
+        sync_lists(cast("bpy.types.Scene", context.scene))
+        if done:
+            self.report({"INFO"}, translated(done))
+        return {"FINISHED"}

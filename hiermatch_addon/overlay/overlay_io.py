@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the overlay shows of a scene: read from the lists and from the meshes as they are shown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from ..common.access import mesh_of
+from ..properties.steering_lists import steered_pair
+from ..scene.mesh_io import vertex_positions
+from .overlay_data import Drawing, Marks, Places, Shown, drawing, place
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+__all__ = ["read_drawing", "signature"]
+
+
+def signature(scene: bpy.types.Scene, pending: tuple[str, int] | None) -> tuple[object, ...] | None:
+    """Return what is the same as long as the same has to be drawn, but for edits of the meshes; None if nothing has."""
+    owner: Any = scene
+    steering, pair = owner.hiermatch_steering, steered_pair(scene)
+    if pair is None or not steering.show_overlay:
+        return None
+    return (
+        steering.revision,
+        steering.show_points,
+        steering.show_lines,
+        steering.show_labels,
+        steering.pair_index,
+        steering.landmark_index,
+        pending,
+        *(obj.session_uid for obj in pair),
+        *(obj.visible_get() for obj in pair),
+        *(tuple(row) for obj in pair for row in cast("Any", obj.matrix_world)),
+    )
+
+
+def read_drawing(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, pending: tuple[str, int] | None) -> Drawing:
+    """Compute what is to be drawn for a scene; nothing while one of the two meshes is hidden or being edited."""
+    owner: Any = scene
+    steering, pair = owner.hiermatch_steering, steered_pair(scene)
+    if pair is None or not all(obj.visible_get() for obj in pair):
+        return Drawing()
+    positions, matrices = zip(*(_shown(obj, depsgraph) for obj in pair), strict=True)
+    marks, rows = [], (steering.pairs, steering.landmarks)
+    for number, (items, chosen) in enumerate(zip(rows, (steering.pair_index, steering.landmark_index), strict=True)):
+        read = _places if number == 0 else _at_vertices
+        source, target = (
+            place(positions[side], read(items, role), matrices[side]) for side, role in enumerate(("source", "target"))
+        )
+        marks.append(Marks(source, target, _numbers(items, "number", np.int32), min(chosen, len(items) - 1)))
+    if pending is None:
+        waiting = None
+    else:
+        side = [obj.name for obj in pair].index(pending[0])
+        vertex = np.full((1, 3), pending[1], np.int64)
+        x, y, z = place(positions[side], Places(vertex, np.array([[1.0, 0.0, 0.0]])), matrices[side])[0].tolist()
+        waiting = (x, y, z)
+    return drawing(
+        marks[0],
+        _numbers(steering.pairs, "distortion", np.float32),
+        marks[1],
+        _numbers(steering.landmarks, "use", np.bool_),
+        Shown(steering.show_points, steering.show_lines, steering.show_labels),
+        pending=waiting,
+    )
+
+
+def _shown(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Read where the vertices of an object are, with shape keys and modifiers if these keep their number."""
+    shown = obj.evaluated_get(depsgraph)
+    positions, own = vertex_positions(mesh_of(shown)), mesh_of(obj)
+    if len(positions) != len(own.vertices):
+        positions = vertex_positions(own)
+    return positions, np.array(shown.matrix_world, np.float64)
+
+
+def _places(items: Any, role: str) -> Places:  # noqa: ANN401 - a collection property
+    """Read where matched points are."""
+    corners = _numbers(items, f"{role}_corners", np.int32, 3).reshape(-1, 3)
+    return Places(corners.astype(np.int64), _numbers(items, f"{role}_weights", np.float32, 3).reshape(-1, 3))
+
+
+def _at_vertices(items: Any, role: str) -> Places:  # noqa: ANN401 - a collection property
+    """Read where landmarks are."""
+    vertices = _numbers(items, role, np.int32).astype(np.int64)
+    return Places(np.repeat(vertices[:, None], 3, axis=1), np.tile([1.0, 0.0, 0.0], (len(vertices), 1)))
+
+
+def _numbers(items: Any, name: str, kind: type[np.generic], width: int = 1) -> NDArray[Any]:  # noqa: ANN401
+    """Read a property of all rows."""
+    values = np.empty(len(items) * width, kind)
+    if len(items):
+        items.foreach_get(name, values)
+    return values

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sentences in panels."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Any, Final, cast
+from unicodedata import east_asian_width
+
+from ..common.translated_text import translated
+
+if TYPE_CHECKING:
+    import bpy
+
+__all__ = ["draw_text", "wrap_text"]
+
+_PIXELS_PER_LETTER = 7
+"""Rough width of a letter at normal interface scale, to wrap sentences."""
+
+_NEVER_FIRST: Final = "、。，．：；！？）」』”’・ー々ぁぃぅぇぉっゃゅょァィゥェォッャュョ"
+"""What no line of Japanese or Chinese starts with."""
+
+
+def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
+    """Draw a sentence, in the language of the interface, over as many lines as the width of the sidebar asks for."""
+    region, preferences = cast("Any", context.region), cast("Any", context.preferences)
+    width = region.width / (_PIXELS_PER_LETTER * preferences.system.ui_scale)
+    column: Any = layout.column()
+    column.scale_y = 0.8
+    for number, line in enumerate(wrap_text(translated(text), max(16, int(width) - 6))):
+        column.label(text=line, icon="BLANK1" if number else icon, translate=False)
+
+
+def wrap_text(text: str, width: int) -> list[str]:
+    """Break a sentence into lines: at spaces, and in Japanese and Chinese between any two letters.
+
+    Parameters
+    ----------
+    text : str
+        The sentence.
+    width : int
+        Letters in a line; those of Japanese and Chinese count twice.
+
+    Returns
+    -------
+    list of str
+        The lines.  A line may be wider by the punctuation that must not start the next one.
+    """
+    if not any(_columns(letter) == 2 for letter in text):
+        return textwrap.wrap(text, width)
+    lines = [""]
+    for piece in _pieces(text):
+        filled = sum(map(_columns, lines[-1] + piece.rstrip()))
+        if lines[-1] and filled > width and piece not in _NEVER_FIRST:
+            lines.append("")
+        lines[-1] += piece
+    return [line.strip() for line in lines]
+
+
+def _columns(letter: str) -> int:
+    """Return how many usual letters are as wide as one."""
+    return 2 if east_asian_width(letter) in "WF" else 1
+
+
+def _pieces(text: str) -> list[str]:
+    """Take a text apart where a line may end: after spaces, and around wide letters."""
+    pieces = [""]
+    for letter in text:
+        wide = _columns(letter) == 2
+        if pieces[-1] and (wide or pieces[-1].endswith(" ") or _columns(pieces[-1][-1]) == 2):
+            pieces.append("")
+        pieces[-1] += letter
+    return pieces

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panels for what follows a match, in the sidebar: they show stored state and compute nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import bpy
+
+from ..common.access import layout_of
+from ..transfers.options.retarget import KINDS, option_names
+from ..transfers.options.symmetrise import SymmetriseOptions
+from ..transfers.options.wrap import WrapOptions
+from ..transfers.retarget_properties import copy_named, retarget_of
+from .panel_text import draw_text
+from .progress_bar import draw_progress, draw_starter
+
+if TYPE_CHECKING:
+    from ..transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
+
+__all__ = ["HIERMATCH_PT_retarget", "HIERMATCH_PT_symmetry"]
+
+_ALONE: Final = {
+    "use_rig": "hiermatch.fit_rig",
+    "use_weights": "hiermatch.transfer_weights",
+    "use_shape_keys": "hiermatch.transfer_shape_keys",
+    "use_uvs": "hiermatch.transfer_uvs",
+    "use_attributes": "hiermatch.transfer_attributes",
+}
+"""For each switch the operator that carries this kind alone."""
+
+
+class HIERMATCH_PT_retarget(bpy.types.Panel):
+    """Carry over what the source has."""
+
+    bl_label = "Retarget"
+    bl_idname = "HIERMATCH_PT_retarget"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "HierMatch"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the kinds with their options, the button, and what became of it."""
+        layout = layout_of(self)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        state: Any = retarget_of(context)
+        for switch in KINDS:
+            _draw_kind(layout, context, state, switch)
+        layout.prop(state, "refine")
+        if draw_progress(layout, context, self.bl_idname):
+            return
+        row = layout.row()
+        row.scale_y = 1.5
+        button = row.operator("hiermatch.retarget", icon="OUTLINER_OB_ARMATURE")
+        names = [name for kind in KINDS.values() for name in option_names(kind)]
+        copy_named(state, button, [*KINDS, *names, "refine"])
+        _draw_wrap(layout, context, state)
+        _draw_report(layout, context, state.report)
+
+
+class HIERMATCH_PT_symmetry(bpy.types.Panel):
+    """Make what a mesh carries symmetric."""
+
+    bl_label = "Symmetry"
+    bl_idname = "HIERMATCH_PT_symmetry"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "HierMatch"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the options and the button."""
+        layout = layout_of(self)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        state = retarget_of(context)
+        names = option_names(SymmetriseOptions)
+        for name in names:
+            layout.prop(state, name)
+        if not draw_progress(layout, context, self.bl_idname):
+            copy_named(state, layout.operator("hiermatch.symmetrise", icon="MOD_MIRROR"), names)
+
+
+def _draw_kind(
+    layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget, switch: str
+) -> None:
+    """Draw the switch of a kind, a button that carries it alone, and its options to unfold."""
+    names = option_names(KINDS[switch])
+    header, body = cast("Any", layout).panel(f"hiermatch_{switch}", default_closed=True)
+    header.use_property_split = False
+    header.prop(state, switch)
+    button = draw_starter(header, context, _ALONE[switch], "", "PLAY")
+    if button is not None:
+        copy_named(state, button, [*names, "refine"])
+    if body is not None:
+        body.active = getattr(state, switch)
+        for name in names:
+            body.prop(state, name)
+
+
+def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
+    """Draw the options of a wrap and its button."""
+    header, body = cast("Any", layout).panel("hiermatch_wrap", default_closed=True)
+    header.label(text="Wrap and Morph")
+    if body is not None:
+        names = option_names(WrapOptions)
+        for name in names:
+            body.prop(state, name)
+        button = draw_starter(body, context, "hiermatch.wrap", "Wrap", "MOD_SHRINKWRAP")
+        if button is not None:
+            copy_named(state, button, [*names, "refine"])
+
+
+def _draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: HIERMATCH_PG_report) -> None:
+    """Draw what became of the last transfer."""
+    if not report.done:
+        return
+    box = layout.box().column()
+    for line in report.done.splitlines():
+        draw_text(box, context, line, "CHECKMARK")
+    for line in report.notes.splitlines():
+        draw_text(box, context, line, "ERROR")
+    box.label(text=f"{report.seconds:.1f} s", icon="TIME")

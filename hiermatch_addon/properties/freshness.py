@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether the match that the panel shows is still one of the meshes as they are.
+
+To find that out takes a look at every vertex.  So nothing is looked at while the panel is drawn, but a moment after a
+mesh that carries a match was edited, after objects came or went, after undo and redo, and after a file was opened.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..common.redraw import redraw_sidebars
+from ..storage.halves import find_carriers
+from ..storage.landmark_layer import has_landmarks
+from ..storage.writing import is_marked
+from .panel_state import summary_of
+from .steering_lists import sync_lists
+
+if TYPE_CHECKING:
+    from ..storage.halves import Half
+    from .properties import HIERMATCH_PG_summary
+
+__all__ = ["refresh", "start_watching", "stop_watching"]
+
+_DELAY = 0.3
+"""Seconds from an edit to the look at it, so that many edits in a row cost one look."""
+
+_PLAYING_DELAY = 1.0
+"""Seconds until the next try while an animation plays, which must not stutter."""
+
+
+def refresh(scene: bpy.types.Scene) -> None:
+    """Find out whether the match that a scene's panel shows is out of date, and what its lists are to show."""
+    summary = summary_of(scene)
+    stale = ""
+    if summary.key:
+        for role, name in _sides(summary):
+            stale = stale or _staleness(find_carriers(scene.objects, summary.key, summary.prefix, role), name)
+    if summary.stale != stale:
+        summary.stale = stale
+        # Blender draws again what an operator changed, but not what a timer did.
+        redraw_sidebars(cast("bpy.types.WindowManager", bpy.context.window_manager))
+    sync_lists(scene)
+
+
+def _sides(summary: HIERMATCH_PG_summary) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Role and name of what was matched as the source, and of what as the target."""
+    names = (summary.target, summary.source) if summary.swapped else (summary.source, summary.target)
+    return ("source", names[0]), ("target", names[1])
+
+
+def _staleness(carriers: list[Half], name: str) -> str:
+    """Say why a match is out of date on one side: of copies, the one that still has the name counts."""
+    if not carriers:
+        return f'The match is out of date: "{name}" was deleted, cleared or matched anew. Match again.'
+    return next((half for half in carriers if half.obj.name == name), carriers[0]).staleness()
+
+
+def start_watching() -> None:
+    """Let Blender tell when there is something to look at."""
+    for handlers, function in _handlers():
+        handlers.append(function)
+
+
+def stop_watching() -> None:
+    """Undo `start_watching`."""
+    for handlers, function in _handlers():
+        handlers.remove(function)
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
+
+
+def _handlers() -> tuple[tuple[list[Any], Any], ...]:
+    handlers: Any = bpy.app.handlers
+    return (
+        (handlers.depsgraph_update_post, _on_update),
+        (handlers.undo_post, _on_change),
+        (handlers.redo_post, _on_change),
+        (handlers.load_post, _on_change),
+    )
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Look soon if a mesh with a match was edited, or objects came or went.
+
+    Posing, moving and selecting objects edits no mesh and no collection.
+    """
+    if depsgraph.id_type_updated("COLLECTION"):
+        _look_soon()
+        return
+    for update in depsgraph.updates:
+        changed = update.id
+        if update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed):
+            _look_soon()
+            return
+
+
+def _is_ours(mesh: bpy.types.Mesh) -> bool:
+    """Return whether a mesh carries a match or landmarks."""
+    return is_marked(mesh) or has_landmarks(mesh)
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _on_change(*_arguments: object) -> None:
+    """Look soon, whatever has changed."""
+    _look_soon()
+
+
+def _look_soon() -> None:
+    if not bpy.app.timers.is_registered(_look):
+        bpy.app.timers.register(_look, first_interval=_DELAY)
+
+
+def _look() -> float | None:
+    """Look at every scene; return when to try again, if this was no good time."""
+    manager: Any = bpy.context.window_manager
+    if any(window.screen.is_animation_playing for window in manager.windows):
+        return _PLAYING_DELAY
+    for scene in bpy.data.scenes:
+        if scene.library is None:
+            refresh(scene)
+    return None

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lists of landmarks and of matched points, filled with what the two meshes have in common.
+
+Blender draws lists of what is stored in properties only.  What counts is on the meshes; the lists repeat it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..storage.halves import find_common
+from ..storage.landmarks import find_landmarks
+from ..storage.stored_match import StoredMatch
+from .panel_state import summary_of
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ..storage.halves import Half
+
+__all__ = ["common_match", "point_name", "steered_pair", "sync_lists"]
+
+
+_REVISIONS = 1 << 30
+"""After so many changes the count begins anew."""
+
+
+def steered_pair(scene: bpy.types.Scene) -> tuple[bpy.types.Object, bpy.types.Object] | None:
+    """Return the two meshes that a scene's panels are about: those picked, else those of the last match."""
+    state: Any = scene
+    picked = (state.hiermatch.source, state.hiermatch.target)
+    summary = summary_of(scene)
+    names = (summary.source, summary.target) if summary.key else ("", "")
+    found = [obj or scene.objects.get(name) for obj, name in zip(picked, names, strict=True)]
+    source, target = found
+    if source is None or target is None or source == target or {source.type, target.type} != {"MESH"}:
+        return None
+    return source, target
+
+
+def common_match(scene: bpy.types.Scene) -> tuple[Half, Half] | None:
+    """Return the two sides, source first, of the match that a scene's panels are about; None if there is none.
+
+    Of several, it is the one that the summary tells of, else the first.
+    """
+    pair = steered_pair(scene)
+    found = [] if pair is None else find_common(*pair)
+    key = summary_of(scene).key
+    return next((halves for halves in found if halves[0].key == key), found[0] if found else None)
+
+
+def point_name(prefix: str, number: int) -> str:
+    """Return the name of the vertex group of a matched point, numbered from 1."""
+    return f"{prefix}.{number:03d}"
+
+
+def sync_lists(scene: bpy.types.Scene) -> None:
+    """Fill both lists of a scene, and write to it only if they have changed."""
+    owner: Any = scene
+    steering = owner.hiermatch_steering
+    changed = [_fill(steering.landmarks, _landmark_rows(scene)), _fill(steering.pairs, _pair_rows(scene))]
+    if any(changed):
+        steering.revision = (steering.revision + 1) % _REVISIONS
+    for name in ("landmark", "pair"):
+        last = max(len(getattr(steering, f"{name}s")) - 1, 0)
+        if getattr(steering, f"{name}_index") > last:
+            setattr(steering, f"{name}_index", last)
+
+
+def _landmark_rows(scene: bpy.types.Scene) -> list[dict[str, Any]]:
+    pair = steered_pair(scene)
+    landmarks = [] if pair is None else find_landmarks(*pair)
+    return [{"name": f"Landmark {one.number}", **vars(one)} for one in landmarks]
+
+
+def _pair_rows(scene: bpy.types.Scene) -> list[dict[str, Any]]:
+    """List the matched points, the worst first."""
+    halves = common_match(scene)
+    if halves is None or not all(half.has_same_faces() for half in halves):
+        return []
+    first, second = halves if halves[0].role == "source" else halves[::-1]
+    stored = StoredMatch.from_plain(first.kept, second.kept)
+    sides = (stored.source_points, stored.answer.target_points)
+    source, target = sides if first is halves[0] else sides[::-1]
+    sources, targets = source.nearest_vertices, target.nearest_vertices
+    weights = [points.barycentric.astype(np.float32).tolist() for points in (source, target)]  # as properties hold them
+    distortion = stored.answer.point_distortion
+    locked = {(one.source, one.target) for one in find_landmarks(halves[0].obj, halves[1].obj) if one.use}
+    return [
+        {
+            "name": point_name(first.prefix, number + 1),
+            "number": number + 1,
+            "source": int(sources[number]),
+            "target": int(targets[number]),
+            "source_corners": tuple(source.corners[number].tolist()),
+            "source_weights": tuple(weights[0][number]),
+            "target_corners": tuple(target.corners[number].tolist()),
+            "target_weights": tuple(weights[1][number]),
+            "distortion": float(np.float32(distortion[number])),
+            "locked": (int(sources[number]), int(targets[number])) in locked,
+        }
+        for number in np.argsort(-distortion, kind="stable").tolist()
+        if number not in stored.left_out
+    ]
+
+
+def _fill(items: Any, rows: list[dict[str, Any]]) -> bool:  # noqa: ANN401 - a collection property
+    """Let a collection have these rows; return whether it had others."""
+    if len(items) == len(rows) and all(
+        (tuple(getattr(item, name)) if isinstance(value, tuple) else getattr(item, name)) == value
+        for item, row in zip(items, rows, strict=True)
+        for name, value in row.items()
+    ):
+        return False
+    while len(items) > len(rows):
+        items.remove(len(items) - 1)
+    while len(items) < len(rows):
+        items.add()
+    for item, row in zip(items, rows, strict=True):
+        for name, value in row.items():
+            setattr(item, name, value)
+    return True

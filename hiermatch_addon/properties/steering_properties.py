@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""What the panels for steering a match remember: the rows of their lists, and how the overlay is drawn."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import bpy
+
+from ..common.redraw import redraw_views
+
+__all__ = ["HIERMATCH_PG_landmark", "HIERMATCH_PG_pair", "HIERMATCH_PG_steering", "steering_of"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+def _redraw(_owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Draw the overlay anew, in all viewports."""
+    redraw_views(cast("bpy.types.WindowManager", context.window_manager))
+
+
+class HIERMATCH_PG_landmark(bpy.types.PropertyGroup):
+    """A row of the list of landmarks."""
+
+    number: _props.IntProperty(name="Number", description="By which the landmark is known on both meshes")
+    source: _props.IntProperty(name="Source Vertex", description="Vertex of the source")
+    target: _props.IntProperty(name="Target Vertex", description="Vertex of the target that corresponds to it")
+    use: _props.BoolProperty(name="Use", description="Whether a match keeps to the landmark", default=True)
+
+
+class HIERMATCH_PG_pair(bpy.types.PropertyGroup):
+    """A row of the list of matched points."""
+
+    number: _props.IntProperty(name="Number", description="Which of the matched points it is, from 1")
+    source: _props.IntProperty(name="Source Vertex", description="Vertex of the source that is nearest to the point")
+    target: _props.IntProperty(name="Target Vertex", description="Vertex of the target that is nearest to the point")
+    source_corners: _props.IntVectorProperty(name="Source Corners", description="Vertices around the point")
+    source_weights: _props.FloatVectorProperty(name="Source Weights", description="Where it is between them")
+    target_corners: _props.IntVectorProperty(
+        name="Target Corners", description="Vertices around the corresponding point"
+    )
+    target_weights: _props.FloatVectorProperty(name="Target Weights", description="Where it is between them")
+    distortion: _props.FloatProperty(
+        name="Distortion",
+        description="How much the distances from this point to the others differ between the two meshes, in units of "
+        "the square root of the surface area",
+    )
+    locked: _props.BoolProperty(name="Locked", description="Whether the point is a landmark, too")
+
+
+class HIERMATCH_PG_steering(bpy.types.PropertyGroup):
+    """The state of the panels for steering a match on a scene."""
+
+    landmarks: _props.CollectionProperty(
+        name="Landmarks", description="Landmarks that source and target have in common", type=HIERMATCH_PG_landmark
+    )
+    landmark_index: _props.IntProperty(
+        name="Landmark", description="The row of the list of landmarks that is active", min=0, update=_redraw
+    )
+    pairs: _props.CollectionProperty(
+        name="Matched Points", description="The matched points, the worst first", type=HIERMATCH_PG_pair
+    )
+    pair_index: _props.IntProperty(
+        name="Matched Point", description="The row of the list of matched points that is active", min=0, update=_redraw
+    )
+    before: _props.StringProperty(name="Before", description="What was shown before, as a JSON text; empty if nothing")
+    revision: _props.IntProperty(name="Revision", description="Grows with each change of a list")
+    show_overlay: _props.BoolProperty(
+        name="Show in Viewport",
+        description="Draw matched points and landmarks on both meshes in the 3D viewports",
+        update=_redraw,
+    )
+    show_points: _props.BoolProperty(
+        name="Points",
+        description="Draw the matched points, from blue to yellow by distortion",
+        default=True,
+        update=_redraw,
+    )
+    show_lines: _props.BoolProperty(
+        name="Lines", description="Draw a line between the two places of each point", default=True, update=_redraw
+    )
+    show_labels: _props.BoolProperty(
+        name="Numbers", description="Write the numbers of landmarks and of the worst points beside them", update=_redraw
+    )
+
+
+def steering_of(context: bpy.types.Context) -> HIERMATCH_PG_steering:
+    """Return the state of the panels for steering a match on the scene."""
+    return cast("Any", context.scene).hiermatch_steering

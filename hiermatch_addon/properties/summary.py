@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panel remembers of the match that was written last, or that the picked meshes carry."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..storage.stored_match import StoredMatch
+from .panel_state import summary_of
+from .steering_lists import common_match
+
+if TYPE_CHECKING:
+    import bpy
+
+    from .properties import HIERMATCH_PG_summary
+
+__all__ = ["remember", "remember_common"]
+
+
+def remember(
+    summary: HIERMATCH_PG_summary, stored: StoredMatch, names: tuple[str, str], prefix: str, seconds: float
+) -> None:
+    """Fill the summary.
+
+    Parameters
+    ----------
+    summary : HIERMATCH_PG_summary
+        What to fill.
+    stored : StoredMatch
+        The match.
+    names : tuple of str
+        What the objects that were matched as source and target are called now.
+    prefix : str
+        What all names written start with.
+    seconds : float
+        How long the match took; zero if that is not known.
+    """
+    answer = stored.answer
+    summary.points = len(answer.point_distortion)
+    summary.source, summary.target = names[::-1] if stored.swapped else names
+    summary.swapped = stored.swapped
+    summary.distortion = answer.distortion
+    summary.worst_distortion = float(answer.point_distortion.max())
+    summary.proven, summary.gap = answer.proven, answer.gap
+    summary.orientation = answer.orientation
+    summary.has_mirrored, summary.mirrored = len(stored.answers) > 1, stored.mirrored
+    summary.stretch = answer.quality.distortion if answer.quality else 0.0
+    summary.verdict = answer.quality.sentence if answer.quality else ""
+    summary.confidence = answer.quality.confidence if answer.quality else 0.0
+    summary.seconds = seconds
+    summary.notes = "\n".join(stored.notes)
+    summary.prefix, summary.key = prefix, stored.key
+
+
+def remember_common(scene: bpy.types.Scene) -> None:
+    """Fill a scene's summary with the match of the two meshes that its panels are about, such as after appending them.
+
+    If they carry none, or the summary tells of it already, it stays as it is.
+    """
+    summary, halves = summary_of(scene), common_match(scene)
+    if halves is None or (halves[0].key, halves[0].prefix) == (summary.key, summary.prefix):
+        return
+    source, target = halves if halves[0].role == "source" else halves[::-1]
+    stored = StoredMatch.from_plain(source.kept, target.kept)
+    remember(summary, stored, (source.obj.name, target.obj.name), source.prefix, 0.0)
+    summary.stale = source.staleness() or target.staleness()

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rig of an object: which armature moves it, and its bones and weights as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+
+from ...engine import Skeleton
+from .deform_layer import read_weights
+
+if TYPE_CHECKING:
+    import bpy
+    import mathutils
+    from numpy.typing import NDArray
+
+__all__ = [
+    "SourceRig",
+    "armature_modifier",
+    "armature_of",
+    "find_armature",
+    "moving_armatures",
+    "read_rig",
+    "read_skeleton",
+]
+
+
+@dataclass(frozen=True, eq=False)
+class SourceRig:
+    """The armature that moves an object, in world space and at rest.
+
+    Attributes
+    ----------
+    armature_name : str
+        Name of the armature object.
+    names : (b,) tuple of str
+        Names of all its bones, in Blender's order.
+    skeleton : Skeleton
+        Their joints in the rest pose.
+    weights : (n, b) csr_array of float
+        How much each bone moves each vertex: rows sum to one, or are empty.  Columns of bones that do not deform are
+        empty.
+    """
+
+    armature_name: str
+    names: tuple[str, ...]
+    skeleton: Skeleton
+    weights: csr_array
+
+
+def armature_of(obj: bpy.types.Object) -> bpy.types.Armature:
+    """Return the armature data of an armature object."""
+    return cast("bpy.types.Armature", obj.data)
+
+
+def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | None:
+    """Find the first Armature modifier of an object that has an armature."""
+    for modifier in obj.modifiers:
+        if modifier.type == "ARMATURE" and cast("bpy.types.ArmatureModifier", modifier).object is not None:
+            return cast("bpy.types.ArmatureModifier", modifier)
+    return None
+
+
+def find_armature(obj: bpy.types.Object) -> bpy.types.Object | None:
+    """Find the armature that moves an object: that of its first Armature modifier, or else its parent."""
+    modifier = armature_modifier(obj)
+    if modifier is not None:
+        return modifier.object
+    return obj.parent if obj.parent is not None and obj.parent.type == "ARMATURE" else None
+
+
+def moving_armatures(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return the armatures of all Armature modifiers of an object, each once."""
+    modifiers = [modifier for modifier in obj.modifiers if modifier.type == "ARMATURE"]
+    armatures = [cast("bpy.types.ArmatureModifier", modifier).object for modifier in modifiers]
+    return list(dict.fromkeys(armature for armature in armatures if armature is not None))
+
+
+def read_skeleton(armature: bpy.types.Object) -> Skeleton:
+    """Read the bones of an armature object as they are at rest, in world space."""
+    bones = armature_of(armature).bones
+    numbers = {bone.name: number for number, bone in enumerate(bones)}
+    parents = np.array([-1 if bone.parent is None else numbers[bone.parent.name] for bone in bones], np.int64)
+    matrix = np.array(armature.matrix_world, np.float64)
+
+    def placed(points: list[mathutils.Vector]) -> NDArray[np.float64]:
+        return np.array(points, np.float64).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+    heads, tails = ([getattr(bone, end) for bone in bones] for end in ("head_local", "tail_local"))
+    return Skeleton(parents, placed(heads), placed(tails))
+
+
+def read_rig(obj: bpy.types.Object) -> SourceRig | None:
+    """Read the rig of a mesh object.
+
+    The mesh's own vertices belong to the rest pose, whatever pose the armature is in.
+
+    Returns
+    -------
+    SourceRig or None
+        None if no armature moves the object, or no vertex has a weight of one of its deforming bones.
+    """
+    armature = find_armature(obj)
+    if armature is None:
+        return None
+    bones = armature_of(armature).bones
+    numbers = {bone.name: number for number, bone in enumerate(bones) if bone.use_deform}
+    groups = [group for group in obj.vertex_groups if group.name in numbers]
+    if not groups:
+        return None
+    columns = read_weights(obj)[:, [group.index for group in groups]].tocoo()
+    places = np.array([numbers[group.name] for group in groups], np.int64)
+    weights = csr_array((columns.data, (columns.row, places[columns.col])), shape=(columns.shape[0], len(bones)))
+    weights = _normalised(weights)
+    if weights.nnz == 0:
+        return None
+    return SourceRig(armature.name, tuple(bone.name for bone in bones), read_skeleton(armature), weights)
+
+
+def _normalised(weights: csr_array) -> csr_array:
+    """Scale rows of weights so that they sum to one, and leave out what is zero."""
+    weights = weights.astype(np.float64)
+    totals = np.asarray(weights.sum(axis=1)).ravel()
+    scales = np.divide(1.0, totals, out=np.zeros_like(totals), where=totals > 0)
+    scaled = csr_array(diags_array(scales) @ weights)
+    scaled.eliminate_zeros()
+    return scaled

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Write an answer of a match that is kept on two meshes anew: another answer, or other maps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ...engine import Progress
+from ...engine.matching.refinement import distortion_after, placed_by_map
+from ...engine.runtime.progress import run, within
+from . import writing
+from .contents import contents_steps
+from .stored_match import CornerPoints, Quality
+from .vertex_maps import add_maps, place_points
+
+if TYPE_CHECKING:
+    import bpy
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...engine import DenseMatch, SurfacePoints, TriangleMesh
+    from ...engine.runtime.progress import Steps
+    from .contents import Content
+    from .stored_match import StoredMatch
+    from .vertex_maps import StoredMaps
+
+__all__ = ["Restored", "contents_with_maps", "following", "mapped_contents_steps", "restored", "write_answer"]
+
+
+@dataclass(frozen=True, eq=False)
+class Restored:
+    """An answer as the engine had given it; a `Correspondence`."""
+
+    source_points: SurfacePoints
+    target_points: SurfacePoints
+    point_distortion: NDArray[np.float64]
+    source_distances: NDArray[np.float64] | None = None
+    target_distances: NDArray[np.float64] | None = None
+
+
+def restored(stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh]) -> Restored:
+    """Put the points of the chosen answer on the meshes, without measuring anything there."""
+    sides = (stored.source_points, stored.answer.target_points)
+    source, target = (
+        place_points(mesh, points.corners, points.barycentric) for mesh, points in zip(meshes, sides, strict=True)
+    )
+    return Restored(source, target, stored.answer.point_distortion)
+
+
+def following(
+    stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh], dense: DenseMatch, *, proven: bool
+) -> StoredMatch:
+    """Let the points of the chosen answer lie where new dense maps take them; `proven` is what is said of it then."""
+    answer = stored.answer
+    images, distortion = placed_by_map(*meshes, restored(stored, meshes).source_points, dense.source_to_target)
+    answers = list(stored.answers)
+    answers[stored.mirrored] = replace(
+        answer,
+        target_points=CornerPoints.of(images),
+        point_distortion=distortion,
+        distortion=distortion_after(answer.distortion, answer.point_distortion, distortion),
+        proven=proven,
+        quality=Quality.of(dense.quality),
+        refined=False,
+    )
+    return replace(stored, answers=tuple(answers))
+
+
+def contents_with_maps(
+    stored: StoredMatch,
+    meshes: tuple[TriangleMesh, TriangleMesh],
+    prefix: str,
+    shown: StoredMaps,
+    other: StoredMaps | None,
+) -> tuple[Content, Content]:
+    """Prepare the chosen answer with its dense maps, and those of the other one."""
+    return run(mapped_contents_steps(stored, meshes, prefix, shown, other))
+
+
+def mapped_contents_steps(
+    stored: StoredMatch,
+    meshes: tuple[TriangleMesh, TriangleMesh],
+    prefix: str,
+    shown: StoredMaps,
+    other: StoredMaps | None,
+) -> Steps[tuple[Content, Content]]:
+    """Prepare them in steps; see `contents_with_maps`."""
+    yield Progress(0.0, "Preparing what is written")
+    maps = shown.between(*meshes)
+    steps = contents_steps(restored(stored, meshes), prefix, stored.written, maps, left_out=stored.left_out)
+    prepared = yield from within(steps, 0.3, 1.0)
+    add_maps(prepared, prefix, shown, other)
+    return prepared
+
+
+def write_answer(
+    objects: tuple[bpy.types.Object, bpy.types.Object],
+    stored: StoredMatch,
+    prepared: tuple[Content, Content],
+    prefix: str,
+) -> None:
+    """Write it in place of what the match wrote before, and leave what is shown as it is.
+
+    Raises
+    ------
+    ObjectError
+        If the user's own vertex groups or attributes are in the way; nothing is written then.
+    """
+    for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
+        writing.check_names(obj, content, prefix)
+        content.keep.update(kept)
+    writing.write(list(zip(objects, prepared, strict=True)), prefix, show=False)

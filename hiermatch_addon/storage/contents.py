@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a match writes on two objects, as plain arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from ...engine import Progress
+from ...engine.runtime.progress import run
+from .views import colors
+from .views.stretch import DOUBLED, vertex_stretch
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from numpy.typing import NDArray
+
+    from ...engine.runtime.progress import Steps
+    from .vertex_maps import MapPair
+
+__all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents", "contents_steps"]
+
+_LABEL = "Preparing what is written"
+
+UNREACHED = -1.0
+"""Value of the distortion where there is none to tell: at a vertex without an edge, or, if there is no dense map, one
+that no matched point has a path to."""
+
+
+class Points(Protocol):
+    """What of points on a surface is needed to write them; see `SurfacePoints`."""
+
+    @property
+    def corners(self) -> NDArray[np.int64]:
+        """Vertices of the triangle of each point, (k, 3)."""
+
+    @property
+    def barycentric(self) -> NDArray[np.float64]:
+        """Barycentric coordinates there, (k, 3)."""
+
+    @property
+    def nearest_vertices(self) -> NDArray[np.int64]:
+        """The corner with the largest coordinate, (k,)."""
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Where the points are, (k, 3)."""
+
+    def __len__(self) -> int: ...
+
+
+class Correspondence(Protocol):
+    """What of a match is needed to write it; see `MatchResult`."""
+
+    @property
+    def source_points(self) -> Points:
+        """Matched points of the source, k."""
+
+    @property
+    def target_points(self) -> Points:
+        """The corresponding points of the target, k."""
+
+    @property
+    def point_distortion(self) -> NDArray[np.float64]:
+        """Distortion of each point, (k,)."""
+
+    @property
+    def source_distances(self) -> NDArray[np.float64] | None:
+        """Geodesic distance from each point to every vertex of the source, (k, n), if it was measured."""
+
+    @property
+    def target_distances(self) -> NDArray[np.float64] | None:
+        """The same on the target, (k, m)."""
+
+
+class Kinds(Protocol):
+    """Which kinds of things are written."""
+
+    @property
+    def vertex_groups(self) -> bool:
+        """A vertex group for each matched point."""
+
+    @property
+    def match_colors(self) -> bool:
+        """Colours that are the same at corresponding places."""
+
+    @property
+    def distortion(self) -> bool:
+        """How much lengths differ around each place, as colours and as numbers."""
+
+    @property
+    def confidence(self) -> bool:
+        """How far the dense maps can be trusted at each place, as colours."""
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """What shall stand on one object.
+
+    Attributes
+    ----------
+    groups : dict
+        For each vertex group its vertices (c,) and their weights (c,).
+    colors : dict
+        For each color attribute its linear colours, (n, 4).
+    values : dict
+        For each attribute of numbers its values, (n,), or of vectors, (n, 3).
+    keep : dict
+        Plain data to keep with it: numbers, texts, lists of numbers, and such dicts; see `kept`.
+    """
+
+    groups: dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]] = field(default_factory=dict)
+    colors: dict[str, NDArray[np.float32]] = field(default_factory=dict)
+    values: dict[str, NDArray[Any]] = field(default_factory=dict)
+    keep: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def shown(self) -> str | None:
+        """The color attribute to make the active one: the first."""
+        return next(iter(self.colors), None)
+
+
+def contents(
+    result: Correspondence,
+    prefix: str,
+    kinds: Kinds,
+    maps: MapPair | None = None,
+    *,
+    left_out: Collection[int] = (),
+) -> tuple[Content, Content]:
+    """Prepare what a match writes on the source and on the target.
+
+    Parameters
+    ----------
+    result : MatchResult or other Correspondence
+        The match; its distances are used for colors and distortion only, and only if there are no maps.
+    prefix : str
+        What every name starts with.
+    kinds : Written, JobOptions or other Kinds
+        Which kinds to write; confidence only if there are maps.
+    maps : MapPair, optional
+        The dense maps of the match, if it has any.
+    left_out : collection of int
+        Numbers, from 0, of points that get no vertex groups.
+
+    Returns
+    -------
+    source, target : Content
+        What to write on each.
+    """
+    return run(contents_steps(result, prefix, kinds, maps, left_out=left_out))
+
+
+def contents_steps(
+    result: Correspondence,
+    prefix: str,
+    kinds: Kinds,
+    maps: MapPair | None = None,
+    *,
+    left_out: Collection[int] = (),
+) -> Steps[tuple[Content, Content]]:
+    """Prepare it in steps; see `contents`."""
+    prepared = (Content(), Content())
+    if kinds.vertex_groups:
+        for content, points in zip(prepared, (result.source_points, result.target_points), strict=True):
+            content.groups.update(_groups(points, prefix, left_out))
+    if maps is not None:
+        yield from _add_mapped_steps(prepared, maps, prefix, kinds)
+    elif result.source_distances is not None and result.target_distances is not None:
+        _add_spread(prepared, result, (result.source_distances, result.target_distances), prefix, kinds)
+    return prepared
+
+
+def _add_mapped_steps(prepared: tuple[Content, Content], maps: MapPair, prefix: str, kinds: Kinds) -> Steps[None]:
+    """Add what dense maps tell of every vertex."""
+    yield Progress(0.0, _LABEL)
+    if kinds.match_colors:
+        own = colors.match_colors(maps.source.vertices, maps.source.vertex_areas)
+        for content, shown in zip(prepared, (own, maps.target_to_source.transfer(own)), strict=True):
+            content.colors[f"{prefix} Match"] = colors.opaque(colors.to_linear(shown))
+    for number, (content, sides) in enumerate(zip(prepared, (maps, maps.reverse), strict=True)):
+        yield Progress((1 + number) / 3, _LABEL)
+        if kinds.distortion:
+            stretch = vertex_stretch(sides.source_to_target, sides.source, sides.target)
+            yield Progress((1.5 + number) / 3, _LABEL)
+            _add_distortion(content, prefix, stretch, DOUBLED)
+        if kinds.confidence:
+            shades = colors.confidence_colors(sides.source_to_target.confidence)
+            content.colors[f"{prefix} Confidence"] = colors.opaque(colors.to_linear(shades))
+
+
+def _add_spread(
+    prepared: tuple[Content, Content],
+    result: Correspondence,
+    rows: tuple[NDArray[np.float64], NDArray[np.float64]],
+    prefix: str,
+    kinds: Kinds,
+) -> None:
+    """Add what the matched points tell of the vertices around them, by their distances (k, n) and (k, m)."""
+    if not (kinds.match_colors or kinds.distortion):
+        return
+    sides = (result.source_points, result.target_points)
+    pairs = [distances[:, points.nearest_vertices] for points, distances in zip(sides, rows, strict=True)]
+    reaches = colors.bandwidths(pairs[0], pairs[1])
+    # Red, green, blue and the distortion of each point, (k, 4): spread in one go.
+    shown = np.column_stack([colors.match_colors(result.source_points.positions), result.point_distortion])
+    worst = float(result.point_distortion.max())
+    for content, distances, reach in zip(prepared, rows, reaches, strict=True):
+        mixed = colors.spread(shown, distances, reach)
+        if kinds.match_colors:
+            content.colors[f"{prefix} Match"] = colors.opaque(colors.to_linear(mixed[:, :3]))
+        if kinds.distortion:
+            _add_distortion(content, prefix, mixed[:, 3], worst)
+
+
+def _add_distortion(content: Content, prefix: str, values: NDArray[np.float64], maximum: float) -> None:
+    """Add values (n,), nan where there is none, as numbers and as colours; `maximum` is yellow."""
+    shades = colors.to_linear(colors.distortion_colors(values, maximum))
+    content.colors[f"{prefix} Distortion"] = colors.opaque(shades)
+    content.values[f"{prefix} Distortion Value"] = np.where(np.isnan(values), UNREACHED, values)
+
+
+def _groups(
+    points: Points, prefix: str, left_out: Collection[int] = ()
+) -> dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]]:
+    """Name a vertex group for each point: its corners with a positive barycentric coordinate, weighted by it."""
+    groups = {}
+    for number, (corners, weights) in enumerate(zip(points.corners, points.barycentric, strict=True), start=1):
+        if number - 1 in left_out:
+            continue
+        positive = weights > 0
+        groups[f"{prefix}.{number:03d}"] = (corners[positive], weights[positive])
+    return groups

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmarks of a pair of meshes: corresponding vertices that the user names.
+
+The two vertices of a landmark have the same number.  A mesh may have landmarks in common with several others: its own
+then serve with all of them, each as far as the other mesh has the same number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..common.errors import ObjectError
+from ..scene.pair import check_writable
+from .landmark_layer import read_marks, write_marks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import bpy
+    from numpy.typing import NDArray
+
+__all__ = [
+    "Landmark",
+    "Mark",
+    "add_landmarks",
+    "clear_landmarks",
+    "find_landmarks",
+    "landmark_array",
+    "remove_landmark",
+    "switch_landmark",
+]
+
+Mark = tuple[int, bool]
+"""The vertex of a landmark on one mesh, and whether the landmark is on."""
+
+_MOST = 4096
+"""So many landmarks a mesh can have."""
+
+
+@dataclass(frozen=True)
+class Landmark:
+    """A pair of corresponding vertices.
+
+    Attributes
+    ----------
+    number : int
+        By which the two vertices are known, from 1.
+    source, target : int
+        The vertices.
+    use : bool
+        Whether a match is to keep to it.
+    """
+
+    number: int
+    source: int
+    target: int
+    use: bool = True
+
+
+def find_landmarks(source: bpy.types.Object, target: bpy.types.Object) -> list[Landmark]:
+    """Return what landmarks two meshes have in common, in the order of their numbers."""
+    there, back = read_marks(source), read_marks(target)
+    return [
+        Landmark(number, vertex, back[number][0], use and back[number][1])
+        for number, (vertex, use) in there.items()
+        if number in back
+    ]
+
+
+def landmark_array(landmarks: Iterable[Landmark]) -> NDArray[np.int64] | None:
+    """Return the landmarks that are on as the engine wants them, (k, 2); None if there are none."""
+    pairs = [(landmark.source, landmark.target) for landmark in landmarks if landmark.use]
+    return np.array(pairs, np.int64) if pairs else None
+
+
+def add_landmarks(
+    source: bpy.types.Object, target: bpy.types.Object, pairs: Iterable[tuple[int, int]]
+) -> list[Landmark]:
+    """Let vertices of the source and of the target correspond.
+
+    A vertex has one landmark only: where one of the two has one already, that landmark moves.
+
+    Parameters
+    ----------
+    source, target : bpy.types.Object
+        The objects, both in Object Mode or in Edit Mode.
+    pairs : iterable of (int, int)
+        Vertices of the source and of the target.
+
+    Returns
+    -------
+    list of Landmark
+        The new landmarks.
+
+    Raises
+    ------
+    ObjectError
+        If a mesh cannot be written to, or has all the landmarks that it can have.
+    """
+    for obj in (source, target):
+        check_writable(obj)
+    there, back = read_marks(source), read_marks(target)
+    added = []
+    for pair in pairs:
+        number = _number_for(pair, there, back)
+        if number > _MOST:
+            raise ObjectError(f"A mesh can have {_MOST} landmarks. Remove some first.")
+        for marks, vertex in zip((there, back), pair, strict=True):
+            for other in [other for other, (place, _) in marks.items() if place == vertex]:
+                del marks[other]
+            marks[number] = (vertex, True)
+        added.append(Landmark(number, *pair))
+    write_marks(source, there)
+    write_marks(target, back)
+    return added
+
+
+def remove_landmark(source: bpy.types.Object, target: bpy.types.Object, number: int) -> None:
+    """Remove a landmark from both meshes.
+
+    Raises
+    ------
+    ObjectError
+        If there is none of that number, or a mesh cannot be written to.
+    """
+    _check_number(source, target, number)
+    for obj in (source, target):
+        write_marks(obj, {other: mark for other, mark in read_marks(obj).items() if other != number})
+
+
+def switch_landmark(source: bpy.types.Object, target: bpy.types.Object, number: int, *, use: bool) -> None:
+    """Switch a landmark on or off.
+
+    Raises
+    ------
+    ObjectError
+        If there is none of that number, or a mesh cannot be written to.
+    """
+    _check_number(source, target, number)
+    for obj in (source, target):
+        marks = read_marks(obj)
+        marks[number] = (marks[number][0], use)
+        write_marks(obj, marks)
+
+
+def clear_landmarks(source: bpy.types.Object, target: bpy.types.Object) -> int:
+    """Remove what landmarks two meshes have in common; return how many there were.
+
+    Raises
+    ------
+    ObjectError
+        If a mesh cannot be written to.
+    """
+    for obj in (source, target):
+        check_writable(obj)
+    common = {landmark.number for landmark in find_landmarks(source, target)}
+    for obj in (source, target):
+        write_marks(obj, {number: mark for number, mark in read_marks(obj).items() if number not in common})
+    return len(common)
+
+
+def _number_for(pair: tuple[int, int], there: dict[int, Mark], back: dict[int, Mark]) -> int:
+    """Choose the number of a landmark: one that a vertex of it has, else one that is free on both meshes."""
+    for marks, vertex in zip((there, back), pair, strict=True):
+        for number, (place, _) in marks.items():
+            if place == vertex:
+                return number
+    return next(number for number in range(1, _MOST + 2) if number not in there and number not in back)
+
+
+def _check_number(source: bpy.types.Object, target: bpy.types.Object, number: int) -> None:
+    for obj in (source, target):
+        check_writable(obj)
+    if number not in {landmark.number for landmark in find_landmarks(source, target)}:
+        raise ObjectError(f'"{source.name}" and "{target.name}" have no landmark {number} in common.')

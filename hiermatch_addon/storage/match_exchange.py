@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A match between objects and files: taken from two objects that carry it, and written on two that it fits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
+from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.pair import check_pair
+from . import writing
+from .answer_writing import contents_with_maps, restored
+from .contents import contents
+from .halves import find_common
+from .match_file import MatchFile
+from .stored_match import StoredMatch
+from .vertex_maps import StoredMaps, map_name
+
+if TYPE_CHECKING:
+    import bpy
+
+__all__ = ["apply_match", "collect_match"]
+
+_SPARSE = "The imported match has no dense map: only its points were written, without colors and distortion."
+
+
+def collect_match(one: bpy.types.Object, other: bpy.types.Object, prefix: str = "") -> MatchFile:
+    """Take the match that two objects carry with one another; what was matched as the source comes first.
+
+    Parameters
+    ----------
+    one, other : bpy.types.Object
+        The objects, in whichever order.
+    prefix : str
+        What the names that the match wrote start with; may be empty if the two carry one match only.
+
+    Raises
+    ------
+    ObjectError
+        If they carry no match with one another or several, or have other faces since.
+    """
+    pair = f'"{one.name}" and "{other.name}"'
+    found = [halves for halves in find_common(one, other) if prefix in ("", halves[0].prefix)]
+    if not found:
+        raise ObjectError(f"{pair} carry no such match with one another. Match them first.")
+    if len(found) > 1:
+        prefixes = ", ".join(f'"{half.prefix}"' for half, _ in found)
+        raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
+    source, target = sorted(found[0], key=lambda half: half.role)  # "source" comes before "target"
+    for half in (source, target):
+        if stale := half.staleness():
+            raise ObjectError(stale)
+    meshes = (mesh_of(source.obj), mesh_of(target.obj))
+    return MatchFile(
+        StoredMatch.from_plain(source.kept, target.kept),
+        (len(meshes[0].vertices), len(meshes[1].vertices)),
+        StoredMaps.read(*meshes, map_name(source.prefix)),
+        StoredMaps.read(*meshes, map_name(source.prefix, other=True)),
+    )
+
+
+def apply_match(
+    context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, match: MatchFile, prefix: str
+) -> StoredMatch:
+    """Write a match on two objects, as if they had just been matched.
+
+    They may be named, placed and posed otherwise than those it was exported from, but must have the same vertices and
+    faces.
+
+    Returns
+    -------
+    StoredMatch
+        What they carry now.
+
+    Raises
+    ------
+    HierMatchError
+        If it does not fit them, or they cannot be written to; nothing is written then.
+    """
+    depsgraph = context.evaluated_depsgraph_get()
+    check_pair(view_layer_of(context), source, target)
+    if match.kind != "match":
+        raise ObjectError("The file holds the symmetry of one mesh, not the match of two. Choose another file.")
+    if not prefix.strip():
+        raise ObjectError("The Prefix is empty. Enter what the names of the vertex groups shall start with.")
+    _check_fit(source, target, match)
+    objects = (source, target)
+    stored = replace(
+        match.stored,
+        names=(source.name, target.name),
+        topologies=(topology(mesh_of(source)), topology(mesh_of(target))),
+        positions=(position_digest(mesh_of(source)), position_digest(mesh_of(target))),
+        swapped=False,
+    )
+    use_modifiers = stored.written.use_modifiers
+    source_mesh, target_mesh = (read_mesh(obj, depsgraph, use_modifiers=use_modifiers) for obj in objects)
+    meshes = (source_mesh, target_mesh)
+    if match.maps is not None:
+        prepared = contents_with_maps(stored, meshes, prefix, match.maps, match.other)
+    else:
+        # Without maps, colors and distortion are made of distances that the file does not hold.
+        written = replace(stored.written, match_colors=False, distortion=False, confidence=False)
+        stored = replace(stored, written=written, notes=(*stored.notes, _SPARSE))
+        prepared = contents(restored(stored, meshes), prefix, written)
+    for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
+        writing.check_names(obj, content, prefix)
+        content.keep.update(kept)
+    writing.write(list(zip(objects, prepared, strict=True)), prefix)
+    return stored
+
+
+def _check_fit(source: bpy.types.Object, target: bpy.types.Object, match: MatchFile) -> None:
+    """Make sure that the match is one of these meshes."""
+    objects = (source, target)
+    wanted = tuple(zip(match.counts, match.stored.topologies, strict=True))
+    here = tuple((len(mesh_of(obj).vertices), topology(mesh_of(obj))) for obj in objects)
+    if _all_fit(here, wanted):
+        return
+    if _all_fit(here[::-1], wanted):
+        raise ObjectError(
+            f'The match fits the other way round: "{target.name}" is its source and "{source.name}" its target. '
+            "Exchange the two."
+        )
+    for obj, (count, digest), (vertices, faces) in zip(objects, here, wanted, strict=True):
+        if count != vertices:
+            raise ObjectError(
+                f'The match does not fit "{obj.name}": it was exported from a mesh with {vertices} vertices, and this '
+                f"one has {count}. Choose the mesh it was made for, or match again."
+            )
+        if faces not in ("", digest):
+            raise ObjectError(
+                f'The match does not fit "{obj.name}": its vertices or faces are numbered otherwise than on the mesh '
+                "the match was exported from. Choose that mesh, or match again."
+            )
+
+
+def _all_fit(here: tuple[tuple[int, str], ...], wanted: tuple[tuple[int, str], ...]) -> bool:
+    """Tell whether all numbers of vertices, and digests as far as they are known, agree."""
+    return all(
+        count == vertices and faces in ("", digest)
+        for (count, digest), (vertices, faces) in zip(here, wanted, strict=True)
+    )

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A correspondence as a file of its own, NPZ or JSON: plain numbers and texts, nothing that could be executed.
+
+Both kinds hold the same: a header and arrays with names.  In an NPZ the header is JSON text in the array ``header``;
+in a JSON file it is the object ``header`` beside the object ``arrays``, whose arrays are lists.  What each name means
+is written in `docs/command-line.md`.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+import zlib
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...engine import HierMatchError
+from ..common.errors import ObjectError
+from ..common.file_writing import write_whole
+from .checked_arrays import MAPS, CheckedArrays
+from .stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from .vertex_maps import StoredMaps
+
+__all__ = ["FORMAT", "SUFFIXES", "VERSION", "MatchFile", "load_match", "save_match"]
+
+FORMAT = "hiermatch-match"
+"""What the header of every such file says it is."""
+
+VERSION = 1
+"""Of the format; files of a later one are refused."""
+
+SUFFIXES = (".npz", ".json")
+"""How the names of such files end."""
+
+_BAD_FILE = (
+    ValueError,
+    KeyError,
+    TypeError,
+    EOFError,
+    IndexError,
+    MemoryError,
+    NotImplementedError,
+    RuntimeError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What Python's and NumPy's readers raise of files that are damaged or something else."""
+
+
+@dataclass(frozen=True, eq=False)
+class MatchFile:
+    """What such a file holds.
+
+    Attributes
+    ----------
+    stored : StoredMatch
+        The match as the meshes keep it.  Topologies may be empty, if the file was made by something that does not
+        know them.
+    counts : tuple of int
+        How many vertices source and target have.
+    maps, other : StoredMaps or None
+        The dense maps of the answer that is written, and of the other one, as far as they were made.
+    kind : str
+        "match", or "symmetry" for a mesh that was matched with itself; such a file has no points.
+    """
+
+    stored: StoredMatch
+    counts: tuple[int, int]
+    maps: StoredMaps | None
+    other: StoredMaps | None = None
+    kind: str = "match"
+
+
+def save_match(match: MatchFile, path: Path) -> None:
+    """Write a match into a file, of which there is never only a part.
+
+    Raises
+    ------
+    ObjectError
+        If its name ends with neither .npz nor .json, or the file cannot be written.
+    """
+    header, arrays = _header(match), _arrays(match)
+    if _kind_of(path) == ".json":
+        lists = {name: array.tolist() for name, array in arrays.items()}
+        content = json.dumps({"header": header, "arrays": lists}, allow_nan=False).encode()
+    else:
+        buffer = io.BytesIO()
+        text = np.frombuffer(json.dumps(header, allow_nan=False).encode(), np.uint8)
+        named: dict[str, Any] = {"header": text, **arrays}
+        np.savez_compressed(buffer, **named)
+        content = buffer.getvalue()
+    write_whole(path, content)
+
+
+def load_match(path: Path) -> MatchFile:
+    """Read a match from a file.
+
+    Raises
+    ------
+    ObjectError
+        If there is no such file, it is damaged, or it holds something else.
+    """
+    read = _read_json if _kind_of(path) == ".json" else _read_npz
+    try:
+        header, arrays = read(path)
+        if not isinstance(header, dict) or header.get("format") != FORMAT:
+            raise ObjectError(f'"{path.name}" is no match that HierMatch has exported. Choose another file.')
+        if header.get("version") != VERSION:
+            raise ObjectError(f'"{path.name}" was exported by a later version of HierMatch. Update the add-on.')
+        return _match_of(header, arrays)
+    except HierMatchError:
+        raise
+    except OSError as error:
+        raise ObjectError(f'"{path}" cannot be read: {error.strerror or error}.') from error
+    except _BAD_FILE as error:
+        raise ObjectError(f'"{path.name}" is damaged or no match file: {error}. Export the match again.') from error
+
+
+def _kind_of(path: Path) -> str:
+    kind = path.suffix.lower()
+    if kind not in SUFFIXES:
+        raise ObjectError(f'"{path.name}" is no name for a match file. Let it end with .npz or .json.')
+    return kind
+
+
+def _read_npz(path: Path) -> tuple[Any, dict[str, NDArray[Any]]]:
+    with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
+        arrays = {name: archive[name] for name in archive.files}
+    return json.loads(arrays.pop("header").tobytes().decode()), arrays
+
+
+def _read_json(path: Path) -> tuple[Any, dict[str, NDArray[Any]]]:
+    plain = json.loads(path.read_text(encoding="utf-8"))
+    return plain["header"], {name: np.array(values) for name, values in plain["arrays"].items()}
+
+
+def _header(match: MatchFile) -> dict[str, Any]:
+    """Return all that is no array."""
+    stored = match.stored
+    sides = {
+        role: {"name": name, "vertices": count, "topology": topology, "positions": positions}
+        for role, name, count, topology, positions in zip(
+            ("source", "target"), stored.names, match.counts, stored.topologies, stored.positions, strict=True
+        )
+    }
+    answers = []
+    for answer in stored.answers:
+        plain = answer.to_plain()
+        plain.pop("point_distortion")
+        answers.append(plain)
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "kind": match.kind,
+        **sides,
+        "answers": answers,
+        "mirrored": stored.mirrored,
+        "written": dict(vars(stored.written)),
+        "notes": list(stored.notes),
+        "left_out": list(stored.left_out),
+    }
+
+
+def _arrays(match: MatchFile) -> dict[str, NDArray[Any]]:
+    """Return the arrays by name; those of the answer that is not written start with "other_"."""
+    stored = match.stored
+    arrays = _point_arrays("source_points", stored.source_points)
+    for number, answer in enumerate(stored.answers):
+        shown = number == stored.mirrored
+        start = "" if shown else "other_"
+        arrays |= _point_arrays(f"{start}target_points", answer.target_points)
+        arrays[f"{start}point_distortion"] = np.asarray(answer.point_distortion, np.float64)
+        maps = match.maps if shown else match.other
+        if maps is not None:
+            for name, vertex_map in zip(MAPS, (maps.of_source, maps.of_target), strict=True):
+                arrays[f"{start}{name}_corners"] = vertex_map.corners
+                arrays[f"{start}{name}_weights"] = vertex_map.weights
+                arrays[f"{start}{name}_confidence"] = vertex_map.confidence
+    return arrays
+
+
+def _point_arrays(name: str, points: CornerPoints) -> dict[str, NDArray[Any]]:
+    return {
+        f"{name}_corners": points.corners.astype(np.int32),
+        f"{name}_barycentric": points.barycentric.astype(np.float64),
+    }
+
+
+def _match_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> MatchFile:
+    """Make the match of what was read, every number of which is looked at first."""
+    sides = (header["source"], header["target"])
+    n, m = counts = (int(sides[0]["vertices"]), int(sides[1]["vertices"]))
+    read = CheckedArrays(arrays)
+    mirrored, described = bool(header["mirrored"]), header["answers"]
+    if not len(described) > mirrored or len(described) > 2:
+        raise ValueError("it has not the answers that it names")
+    kind, source_points = str(header.get("kind", "match")), read.points("source_points", n)
+    if kind == "match" and not len(source_points.corners):
+        raise ValueError("it has no points")
+    answers = []
+    for number, plain in enumerate(described):
+        start = "" if number == mirrored else "other_"
+        points = read.points(f"{start}target_points", m)
+        distortion = read.numbers(f"{start}point_distortion", (len(source_points.corners),))
+        if len(points.corners) != len(distortion):
+            raise ValueError("source and target have not as many points")
+        answers.append(_answer(plain, points, distortion))
+    maps = read.maps("", counts)
+    stored = StoredMatch(
+        names=(str(sides[0]["name"]), str(sides[1]["name"])),
+        topologies=(str(sides[0].get("topology", "")), str(sides[1].get("topology", ""))),
+        positions=(str(sides[0].get("positions", "")), str(sides[1].get("positions", ""))),
+        written=replace(
+            Written(**{name: bool(value) for name, value in header["written"].items()}), dense=maps is not None
+        ),
+        source_points=source_points,
+        answers=tuple(answers),
+        mirrored=mirrored,
+        notes=tuple(str(note) for note in header.get("notes", ())),
+        left_out=tuple(int(number) for number in header.get("left_out", ())),
+    )
+    return MatchFile(stored, counts, maps, read.maps("other_", counts), kind)
+
+
+def _answer(plain: Mapping[str, Any], points: CornerPoints, distortion: NDArray[np.float64]) -> Answer:
+    quality = plain.get("quality")
+    if quality is not None:
+        known = {name: str(value) if name == "sentence" else float(value) for name, value in quality.items()}
+        quality = Quality.from_plain(known)
+    return Answer(
+        points,
+        distortion,
+        float(plain["distortion"]),
+        float(plain["orientation"]),
+        bool(plain["proven"]),
+        float(plain["gap"]),
+        quality,
+        bool(plain.get("refined", False)),
+    )

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The dense map of a match that is kept on two meshes, for whoever wants to use it without matching again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..common.access import mesh_of
+from ..common.errors import ObjectError
+from ..scene.mesh_io import read_mesh
+from .answer_writing import contents_with_maps, write_answer
+from .halves import find_common
+from .stored_match import StoredMatch
+from .vertex_maps import StoredMaps, map_name
+
+if TYPE_CHECKING:
+    import bpy
+
+    from .halves import Half
+    from .vertex_maps import MapPair
+
+__all__ = ["FoundMaps", "find_maps", "keep_refined", "stored_map"]
+
+
+@dataclass(frozen=True, eq=False)
+class FoundMaps:
+    """The dense maps that two objects carry.
+
+    Attributes
+    ----------
+    source, target : Half
+        The two sides, in the order in which they were asked for.
+    maps : StoredMaps
+        What is kept of the maps, in the same order.
+    refined : bool
+        Whether they were refined with a rig.
+    use_modifiers : bool
+        Whether the meshes were matched as shape keys and modifiers show them.
+    """
+
+    source: Half
+    target: Half
+    maps: StoredMaps
+    refined: bool
+    use_modifiers: bool
+
+
+def find_maps(source: bpy.types.Object, target: bpy.types.Object, prefix: str = "") -> FoundMaps:
+    """Find the dense maps between two objects that were matched, in whichever order.
+
+    Parameters
+    ----------
+    source, target : bpy.types.Object
+        The objects; what is `source` here may have been the target of the match.
+    prefix : str
+        What the names that the match wrote start with; may be empty if the two carry one match only.
+
+    Raises
+    ------
+    ObjectError
+        If the objects carry no match with one another or several, if it has no dense map, or if a mesh was edited
+        since: in a sentence that says which, and what to do.
+    """
+    pair = f'"{source.name}" and "{target.name}"'
+    found = [halves for halves in find_common(source, target) if prefix in ("", halves[0].prefix)]
+    if not found:
+        of_prefix = f' with the Prefix "{prefix}"' if prefix else ""
+        raise ObjectError(f"{pair} carry no match with one another{of_prefix}. Match them first.")
+    if len(found) > 1:
+        prefixes = ", ".join(f'"{half.prefix}"' for half, _ in found)
+        raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
+    (halves,) = found
+    for half in halves:
+        if stale := half.staleness():
+            raise ObjectError(stale)
+    first, second = _in_order(*halves)
+    stored = StoredMatch.from_plain(first.kept, second.kept)
+    if not stored.written.dense:
+        raise ObjectError(f"The match of {pair} has no dense map. Match them again with Dense Map on.")
+    maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(first.prefix))
+    if maps is None:
+        raise ObjectError(f"The dense map of {pair} was removed from the attributes of a mesh. Match them again.")
+    kept = maps if first is halves[0] else maps.reverse
+    return FoundMaps(*halves, kept, stored.answer.refined, stored.written.use_modifiers)
+
+
+def stored_map(
+    context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, prefix: str = ""
+) -> MapPair:
+    """Read the dense maps between two objects that were matched, with the meshes as they stand in the world.
+
+    Parameters and errors are those of `find_maps`.
+    """
+    found = find_maps(source, target, prefix)
+    depsgraph = context.evaluated_depsgraph_get()
+    meshes = [read_mesh(obj, depsgraph, use_modifiers=found.use_modifiers) for obj in (source, target)]
+    return found.maps.between(meshes[0], meshes[1])
+
+
+def keep_refined(
+    context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, prefix: str, maps: StoredMaps
+) -> None:
+    """Let better maps take the place of those that two objects carry, and write what shows them anew.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the objects are.
+    source, target : bpy.types.Object
+        The objects, in the order of `maps`.
+    prefix : str
+        As in `find_maps`.
+    maps : StoredMaps
+        The better maps.
+
+    Raises
+    ------
+    HierMatchError
+        If the objects carry no such match (any more); nothing is written then.
+    """
+    found = find_maps(source, target, prefix)
+    sides = (found.source, found.target)
+    first, second = _in_order(*sides)
+    stored = StoredMatch.from_plain(first.kept, second.kept).as_refined()
+    depsgraph = context.evaluated_depsgraph_get()
+    source_mesh, target_mesh = (
+        read_mesh(half.obj, depsgraph, use_modifiers=stored.written.use_modifiers) for half in (first, second)
+    )
+    shown = maps if first is sides[0] else maps.reverse
+    other = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(first.prefix, other=True))
+    prepared = contents_with_maps(stored, (source_mesh, target_mesh), first.prefix, shown, other)
+    write_answer((first.obj, second.obj), stored, prepared, first.prefix)
+
+
+def _in_order(one: Half, other: Half) -> tuple[Half, Half]:
+    """Put what was matched as the source first."""
+    return (one, other) if one.role == "source" else (other, one)

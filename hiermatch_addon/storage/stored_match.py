@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A match as it is kept in the file: both answers, in plain numbers and texts.
+
+Each of the two meshes keeps its own points, the source also what both have in common.  They name each other by a key
+that no renaming, saving or undoing changes.  The dense maps are kept beside it, in attributes: see `vertex_maps`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from ...engine import MatchQuality, MatchResult
+    from .contents import Points
+
+__all__ = ["Answer", "CornerPoints", "Quality", "StoredMatch", "Written"]
+
+_ANSWERS = ("direct", "mirrored")
+
+
+@dataclass(frozen=True)
+class Written:
+    """How a match is written.
+
+    Attributes
+    ----------
+    use_modifiers : bool
+        Whether the meshes were read as shape keys and modifiers show them.
+    vertex_groups, match_colors, distortion, confidence : bool
+        Which kinds are written.
+    dense : bool
+        Whether the meshes keep dense maps.
+    """
+
+    use_modifiers: bool
+    vertex_groups: bool
+    match_colors: bool
+    distortion: bool
+    confidence: bool = False  # what a file of an older version says nothing of was not written
+    dense: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class CornerPoints:
+    """Points on a mesh, by the vertices between which they lie; so they move with the mesh.
+
+    Attributes
+    ----------
+    corners : (k, 3) array of int
+        The vertices of the triangle of each point.
+    barycentric : (k, 3) array of float
+        Its barycentric coordinates there.
+    """
+
+    corners: NDArray[np.int64]
+    barycentric: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, points: Points) -> CornerPoints:
+        """Take what is stored of points."""
+        return cls(points.corners, points.barycentric)
+
+    @property
+    def nearest_vertices(self) -> NDArray[np.int64]:
+        """The corner with the largest coordinate, (k,)."""
+        return np.take_along_axis(self.corners, self.barycentric.argmax(axis=1)[:, None], axis=1)[:, 0]
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return flat arrays of the two number types that Blender stores."""
+        return {
+            "corners": self.corners.ravel().astype(np.int32),
+            "barycentric": np.ascontiguousarray(self.barycentric, np.float64).ravel(),
+        }
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> CornerPoints:
+        """Undo `to_plain`."""
+        return cls(
+            np.array(plain["corners"], np.int64).reshape(-1, 3),
+            np.array(plain["barycentric"], np.float64).reshape(-1, 3),
+        )
+
+
+@dataclass(frozen=True)
+class Quality:
+    """How far the dense maps of an answer can be trusted; see the engine's `MatchQuality`.
+
+    Attributes
+    ----------
+    orientation, distortion, coverage, disagreement, confidence : float
+        As the engine measured them.
+    margin : float or None
+        By how much the best competing answer is worse; None if there was none.
+    sentence : str
+        The same for a person to read.
+    """
+
+    orientation: float
+    distortion: float
+    coverage: float
+    disagreement: float
+    margin: float | None
+    confidence: float
+    sentence: str
+
+    @classmethod
+    def of(cls, quality: MatchQuality) -> Quality:
+        """Take what is stored of the engine's verdict."""
+        return cls(
+            float(quality.orientation),
+            float(quality.distortion),
+            float(quality.coverage),
+            float(quality.disagreement),
+            None if quality.margin is None else float(quality.margin),
+            float(quality.confidence),
+            quality.sentence,
+        )
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return what is known."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> Quality:
+        """Undo `to_plain`."""
+        return cls(**{"margin": None, **plain})
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """One of the two answers.
+
+    Attributes
+    ----------
+    target_points : CornerPoints
+        Where the source's points are on the target.
+    point_distortion : (k,) array of float
+        Distortion of each point.
+    distortion : float
+        Distortion of the whole.
+    orientation : float
+        From 1, left stays left, to -1, the answer mirrors.
+    proven : bool
+        Whether no coarse match has less distortion.
+    gap : float
+        By how much, at most, the coarse match can be worse than the best one.
+    quality : Quality or None
+        How far its dense maps can be trusted; None if they were not made.
+    refined : bool
+        Whether they were made better with a rig since: once is enough.
+    """
+
+    target_points: CornerPoints
+    point_distortion: NDArray[np.float64]
+    distortion: float
+    orientation: float
+    proven: bool
+    gap: float
+    quality: Quality | None = None
+    refined: bool = False
+
+    @classmethod
+    def of(cls, result: MatchResult, quality: MatchQuality | None = None) -> Answer:
+        """Take what is stored of a result, and of the quality of its maps."""
+        coarse = result.coarse
+        return cls(
+            CornerPoints.of(result.target_points),
+            result.point_distortion,
+            result.distortion,
+            result.orientation,
+            coarse.proven,
+            1 - coarse.lower_bound / coarse.cost if coarse.cost > 0 else 0.0,
+            None if quality is None else Quality.of(quality),
+        )
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return all but the points on the target."""
+        return {
+            "point_distortion": np.ascontiguousarray(self.point_distortion, np.float64),
+            "distortion": float(self.distortion),
+            "orientation": float(self.orientation),
+            "proven": bool(self.proven),
+            "gap": float(self.gap),
+            "refined": bool(self.refined),
+        } | ({} if self.quality is None else {"quality": self.quality.to_plain()})
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any], points: Mapping[str, Any]) -> Answer:
+        """Undo `to_plain`."""
+        numbers = dict(plain)
+        distortion = np.array(numbers.pop("point_distortion"), np.float64)
+        quality = numbers.pop("quality", None)
+        return cls(
+            CornerPoints.from_plain(points),
+            distortion,
+            **numbers,
+            quality=None if quality is None else Quality.from_plain(quality),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class StoredMatch:
+    """A match of two objects with all that is needed to write either answer.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Names of source and target when they were matched.
+    topologies, positions : tuple of str
+        What `mesh_io.topology` and `mesh_io.position_digest` said of them; positions may be empty if they are not
+        known, in a file of an older version.
+    written : Written
+        How it is written.
+    source_points : CornerPoints
+        The matched points.
+    answers : tuple of Answer
+        The answer, and the mirrored one if there is one.
+    mirrored : bool
+        Whether the mirrored one is written.
+    notes : tuple of str
+        What the user should know.
+    swapped : bool
+        Whether the user exchanged source and target since: what is called the source here is shown as the target.
+    left_out : tuple of int
+        Numbers, from 0, of the points that the user took away: they get no vertex groups.
+    """
+
+    names: tuple[str, str]
+    topologies: tuple[str, str]
+    positions: tuple[str, str]
+    written: Written
+    source_points: CornerPoints
+    answers: tuple[Answer, ...]
+    mirrored: bool
+    notes: tuple[str, ...]
+    swapped: bool = False
+    left_out: tuple[int, ...] = ()
+
+    @property
+    def answer(self) -> Answer:
+        """The answer that is written."""
+        return self.answers[self.mirrored]
+
+    def as_refined(self) -> StoredMatch:
+        """Return the same with the maps of the answer that is written called refined."""
+        answers = list(self.answers)
+        answers[self.mirrored] = replace(self.answer, refined=True)
+        return replace(self, answers=tuple(answers))
+
+    @property
+    def key(self) -> str:
+        """A text that both meshes carry, and that is the same for the same direct answer between the same objects only.
+
+        The points of the mirrored answer move when it is written for the first time.
+        """
+        told = (*self.names, *self.topologies, str(len(self.answers)))
+        digest = hashlib.blake2b("\0".join(told).encode(), digest_size=16)
+        for points in (self.source_points, self.answers[0].target_points):
+            for numbers in points.to_plain().values():
+                digest.update(numbers.tobytes())
+        return digest.hexdigest()
+
+    def to_plain(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return what the source and what the target keep."""
+        names = {"source": self.names[0], "target": self.names[1]}
+        common = {"key": self.key, "names": names, "mirrored": self.mirrored, "swapped": self.swapped}
+        answers = dict(zip(_ANSWERS, self.answers, strict=False))
+        source = {
+            "role": "source",
+            "topology": self.topologies[0],
+            "positions": self.positions[0],
+            "points": self.source_points.to_plain(),
+            "answers": {which: answer.to_plain() for which, answer in answers.items()},
+            "written": dict(vars(self.written)),
+            "notes": "\n".join(self.notes),
+            "left_out": " ".join(map(str, self.left_out)),  # Blender cannot keep an empty list of numbers
+        }
+        target = {
+            "role": "target",
+            "topology": self.topologies[1],
+            "positions": self.positions[1],
+            "points": {which: answer.target_points.to_plain() for which, answer in answers.items()},
+        }
+        return common | source, common | target
+
+    @classmethod
+    def from_plain(cls, source: Mapping[str, Any], target: Mapping[str, Any]) -> StoredMatch:
+        """Undo `to_plain`."""
+        return cls(
+            names=(source["names"]["source"], source["names"]["target"]),
+            topologies=(source["topology"], target["topology"]),
+            positions=(source.get("positions", ""), target.get("positions", "")),
+            written=Written(**source["written"]),
+            source_points=CornerPoints.from_plain(source["points"]),
+            answers=tuple(
+                Answer.from_plain(source["answers"][which], target["points"][which])
+                for which in _ANSWERS
+                if which in source["answers"]
+            ),
+            mirrored=source["mirrored"],
+            notes=tuple(source["notes"].splitlines()),
+            swapped=source.get("swapped", False),
+            left_out=tuple(int(number) for number in source.get("left_out", "").split()),
+        )

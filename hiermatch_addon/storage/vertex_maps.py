@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Dense maps as they are kept on the meshes: for every vertex the place on the other mesh, in attributes.
+
+A place is named by three vertices and their weights, not by the number of a triangle: how Blender cuts faces into
+triangles is its own affair and may change.  The numbers are of single precision, and so are all that the add-on
+computes from a map; so what comes from a stored map is the same as what came from the map when it was new.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...engine import MeshError, SurfaceMap, SurfacePoints
+from ...engine.mesh.closest_points import ClosestPoints
+from ..scene.mesh_io import read_values
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ...engine import TriangleMesh
+    from .contents import Content
+
+__all__ = ["MapPair", "StoredMaps", "VertexMap", "add_maps", "map_name", "place_points"]
+
+
+@dataclass(frozen=True, eq=False)
+class MapPair:
+    """Dense maps between two meshes, both ways.
+
+    Attributes
+    ----------
+    source, target : TriangleMesh
+        The meshes, in world space.
+    source_to_target : SurfaceMap
+        Where every vertex of the source lies on the target.
+    target_to_source : SurfaceMap
+        Where every vertex of the target lies on the source.
+    """
+
+    source: TriangleMesh
+    target: TriangleMesh
+    source_to_target: SurfaceMap
+    target_to_source: SurfaceMap
+
+    @property
+    def reverse(self) -> MapPair:
+        """The same with source and target exchanged."""
+        return MapPair(self.target, self.source, self.target_to_source, self.source_to_target)
+
+
+@dataclass(frozen=True, eq=False)
+class VertexMap:
+    """What one mesh keeps of a map to another.
+
+    Attributes
+    ----------
+    corners : (n, 3) array of int32
+        For each vertex, three vertices of the other mesh.
+    weights : (n, 3) array of float32
+        Barycentric coordinates of its place between them.
+    confidence : (n,) array of float32
+        How far it may be trusted, 0 to 1.
+    """
+
+    corners: NDArray[np.int32]
+    weights: NDArray[np.float32]
+    confidence: NDArray[np.float32]
+
+    @classmethod
+    def of(cls, surface_map: SurfaceMap) -> VertexMap:
+        """Take what is kept of a map."""
+        return cls(
+            surface_map.corners.astype(np.int32),
+            surface_map.barycentric.astype(np.float32),
+            surface_map.confidence.astype(np.float32),
+        )
+
+    @classmethod
+    def read(cls, mesh: bpy.types.Mesh, name: str) -> VertexMap | None:
+        """Read a map of that name from a mesh; None if it is not there, or not complete."""
+        found = [read_values(mesh, attribute, kind) for attribute, kind in _attributes(name)]
+        values = [value for value in found if value is not None]
+        if len(values) < len(found):
+            return None
+        *corners, weights, confidence = values
+        return cls(np.stack(corners, axis=1), weights, confidence)
+
+    def attributes(self, name: str) -> dict[str, NDArray[np.float32] | NDArray[np.int32]]:
+        """Return the values of each attribute that keeps the map under a name."""
+        values = (*self.corners.T, self.weights, self.confidence)
+        return {attribute: value for (attribute, _), value in zip(_attributes(name), values, strict=True)}
+
+    def to(self, image: TriangleMesh) -> SurfaceMap:
+        """Make the map again.
+
+        Raises
+        ------
+        MeshError
+            If that mesh has no such places.
+        """
+        weights = self.weights.astype(np.float64)
+        total = weights.sum(axis=1, keepdims=True)
+        inside = (self.corners >= 0).all() and (self.corners < image.vertex_count).all() and (weights >= 0).all()
+        known = (self.confidence >= 0).all() and (self.confidence <= 1).all()
+        if not (inside and known and (total > 0).all() and np.isfinite(total).all()):
+            raise MeshError("The attributes of the stored map hold numbers that no match has written. Match again.")
+        points = place_points(image, self.corners.astype(np.int64), weights / total)
+        return SurfaceMap.from_points(image, points, self.confidence.astype(np.float64))
+
+
+@dataclass(frozen=True, eq=False)
+class StoredMaps:
+    """What both meshes keep of the maps of one answer.
+
+    Attributes
+    ----------
+    of_source, of_target : VertexMap
+        What each keeps: its map to the other.
+    """
+
+    of_source: VertexMap
+    of_target: VertexMap
+
+    @classmethod
+    def of(cls, source_to_target: SurfaceMap, target_to_source: SurfaceMap) -> StoredMaps:
+        """Take what is kept of the two maps."""
+        return cls(VertexMap.of(source_to_target), VertexMap.of(target_to_source))
+
+    @property
+    def reverse(self) -> StoredMaps:
+        """The same with source and target exchanged."""
+        return StoredMaps(self.of_target, self.of_source)
+
+    @classmethod
+    def read(cls, source: bpy.types.Mesh, target: bpy.types.Mesh, name: str) -> StoredMaps | None:
+        """Read both maps of that name; None if one is not there."""
+        of_source, of_target = VertexMap.read(source, name), VertexMap.read(target, name)
+        return None if of_source is None or of_target is None else cls(of_source, of_target)
+
+    def between(self, source: TriangleMesh, target: TriangleMesh) -> MapPair:
+        """Make the maps again.
+
+        Raises
+        ------
+        MeshError
+            If they are not maps between these meshes.
+        """
+        if (len(self.of_source.corners), len(self.of_target.corners)) != (source.vertex_count, target.vertex_count):
+            raise MeshError("The stored map is one of meshes with other vertices. Match again.")
+        return MapPair(source, target, self.of_source.to(target), self.of_target.to(source))
+
+
+def map_name(prefix: str, *, other: bool = False) -> str:
+    """Return what the names of a map's attributes start with; `other` for the answer that is not shown."""
+    return f"{prefix} Other Map" if other else f"{prefix} Map"
+
+
+def add_maps(prepared: tuple[Content, Content], prefix: str, shown: StoredMaps, other: StoredMaps | None) -> None:
+    """Add what both meshes keep of the maps to what is written on them; `other` are those of the other answer."""
+    for maps, name in ((shown, map_name(prefix)), (other, map_name(prefix, other=True))):
+        if maps is not None:
+            for content, vertex_map in zip(prepared, (maps.of_source, maps.of_target), strict=True):
+                content.values.update(vertex_map.attributes(name))
+
+
+def place_points(mesh: TriangleMesh, corners: NDArray[np.int64], barycentric: NDArray[np.float64]) -> SurfacePoints:
+    """Put points, given by vertices (k, 3) and barycentric coordinates (k, 3), on a mesh as it is triangulated now."""
+    try:
+        return SurfacePoints.from_corners(mesh, corners, barycentric)
+    except MeshError:
+        # Blender cuts a face with more than three corners in another way once it is bent.
+        nearest = np.take_along_axis(corners, barycentric.argmax(axis=1)[:, None], axis=1)[:, 0]
+        positions = np.einsum("kc,kcd->kd", barycentric, mesh.vertices[corners])
+        found = ClosestPoints(mesh).walk(positions, nearest)
+        return SurfacePoints.from_barycentric(mesh, found.triangles, found.barycentric)
+
+
+def _attributes(name: str) -> tuple[tuple[str, str], ...]:
+    """List name and type of the attributes that keep a map."""
+    corners = tuple((f"{name} Vertex {number}", "INT") for number in (1, 2, 3))
+    return (*corners, (f"{name} Weights", "FLOAT_VECTOR"), (f"{name} Confidence", "FLOAT"))

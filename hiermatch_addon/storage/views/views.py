@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What can be seen of a match in colours: color attributes of both meshes, made when they are wanted first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ....engine.geometry.voronoi_labels import nearest_regions
+from ...common.access import mesh_of
+from ...common.errors import ObjectError
+from ...scene.mesh_io import read_mesh
+from .. import writing
+from ..contents import Content
+from ..stored_match import StoredMatch
+from ..vertex_maps import StoredMaps, map_name
+from . import colors
+from .view_colors import check_size, checked, region_colors
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ..halves import Half
+    from ..vertex_maps import MapPair
+
+__all__ = ["VIEW_ITEMS", "attribute_of", "prepare_view", "region_groups", "show_attribute"]
+
+VIEW_ITEMS: Final = (
+    ("NONE", "Nothing", "Show the meshes as before"),
+    ("MATCH", "Match Colors", "Show corresponding places in the same color"),
+    ("DISTORTION", "Distortion", "Show how much lengths differ, from dark blue (none) to yellow"),
+    ("CONFIDENCE", "Confidence", "Show how far the dense map can be trusted, from dark red to white (fully)"),
+    ("REGIONS", "Regions", "Show each vertex in the color of the nearest matched point"),
+    ("CHECKER", "Checker", "Show checks on the source, and where the dense map takes them on the target"),
+)
+"""Identifier, name and description of each view."""
+
+_ENDINGS: Final = {
+    "MATCH": "Match",
+    "DISTORTION": "Distortion",
+    "CONFIDENCE": "Confidence",
+    "REGIONS": "Regions",
+    "CHECKER": "Checker",
+}
+_MADE: Final = ("REGIONS", "CHECKER")
+"""Views that a match does not write."""
+
+
+def attribute_of(prefix: str, view: str) -> str:
+    """Return the name of the color attribute that a view shows."""
+    return f"{prefix} {_ENDINGS[view]}"
+
+
+def prepare_view(context: bpy.types.Context, halves: tuple[Half, Half], view: str) -> None:
+    """Make sure that both meshes have the colours that a view shows.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the objects are.
+    halves : tuple of Half
+        The two sides of the match.
+    view : str
+        One of `VIEW_ITEMS`.
+
+    Raises
+    ------
+    HierMatchError
+        If the colours are not there and cannot be made; the message says what to do.
+    """
+    name = attribute_of(halves[0].prefix, view)
+    for half in halves:
+        if view in _MADE and (stale := half.staleness()):
+            raise ObjectError(stale)
+    if view in _MADE:
+        shades = _regions(context, halves) if view == "REGIONS" else _checks(context, halves)
+        contents = [Content(colors={name: colors.opaque(colors.to_linear(shade))}) for shade in shades]
+        for half, content in zip(halves, contents, strict=True):
+            writing.check_names(half.obj, content, half.prefix)
+        for half, content in zip(halves, contents, strict=True):
+            writing.extend(half.obj, content, half.prefix)
+        return
+    for half in halves:
+        if name not in mesh_of(half.obj).color_attributes:
+            raise ObjectError(
+                f'"{half.obj.name}" carries no colors called "{name}". Match again with {_ENDINGS[view]} on under '
+                "Output, and for confidence with Dense Map on."
+            )
+
+
+def show_attribute(objects: tuple[bpy.types.Object, bpy.types.Object], names: tuple[str, str]) -> None:
+    """Make color attributes the active ones of two meshes, as far as they exist."""
+    for obj, name in zip(objects, names, strict=True):
+        mesh = mesh_of(obj)
+        if name in mesh.color_attributes:
+            mesh.attributes.active_color_name = name
+            mesh.update()
+
+
+def region_groups(context: bpy.types.Context, halves: tuple[Half, Half]) -> int:
+    """Write the regions of both meshes as vertex groups; return how many there are.
+
+    Raises
+    ------
+    HierMatchError
+        If they cannot be found, or vertex groups of the user's own are in the way; nothing is written then.
+    """
+    for half in halves:
+        if stale := half.staleness():
+            raise ObjectError(stale)
+    prefix, found = halves[0].prefix, _region_numbers(context, halves)
+    contents = []
+    for numbers in found:
+        groups = {}
+        for number in range(int(max(side.max() for side in found)) + 1):
+            vertices = np.flatnonzero(numbers == number)
+            groups[f"{prefix} Region.{number + 1:03d}"] = (vertices, np.ones(len(vertices)))
+        contents.append(Content(groups=groups))
+    for half, content in zip(halves, contents, strict=True):
+        writing.check_names(half.obj, content, prefix)
+    for half, content in zip(halves, contents, strict=True):
+        writing.extend(half.obj, content, prefix)
+    return len(contents[0].groups)
+
+
+def _in_order(halves: tuple[Half, Half]) -> tuple[Half, Half]:
+    """Put what was matched as the source first."""
+    return halves if halves[0].role == "source" else (halves[1], halves[0])
+
+
+def _as_asked(
+    halves: tuple[Half, Half], values: tuple[NDArray[np.float64], NDArray[np.float64]]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Put values of source and target in the order of the halves."""
+    return values if halves[0].role == "source" else values[::-1]
+
+
+def _maps(context: bpy.types.Context, halves: tuple[Half, Half]) -> MapPair | None:
+    """Read the dense maps, of what was matched as the source first; None if there are none."""
+    first, second = _in_order(halves)
+    stored = StoredMatch.from_plain(first.kept, second.kept)
+    kept = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(first.prefix))
+    if kept is None:
+        return None
+    depsgraph = context.evaluated_depsgraph_get()
+    source, target = (
+        read_mesh(half.obj, depsgraph, use_modifiers=stored.written.use_modifiers) for half in (first, second)
+    )
+    return kept.between(source, target)
+
+
+def _region_numbers(
+    context: bpy.types.Context, halves: tuple[Half, Half]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find the region of each vertex, in the order of the halves.
+
+    With a dense map, the regions of the source go where it takes them; without one, each mesh has its own.
+    """
+    first, second = _in_order(halves)
+    stored = StoredMatch.from_plain(first.kept, second.kept)
+    maps = _maps(context, halves)
+    kept = np.setdiff1d(np.arange(len(stored.answer.point_distortion)), stored.left_out)
+    here, there = (points.nearest_vertices[kept] for points in (stored.source_points, stored.answer.target_points))
+    if maps is None:
+        depsgraph = context.evaluated_depsgraph_get()
+        meshes = [read_mesh(half.obj, depsgraph, use_modifiers=False) for half in (first, second)]
+        found = (nearest_regions(meshes[0], here), nearest_regions(meshes[1], there))
+    else:
+        own = nearest_regions(maps.source, here)
+        found = (own, own[maps.target_to_source.nearest_vertices])
+    numbers = tuple(np.where(side >= 0, kept[side], side) for side in found)
+    return (numbers[0], numbers[1]) if halves[0].role == "source" else (numbers[1], numbers[0])
+
+
+def _regions(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Colour both meshes by regions, in the order of the halves."""
+    one, other = _region_numbers(context, halves)
+    return region_colors(one), region_colors(other)
+
+
+def _checks(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Colour both meshes by checks on the source, in the order of the halves."""
+    maps = _maps(context, halves)
+    if maps is None:
+        raise ObjectError(
+            f'The match of "{halves[0].obj.name}" and "{halves[1].obj.name}" has no dense map that could carry checks. '
+            "Match them again with Dense Map on."
+        )
+    places = maps.source.vertices
+    size = check_size(places, float(np.median(maps.source.edge_lengths)))
+    shades = colors.match_colors(places, maps.source.vertex_areas)
+    carried = maps.target_to_source.transfer(np.column_stack([shades, places]))
+    return _as_asked(halves, (checked(shades, places, size), checked(carried[:, :3], carried[:, 3:], size)))

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How one mesh is laid onto another: Blender's options, and the plain settings that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ...common.translations import CONTEXT
+
+__all__ = ["WrapOptions", "WrapSettings", "wrap_settings"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+@dataclass(frozen=True)
+class WrapSettings:
+    """How one mesh is laid onto another.
+
+    Attributes
+    ----------
+    moved : str
+        Whose surface is laid onto the other: "SOURCE" or "TARGET".
+    result : str
+        Where it is written: "KEY" on the mesh itself, or "OBJECT", a new one.
+    place : str
+        Where the result stands: at the "OTHER" mesh, or in its "OWN" place.
+    in_betweens : int
+        How many shapes between the two are added.
+    """
+
+    moved: str = "SOURCE"
+    result: str = "KEY"
+    place: str = "OTHER"
+    in_betweens: int = 0
+
+
+class WrapOptions:
+    """The options of wrapping, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "wrap_moved": _props.EnumProperty(
+            name="Wrap",
+            description="Whose surface is laid onto the other",
+            items=[
+                ("SOURCE", "Source to Target", "Lay the source onto the target"),
+                ("TARGET", "Target to Source", "Lay the target onto the source"),
+            ],
+            default="SOURCE",
+            translation_context=CONTEXT,
+        ),
+        "wrap_result": _props.EnumProperty(
+            name="Result",
+            description="What is made",
+            items=[
+                ("KEY", "Shape Key", "Add a shape key to the mesh: its slider leads from one shape to the other"),
+                ("OBJECT", "New Object", "Make a new object that has both shapes, and leave the mesh as it is"),
+            ],
+            default="KEY",
+        ),
+        "wrap_place": _props.EnumProperty(
+            name="Place",
+            description="Where the wrapped shape stands",
+            items=[
+                ("OTHER", "At the Other", "Where the mesh stands that it is laid onto"),
+                ("OWN", "Own Place", "Where the mesh stood, turned and moved back as one"),
+            ],
+            default="OTHER",
+        ),
+        "wrap_in_betweens": _props.IntProperty(
+            name="In-Betweens",
+            description="How many shape keys are added that keep limbs from shrinking on the way. They follow the "
+            "slider of the first by drivers",
+            default=0,
+            min=0,
+            max=15,
+            translation_context=CONTEXT,
+        ),
+    }
+
+    if TYPE_CHECKING:
+        wrap_moved: str
+        wrap_result: str
+        wrap_place: str
+        wrap_in_betweens: int
+
+
+def wrap_settings(options: WrapOptions) -> WrapSettings:
+    """Make the settings of the options."""
+    return WrapSettings(options.wrap_moved, options.wrap_result, options.wrap_place, options.wrap_in_betweens)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""What the retargeting panels remember: the options of all kinds, and what became of the last transfer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from .options.retarget import RetargetOptions
+from .options.symmetrise import SymmetriseOptions
+from .options.wrap import WrapOptions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ..jobs.transfer_job import Carried
+
+__all__ = ["HIERMATCH_PG_report", "HIERMATCH_PG_retarget", "copy_named", "remember_transfer", "retarget_of"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+class HIERMATCH_PG_report(bpy.types.PropertyGroup):
+    """What became of the last transfer; it is there if `done` is not empty."""
+
+    done: _props.StringProperty(name="Done", description="What was carried over to which object, one per line")
+    notes: _props.StringProperty(
+        name="Notes", description="What was left out, or should be known, and why: one sentence per line"
+    )
+    seconds: _props.FloatProperty(name="Seconds", description="How long it took")
+
+
+class HIERMATCH_PG_retarget(RetargetOptions, WrapOptions, SymmetriseOptions, bpy.types.PropertyGroup):
+    """The state of the retargeting panels on a scene."""
+
+    refine: _props.BoolProperty(
+        name="Refine with Rig",
+        description="If the source has a rig, fit it into the target and make the map of the match better with it, "
+        "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
+        default=True,
+    )
+    report: _props.PointerProperty(
+        name="Report", description="What became of the last transfer", type=HIERMATCH_PG_report
+    )
+
+
+def retarget_of(context: bpy.types.Context) -> HIERMATCH_PG_retarget:
+    """Return the state of the retargeting panels on the scene."""
+    return cast("Any", context.scene).hiermatch_retarget
+
+
+def copy_named(source: object, target: object, names: Iterable[str]) -> None:
+    """Copy the options of these names."""
+    for name in names:
+        setattr(target, name, getattr(source, name))
+
+
+def remember_transfer(context: bpy.types.Context, carried: list[Carried]) -> None:
+    """Fill the report."""
+    report: Any = retarget_of(context).report
+    done = []
+    for one in carried:
+        parts = [part.done for part in one.reports if part.done]
+        done.append(f'Carried to "{one.target}": {", ".join(parts) if parts else "nothing"}')
+    report.done = "\n".join(done)
+    report.notes = "\n".join(note for one in carried for part in one.reports for note in part.notes)
+    report.seconds = carried[-1].seconds if carried else 0.0

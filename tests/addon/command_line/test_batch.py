@@ -1,0 +1,349 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Batches: what is done stays done, and what breaks breaks alone."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import bpy
+import pytest
+from hiermatch.hiermatch_addon.command_line import batch, workers
+from hiermatch.hiermatch_addon.command_line.exit_codes import UsageError
+from hiermatch.hiermatch_addon.command_line.ledger import Ledger, summary_rows
+from hiermatch.hiermatch_addon.command_line.manifest import read_manifest, take_shard
+from hiermatch.hiermatch_addon.command_line.outputs import save
+from hiermatch.hiermatch_addon.command_line.program import main
+from hiermatch.hiermatch_addon.common.errors import ObjectError
+
+from tests.addon.conftest import ROOT
+from tests.addon.scenes import QUICK, add_blob
+
+STAND_IN = """
+import json, os, pathlib, signal, sys, time
+source, target = map(pathlib.Path, sys.argv[2:4])
+given = dict(word[2:].split("=", 1) for word in sys.argv[4:] if "=" in word)
+with open(os.environ["RUNS"], "a") as runs:
+    runs.write(source.stem + "\\n")
+if "crash" in source.name:
+    os.kill(os.getpid(), signal.SIGKILL)
+if "silent" in source.name:
+    sys.exit(5)
+if "slow" in source.name:
+    time.sleep(60)
+inputs = [{"path": str(p), "size": p.stat().st_size, "mtime_ns": p.stat().st_mtime_ns} for p in (source, target)]
+bad = "bad" in source.name
+if not bad:
+    pathlib.Path(given["output"]).parent.mkdir(exist_ok=True)
+    pathlib.Path(given["output"]).write_text("output")
+report = {"format": "hiermatch-report", "key": given["report-key"], "status": "failed" if bad else "done",
+          "doubtful": "doubt" in source.name, "error": "It is bad." if bad else "", "inputs": inputs, "seconds": 1.5,
+          "match": {"distortion": 0.25, "quality": {"confidence": 0.75, "sentence": "Fine."}},
+          "written": [] if bad else [given["output"]]}
+pathlib.Path(given["report"]).write_text(json.dumps(report))
+"""
+"""Does what a child does, without Blender: what, says the name of the source."""
+
+
+class Batch:
+    """A folder with files and a manifest."""
+
+    def __init__(self, folder):
+        self.folder, self.runs = folder, folder / "runs.txt"
+        self.manifest = folder / "pairs.csv"
+
+    def write(self, names, header="source,target,output", row="{0}.obj,target.obj,out/{0}.blend"):
+        for name in (*names, "target"):
+            (self.folder / f"{name}.obj").write_text(name)
+        self.manifest.write_text("\n".join([header, *(row.format(name) for name in names)]))
+
+    def run(self, *arguments):
+        """Run the batch; return the exit code and which pairs were tried."""
+        self.runs.write_text("")
+        code = main(["batch", str(self.manifest), *arguments])
+        return code, self.runs.read_text().split()
+
+    @property
+    def summary(self):
+        return self.table("summary")
+
+    def table(self, name):
+        path = self.folder / "pairs.csv.hiermatch" / f"{name}.csv"
+        with path.open(newline="") as file:
+            return {row["name"]: row for row in csv.DictReader(file)}
+
+
+@pytest.fixture
+def stand_in(tmp_path, monkeypatch):
+    """A batch whose children are stand-ins."""
+    script = tmp_path / "stand_in.py"
+    script.write_text(STAND_IN)
+    made = Batch(tmp_path)
+    environment = {"RUNS": str(made.runs), **os.environ}
+    monkeypatch.setattr(workers, "_blender", lambda: ([sys.executable, str(script)], dict(environment)))
+    return made
+
+
+def test_all_pairs_are_done_and_summed_up(stand_in, capsys):
+    stand_in.write(["a", "b", "c"])
+    assert stand_in.run() == (0, ["a", "b", "c"])
+    assert [row["status"] for row in stand_in.summary.values()] == ["done"] * 3
+    assert stand_in.summary["b"]["confidence"] == "0.75"
+    assert "3 pairs: 3 done." in capsys.readouterr().err
+    plain = json.loads((stand_in.folder / "pairs.csv.hiermatch" / "summary.json").read_text())
+    assert plain["counts"]["done"] == len(plain["pairs"]) == 3
+    assert stand_in.run() == (0, [])
+
+
+def test_what_breaks_breaks_alone(stand_in, capsys):
+    stand_in.write(["a", "bad", "crash", "silent", "b"])
+    code, tried = stand_in.run("--jobs=2")
+    assert (code, sorted(tried)) == (4, ["a", "b", "bad", "crash", "silent"])
+    statuses = {name: row["status"] for name, row in stand_in.summary.items()}
+    assert statuses == {"a": "done", "bad": "failed", "crash": "crashed", "silent": "crashed", "b": "done"}
+    assert stand_in.summary["bad"]["error"] == "It is bad."
+    assert "signal 9" in stand_in.summary["crash"]["error"]
+    assert "exit code 5" in stand_in.summary["silent"]["error"]
+    assert "bad: failed. It is bad." in capsys.readouterr().err
+    assert stand_in.run() == (4, [])
+    assert stand_in.run("--retry-failed") == (4, ["bad", "crash", "silent"])
+
+
+def test_a_pair_has_its_time(stand_in):
+    stand_in.write(["slow", "a"])
+    assert stand_in.run("--timeout=1") == (4, ["slow", "a"])
+    assert stand_in.summary["slow"]["status"] == "timeout"
+    assert stand_in.summary["a"]["status"] == "done"
+
+
+def test_only_what_has_changed_is_done_again(stand_in):
+    stand_in.write(["a", "b", "c"])
+    stand_in.run()
+    (stand_in.folder / "b.obj").write_text("something else")
+    assert stand_in.run() == (0, ["b"])
+    (stand_in.folder / "out" / "c.blend").unlink()
+    assert stand_in.run() == (0, ["c"])
+    assert stand_in.run("--points=12") == (0, ["a", "b", "c"])
+    report = next((stand_in.folder / "pairs.csv.hiermatch").glob("a-*.json"))
+    report.write_text(report.read_text()[:50])
+    assert stand_in.run("--points=12") == (0, ["a"])
+    (stand_in.folder / "target.obj").write_text("another target")
+    assert stand_in.run("--points=12") == (0, ["a", "b", "c"])
+
+
+def test_rows_may_move_and_be_added(stand_in):
+    stand_in.write(["a", "b"])
+    stand_in.run()
+    stand_in.write(["c", "b", "a"])
+    for name in ("a", "b", "target"):
+        os.utime(stand_in.folder / f"{name}.obj", ns=(1, 1))
+    stand_in.run()
+    stand_in.manifest.write_text(stand_in.manifest.read_text().replace("c.obj", "b.obj"))
+    assert stand_in.run()[1] == ["b"]
+
+
+def test_an_interrupted_batch_goes_on(stand_in, monkeypatch):
+    stand_in.write(["a", "b", "c"])
+    real = batch._close  # noqa: SLF001
+    children = []
+
+    def interrupt(pair, *arguments):
+        real(pair, *arguments)
+        if pair.name == "a":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(batch, "_close", interrupt)
+    started = workers._start  # noqa: SLF001
+    monkeypatch.setattr(workers, "_start", lambda *given: children.append(started(*given)) or children[-1])
+    (stand_in.folder / "slow.obj").write_text("")
+    text = stand_in.manifest.read_text()
+    stand_in.manifest.write_text(text.replace("b.obj", "slow.obj"))
+    begin = time.monotonic()
+    assert stand_in.run("--jobs=2")[0] == 130
+    assert time.monotonic() - begin < 30
+    assert all(child.process.poll() is not None for child in children)
+    assert [row["status"] for row in stand_in.summary.values()] == ["done", "pending", "pending"]
+    monkeypatch.setattr(batch, "_close", real)
+    stand_in.manifest.write_text(text)
+    assert stand_in.run() == (0, ["b", "c"])
+
+
+def test_shards_are_summed_up_apart_and_together(stand_in):
+    stand_in.write(["a", "b", "c", "bad", "e"])
+    assert stand_in.run("--shard=1/2") == (0, ["a", "c", "e"])
+    assert list(stand_in.table("summary-1-of-2")) == ["a", "c", "e"]
+    assert stand_in.run("--summary") == (0, [])
+    assert [row["status"] for row in stand_in.summary.values()] == ["done", "pending", "done", "pending", "done"]
+    assert stand_in.run("--shard=2/2") == (4, ["b", "bad"])
+    assert stand_in.run("--summary") == (4, [])
+    assert stand_in.summary["bad"]["status"] == "failed"
+
+
+def test_a_summary_does_not_ask_for_the_options_again(stand_in):
+    stand_in.write(["a", "b"])
+    assert stand_in.run("--points=12") == (0, ["a", "b"])
+    assert stand_in.run("--summary") == (0, [])
+    assert [row["status"] for row in stand_in.summary.values()] == ["done", "done"]
+
+
+def test_strict_tells_of_doubt(stand_in):
+    stand_in.write(["a", "doubt"])
+    assert stand_in.run("--strict")[0] == 3
+    assert stand_in.run()[0] == 0
+    assert stand_in.summary["doubt"]["doubtful"] == "True"
+
+
+def test_a_wrong_value_fails_its_own_row_only(stand_in, capsys):
+    stand_in.write(["a", "b"])
+    stand_in.manifest.write_text(
+        "source,target,output,points,weight_limit,command\n"
+        "a.obj,target.obj,a.blend,2,,\na.obj,target.obj,b.blend,12,,\na.obj,target.obj,c.blend,,3,\n"
+        "a.obj,target.obj,d.blend,,3,retarget\na.obj,,e.blend,,,\na.obj,target.obj,f.blend,,,conquer\n"
+        "a.txt,target.obj,g.blend,,,\na.obj,target.obj,target.obj,,,\n"
+    )
+    code, tried = stand_in.run()
+    assert (code, tried) == (4, ["a", "a"])
+    errors = {name: row["error"] for name, row in stand_in.summary.items()}
+    assert "not between 3 and 1024" in errors["a"]
+    assert "weight_limit is no option of match" in errors["c"]
+    assert "empty" in errors["e"]
+    assert "must be one of match, retarget" in errors["f"]
+    assert "names no file" in errors["g"]
+    assert "write over" in errors["target"]
+    assert errors["b"] == errors["d"] == ""
+    assert "c: weight_limit" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 20])
+def test_shards_partition_the_manifest(stand_in, count):
+    stand_in.write([f"m{number}" for number in range(9)])
+    pairs = read_manifest(stand_in.manifest, {}, "match")
+    shards = [take_shard(pairs, (first, count)) for first in range(1, count + 1)]
+    assert sorted(pair.number for shard in shards for pair in shard) == list(range(1, 10))
+    assert max(map(len, shards)) - min(map(len, shards)) <= 1
+
+
+@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+def test_tables_are_read_as_programs_write_them(tmp_path, delimiter):
+    path = tmp_path / "pairs.csv"
+    name = "First" if delimiter == "," else "First, of all"
+    rows = [["name", "source", "target", "output", "weight-limit", "points"]]
+    rows += [[name, "a.blend:Body", "/b/b.fbx", "o/x.fbx|o/x.blend", "4", ""]]
+    path.write_text("\ufeff" + "\r\n".join(delimiter.join(row) for row in rows) + "\r\n\r\n", encoding="utf-8")
+    (pair,) = read_manifest(path, {"points": "99", "weight_mix": "0.5", "use_modifiers": "True"}, "retarget")
+    assert pair.name == name
+    assert (pair.source, pair.target) == (str(tmp_path / "a.blend:Body"), "/b/b.fbx")
+    assert pair.outputs == (str(tmp_path / "o" / "x.fbx"), str(tmp_path / "o" / "x.blend"))
+    assert pair.options == (("points", "99"), ("weight_limit", "4"), ("weight_mix", "0.5"))
+    assert pair.arguments()[-3:] == ["--points=99", "--weight-limit=4", "--weight-mix=0.5"]
+
+
+def test_json_has_options_for_all(tmp_path):
+    path = tmp_path / "pairs.json"
+    pairs = [{"source": "a.obj", "target": "b.obj", "map": "m.npz"}]
+    pairs += [{"source": "a.obj", "target": "c.obj", "dense": True}]
+    path.write_text(json.dumps({"options": {"points": 32, "dense": False}, "pairs": pairs}))
+    first, second = read_manifest(path, {}, "match")
+    assert first.options == (("dense", "False"), ("points", "32"))
+    assert (first.name, first.map) == ("m", str(tmp_path / "m.npz"))
+    assert "--no-dense" in first.arguments()
+    assert "--dense" in second.arguments()
+    path.write_text(json.dumps({"options": {"points": 32, "weight_limit": 3}, "pairs": pairs}))
+    assert read_manifest(path, {"points": "16"}, "match")[0].options == (("points", "16"),)
+    path.write_text(json.dumps({"options": {"pionts": 32}, "pairs": pairs}))
+    with pytest.raises(ObjectError, match="pionts"):
+        read_manifest(path, {}, "match")
+    path.write_text(json.dumps(pairs[:1]))
+    assert len(read_manifest(path, {}, "match")) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("source,target,pionts\na.obj,b.obj,3\n", "no options: pionts"),
+        ("source,output\na.obj,b.obj\n", 'no column "target"'),
+        ("source,target\na.obj,b.obj,c.obj\n", "another number of columns"),
+        ("source,target\na.obj\n", "another number of columns"),
+        ("source,target\n", "lists no pairs"),
+        ("", "lists no pairs"),
+        ("source,target,output\na.obj,b.obj,o.blend\na.obj,c.obj,o.blend\n", "Rows 1 and 2"),
+        ("source,target\na.obj,b.obj\na.obj,b.obj\n", "Rows 1 and 2"),
+    ],
+)
+def test_manifests_that_are_none_are_told(tmp_path, text, said):
+    path = tmp_path / "pairs.csv"
+    path.write_text(text)
+    with pytest.raises(ObjectError, match=said):
+        read_manifest(path, {}, "match")
+
+
+@pytest.mark.parametrize("text", ["{", "3", '{"pairs": 3}', '["a"]', '[{"source": ["a"]}]'])
+def test_json_that_is_no_manifest_is_told(tmp_path, text):
+    path = tmp_path / "pairs.json"
+    path.write_text(text)
+    with pytest.raises(ObjectError, match="is no manifest"):
+        read_manifest(path, {}, "match")
+
+
+@pytest.mark.parametrize("arguments", [["--shard=0/3"], ["--shard=4/3"], ["--shard=3"], ["--jobs=0"], ["--timeout=-1"]])
+def test_wrong_usage_is_told(stand_in, arguments):
+    stand_in.write(["a"])
+    assert stand_in.run(*arguments) == (2, [])
+
+
+def test_a_manifest_that_is_not_there_is_told(tmp_path, capsys):
+    assert main(["batch", str(tmp_path / "none.csv")]) == 1
+    assert "cannot be read" in capsys.readouterr().err
+
+
+def test_a_pair_without_a_boolean_is_told(stand_in):
+    stand_in.write(["a"], "source,target,output,dense", "{0}.obj,target.obj,{0}.blend,maybe")
+    (pair,) = read_manifest(stand_in.manifest, {}, "match")
+    with pytest.raises(UsageError, match="must be true or false"):
+        pair.arguments()
+    assert summary_rows(Ledger(stand_in.folder / "nothing"), [pair])[0]["status"] == "pending"
+
+
+@pytest.mark.slow
+def test_a_batch_of_real_matches_is_killed_and_goes_on(tmp_path):
+    save(tmp_path / "target.obj", add_blob("Target"))
+    save(tmp_path / "a.obj", add_blob("Source", 18, 12))
+    (tmp_path / "damaged.obj").write_bytes(b"\x00\x01\x02")
+    names = ["a", "damaged", "b", "c"]
+    for name in "bc":
+        (tmp_path / f"{name}.obj").write_bytes((tmp_path / "a.obj").read_bytes())
+    manifest = tmp_path / "pairs.csv"
+    columns = ",".join(QUICK)
+    rows = [f"{name}.obj,target.obj,{name}.blend,{','.join(map(str, QUICK.values()))}" for name in names]
+    manifest.write_text("\n".join([f"source,target,output,{columns}", *rows]))
+    module = f"{ROOT.name}.hiermatch_addon.command_line"
+    command = [sys.executable, "-m", module, "batch", str(manifest)]
+    running = subprocess.Popen(
+        command, cwd=ROOT.parent, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True
+    )
+    try:
+        deadline, reports = time.monotonic() + 60, manifest.with_name("pairs.csv.hiermatch")
+        while not list(reports.glob("a-*.json")):
+            assert time.monotonic() < deadline
+            assert running.poll() is None
+            time.sleep(0.05)
+    finally:
+        running.send_signal(signal.SIGINT)
+    assert running.wait(30) == 130
+    assert running.stdout.read() == b""
+    first = (tmp_path / "a.blend").stat().st_mtime_ns
+    assert not (tmp_path / "c.blend").exists()
+    assert main(["batch", str(manifest), "--jobs=2", "--quiet"]) == 4
+    assert (tmp_path / "a.blend").stat().st_mtime_ns == first
+    with (tmp_path / "pairs.csv.hiermatch" / "summary.csv").open(newline="") as file:
+        statuses = {row["name"]: row["status"] for row in csv.DictReader(file)}
+    assert statuses == {"a": "done", "damaged": "failed", "b": "done", "c": "done"}
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "c.blend"))
+    assert "HM.001" in bpy.data.objects["Target"].vertex_groups
+    assert not [path for path in Path(tmp_path).rglob("*") if "part" in path.name]

@@ -1,0 +1,354 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``blender --command hiermatch``, run within this process."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from hiermatch.engine import MatchSettings, symmetry_map_steps
+from hiermatch.hiermatch_addon import command_line
+from hiermatch.hiermatch_addon.command_line import console, match, options, symmetry
+from hiermatch.hiermatch_addon.command_line.meshes import MeshArgument, load_meshes, mesh_argument
+from hiermatch.hiermatch_addon.command_line.operator_errors import said_by
+from hiermatch.hiermatch_addon.command_line.outputs import save
+from hiermatch.hiermatch_addon.command_line.program import main
+from hiermatch.hiermatch_addon.common.errors import ObjectError
+from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES
+from hiermatch.hiermatch_addon.storage.match_file import load_match
+from hiermatch.hiermatch_addon.transfers import symmetrise
+
+from tests.addon.rigs import add_rigged_pair
+from tests.addon.scenes import DENSE, QUICK, add_blob, add_pair
+
+
+def flags(settings):
+    """Write settings as arguments."""
+    words = []
+    for name, value in settings.items():
+        flag = name.replace("_", "-")
+        words.append((f"--{flag}" if value else f"--no-{flag}") if isinstance(value, bool) else f"--{flag}={value}")
+    return words
+
+
+@pytest.fixture(scope="module")
+def folder(extension, tmp_path_factory):
+    """A folder with a pair as .blend and as .obj."""
+    assert extension
+    folder = tmp_path_factory.mktemp("command line")
+    bpy.ops.wm.read_homefile(use_empty=True)
+    source, target = add_pair()
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "pair.blend"))
+    for obj in (source, target):
+        save(folder / f"{obj.name}.obj", obj)
+    return folder
+
+
+@pytest.fixture
+def pair(folder):
+    return [f"{folder / 'pair.blend'}:Source", f"{folder / 'pair.blend'}:Target"]
+
+
+def report_of(path):
+    return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+def test_match_writes_what_is_wanted(pair, tmp_path, capsys):
+    outputs = [tmp_path / "new folder" / "out.blend", tmp_path / "out.ply"]
+    arguments = [f"--output={path}" for path in outputs]
+    arguments += [f"--map={tmp_path / 'map.npz'}", f"--report={tmp_path / 'report.json'}"]
+    assert main(["match", *pair, *arguments, *flags(DENSE)]) == 0
+    said = capsys.readouterr()
+    assert not said.out.replace("Info: Saved copy", "").count("Done")
+    assert "Done: matched 24 points; confidence" in said.err
+    report = report_of(tmp_path / "report.json")
+    assert (report["format"], report["status"], report["exit_code"], report["error"]) == (
+        "hiermatch-report",
+        "done",
+        0,
+        "",
+    )
+    assert report["match"]["points"] == 24
+    assert report["match"]["quality"]["sentence"]
+    assert not report["doubtful"]
+    assert {Path(path) for path in report["written"]} == {*outputs, tmp_path / "map.npz"}
+    assert [one["path"] for one in report["inputs"]] == [pair[0].rpartition(":")[0]]
+    assert report["objects"]["target"]["object"] == "Target"
+    assert all(path.is_file() for path in outputs)
+    assert load_match(tmp_path / "map.npz").maps is not None
+    bpy.ops.wm.open_mainfile(filepath=str(outputs[0]))
+    assert "HM Map Weights" in bpy.data.objects["Target"].data.attributes
+    assert bpy.context.scene.hiermatch.summary.points == 24
+    assert {path.name for path in tmp_path.iterdir()} == {"new folder", "out.ply", "map.npz", "report.json"}
+
+
+def test_a_report_can_go_to_the_output(folder, capsys):
+    objs = [str(folder / "Source.obj"), str(folder / "Target.obj")]
+    assert main(["match", *objs, "--report=-", "--quiet", *flags(QUICK)]) == 0
+    out = capsys.readouterr().out
+    assert json.loads(out[out.index("{") :])["match"]["points"] == 12
+
+
+def test_strict_tells_of_a_doubtful_match(pair, tmp_path):
+    arguments = [*pair, "--strict", "--least-confidence=1.5", f"--report={tmp_path / 'r.json'}", *flags(DENSE)]
+    assert main(["match", *arguments]) == 3
+    assert report_of(tmp_path / "r.json")["doubtful"]
+    assert report_of(tmp_path / "r.json")["status"] == "done"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["--help"], 0, ""),
+        (["match", "--help"], 0, ""),
+        ([], 2, "COMMAND"),
+        (["conquer"], 2, "conquer"),
+        (["match", "a.obj"], 2, "TARGET"),
+        (["match", "a.txt", "b.obj"], 2, "names no file that ends with"),
+        (["match", "a.obj", "b.obj", "--points=2"], 2, "not between 3 and 1024"),
+        (["match", "a.obj", "b.obj", "--points=many"], 2, "no whole number"),
+        (["match", "a.obj", "b.obj", "--linear-weight=nan"], 2, "not between"),
+        (["match", "a.obj", "b.obj", "--solver=magic"], 2, "none of hierarchical, flat, gmds"),
+        (["match", "a.obj", "b.obj", "--output=a.txt"], 2, "does not end with"),
+        (["match", "a.obj", "b.obj", f"--prefix={40 * 'x'}"], 2, "longer"),
+        (["match", "a.obj", "b.obj", "--poi=12"], 2, "unrecognized"),
+        (["match", "a.obj", "b.obj"], 1, 'There is no file "a.obj"'),
+        (["match", "a.obj", "b.obj", "--prefix="], 1, "Prefix is empty"),
+        (["import", "a.obj", "b.obj", "m.npz", "--output=o.blend"], 1, "cannot be read"),
+    ],
+)
+def test_wrong_usage_is_told(arguments, code, said, capsys):
+    assert main(arguments) == code
+    assert said in capsys.readouterr().err
+
+
+def test_damaged_files_are_told_and_reported(folder, tmp_path, capsys):
+    for suffix in ("blend", "obj", "ply", "stl", "glb", "fbx"):
+        path = tmp_path / f"damaged.{suffix}"
+        path.write_bytes(b"\x00\x01 nothing that could be read")
+        report = tmp_path / f"{suffix}.json"
+        assert main(["match", str(path), str(folder / "Target.obj"), f"--report={report}", "--quiet"]) == 1, suffix
+        assert f"damaged.{suffix}" in capsys.readouterr().err
+        assert report_of(report)["status"] == "failed"
+        assert f"damaged.{suffix}" in report_of(report)["error"]
+        assert "Traceback" not in report_of(report)["error"]
+
+
+def test_of_an_operator_that_breaks_down_only_what_happened_last_is_told():
+    calls = 'File "/x/io.py", line 109, in load_glb\n    a, b = unpack(content)\n           ^^^^^^\n'
+    said = f"Error: Python: Traceback (most recent call last):\n  {calls}struct.error: too short\nLocation: /y/ops.py:1"
+    assert said_by(RuntimeError(said)) == "Blender's add-on for such files broke down (struct.error: too short)."
+    assert said_by(RuntimeError("Error: No\nspace.\n")) == "No space."
+
+
+def test_it_is_told_at_once_if_nothing_is_to_be_written(pair, tmp_path, capsys):
+    assert main(["match", *pair, *flags(QUICK)]) == 0
+    assert "Nothing will be written" in capsys.readouterr().err
+    assert main(["match", *pair, *flags(QUICK), f"--report={tmp_path / 'r.json'}"]) == 0
+    assert "Nothing will be written" not in capsys.readouterr().err
+
+
+def test_interruption_is_told(pair, tmp_path, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(match, "drive", interrupted)
+    output, report = tmp_path / "out.blend", tmp_path / "report.json"
+    assert main(["match", *pair, f"--output={output}", f"--report={report}"]) == 130
+    assert report_of(report)["status"] == "interrupted"
+    assert not output.exists()
+
+
+def test_a_bug_is_reported_and_not_swallowed(pair, tmp_path, monkeypatch):
+    def broken(*_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(match, "drive", broken)
+    with pytest.raises(ZeroDivisionError):
+        main(["match", *pair, f"--report={tmp_path / 'report.json'}"])
+    assert "ZeroDivisionError" in report_of(tmp_path / "report.json")["error"]
+
+
+def test_outputs_that_cannot_be_written_are_told(pair, tmp_path, capsys):
+    (tmp_path / "file").touch()
+    for name in ("out.blend", "out.obj"):
+        assert main(["match", *pair, f"--output={tmp_path / 'file' / name}", *flags(QUICK)]) == 1
+        assert "cannot be written" in capsys.readouterr().err
+
+
+def test_export_and_import(pair, folder, tmp_path):
+    blend, exported, back = (tmp_path / name for name in ("matched.blend", "match.json", "back.blend"))
+    assert main(["match", *pair, f"--output={blend}", *flags(DENSE)]) == 0
+    assert main(["export", f"{blend}:Source", f"{blend}:Target", str(exported)]) == 0
+    objs = [str(folder / "Source.obj"), str(folder / "Target.obj")]
+    report = tmp_path / "report.json"
+    assert main(["import", *objs, str(exported), f"--output={back}", f"--report={report}"]) == 0
+    assert report_of(report)["match"]["points"] == 24
+    assert len(report_of(report)["inputs"]) == 3
+    bpy.ops.wm.open_mainfile(filepath=str(back))
+    assert "HM Map Weights" in bpy.data.objects["Source"].data.attributes
+
+
+def test_symmetry_finds_the_map_and_symmetrises(tmp_path, monkeypatch):
+    quick = MatchSettings(**{name: value for name, value in QUICK.items() if name != "dense"})
+    for module in (symmetry, symmetrise):
+        monkeypatch.setattr(module, "symmetry_map_steps", lambda mesh: symmetry_map_steps(mesh, quick))
+    obj = add_blob("Body")
+    count = len(obj.data.vertices)
+    obj.vertex_groups.new(name="Arm.L").add(range(30), 1.0, "REPLACE")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "body.blend"))
+    body, report = str(tmp_path / "body.blend"), tmp_path / "report.json"
+    assert main(["symmetry", body, f"--map={tmp_path / 'map.npz'}", f"--report={report}"]) == 0
+    found = load_match(tmp_path / "map.npz")
+    assert found.kind == "symmetry"
+    assert found.counts == (count, count)
+    assert report_of(report)["match"]["quality"]["sentence"]
+    output = tmp_path / "out.blend"
+    assert main(["symmetry", body, f"--output={output}", "--symmetrise-side=left"]) == 0
+    bpy.ops.wm.open_mainfile(filepath=str(output))
+    assert "Arm.R" in bpy.data.objects["Body"].vertex_groups
+    assert main(["import", body, body, str(tmp_path / "map.npz"), f"--output={output}"]) == 1
+
+
+@pytest.mark.slow
+def test_retarget_carries_the_rig_into_another_file(tmp_path):
+    add_rigged_pair()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "rigged.blend"))
+    save(tmp_path / "Target.obj", bpy.data.objects["Target"])
+    bpy.data.objects.remove(bpy.data.objects["Target"])
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "source.blend"))
+    report = tmp_path / "report.json"
+    arguments = [str(tmp_path / "source.blend"), str(tmp_path / "Target.obj")]
+    arguments += [f"--output={tmp_path / name}" for name in ("out.fbx", "out.glb", "out.blend")]
+    assert (
+        main(["retarget", *arguments, "--weight-limit=2", f"--report={report}", *flags(QUICK | {"points": 24})[:-1]])
+        == 0
+    )
+    done = report_of(report)["carried"][0]["done"]
+    assert any("vertex groups" in said for said in done)
+    assert any("bones" in said for said in done)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out.blend"))
+    target = bpy.data.objects["Target"]
+    assert max(len(vertex.groups) for vertex in target.data.vertices) <= 24 + 2  # the match's own groups beside
+    for name in ("out.fbx", "out.glb"):
+        bpy.ops.wm.read_homefile(use_empty=True)
+        (obj,), _ = load_meshes([MeshArgument(tmp_path / name, "Target")])
+        assert any(modifier.type == "ARMATURE" for modifier in obj.modifiers)
+        assert "upper front.L" in obj.vertex_groups
+        assert not [layer for layer in obj.data.color_attributes if layer.name.startswith("HM")]
+
+
+@pytest.mark.parametrize("suffix", ["obj", "ply", "stl", "fbx", "glb", "gltf"])
+def test_all_kinds_of_files_come_back(suffix, tmp_path):
+    obj = add_blob("Body")
+    faces, length = len(obj.data.polygons), np.linalg.norm(np.ptp([vertex.co for vertex in obj.data.vertices], axis=0))
+    path = tmp_path / f"Body.{suffix}"
+    save(path, obj)
+    (back,), notes = load_meshes([MeshArgument(path)])
+    assert not notes
+    assert len(back.data.polygons) >= faces  # some kinds know triangles only
+    assert back.dimensions.length == pytest.approx(length, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "name"),
+    [
+        ("a.blend", "a.blend", ""),
+        ("a.blend:Body", "a.blend", "Body"),
+        ("some where/a.b.OBJ:ns:Body.001", "some where/a.b.OBJ", "ns:Body.001"),
+        ("C:/x/a.fbx", "C:/x/a.fbx", ""),
+        ("C:/x/a.fbx:Body.obj", "C:/x/a.fbx", "Body.obj"),
+    ],
+)
+def test_meshes_are_named_by_file_and_object(text, path, name):
+    assert mesh_argument(text) == MeshArgument(Path(path), name)
+
+
+def test_which_mesh_is_meant_must_be_clear(folder, tmp_path):
+    with pytest.raises(ObjectError, match=r'holds 2 meshes.*"Source", "Target"'):
+        load_meshes([MeshArgument(folder / "pair.blend")])
+    with pytest.raises(ObjectError, match='no mesh called "Nobody"'):
+        load_meshes([MeshArgument(folder / "pair.blend", "Nobody")])
+    add_blob("Small", 8, 6)
+    add_blob("Large")
+    bpy.ops.wm.obj_export(filepath=str(tmp_path / "two.obj"))
+    (largest,), notes = load_meshes([MeshArgument(tmp_path / "two.obj")])
+    assert largest.name == "Large"
+    assert 'The largest was taken: "Large"' in notes[0]
+    (small,), notes = load_meshes([MeshArgument(tmp_path / "two.obj", "Small")])
+    assert (small.name, notes) == ("Small", [])
+    (tmp_path / "none.obj").write_text("v 0 0 0\n")
+    with pytest.raises(ObjectError, match="holds no mesh with faces"):
+        load_meshes([MeshArgument(tmp_path / "none.obj")])
+
+
+def test_a_second_blend_brings_its_rig(folder, tmp_path):
+    add_rigged_pair()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "rigged.blend"))
+    arguments = [MeshArgument(folder / "pair.blend", "Source"), MeshArgument(tmp_path / "rigged.blend", "Source")]
+    (plain, rigged), _ = load_meshes(arguments)
+    assert (plain.name, rigged.name) == ("Source", "Source.001")
+    assert rigged.parent.name in bpy.context.view_layer.objects
+    with pytest.raises(ObjectError, match='no object called "Nobody"'):
+        load_meshes([arguments[0], MeshArgument(tmp_path / "rigged.blend", "Nobody")])
+
+
+def test_every_option_of_the_operators_is_there():
+    assert set(options.option_names("match")) == set(OPTION_NAMES)
+    parser = options.Parser()
+    options.add_options(parser, "match")
+    parsed = parser.parse_args([])
+    assert not options.given_options("match", parsed)
+    defaults = options.chosen_options("match", {})
+    rna = bpy.ops.hiermatch.match.get_rna_type().properties
+    assert all(getattr(defaults, name) == rna[name].default for name in OPTION_NAMES)
+    given = options.given_options("match", parser.parse_args(["--solver=GMDS", "--no-dense", "--diffusion-time=0.1"]))
+    scene = bpy.context.scene.hiermatch
+    scene.diffusion_time = 0.1
+    assert given == {"solver": "GMDS", "dense": False, "diffusion_time": scene.diffusion_time}
+
+
+def test_table_values_become_arguments():
+    assert options.to_arguments("match", "points", " 12 ") == ["--points=12"]
+    assert options.to_arguments("match", "dense", "No") == ["--no-dense"]
+    assert options.to_arguments("match", "dense", "1") == ["--dense"]
+    assert options.to_arguments("match", "use_mirrored", "TRUE") == ["--use-mirrored"]
+    assert options.to_arguments("match", "exclude_source", "-eyes") == ["--exclude-source=-eyes"]
+    assert options.to_arguments("match", "points", "") == []
+
+
+def test_progress_is_plain_where_there_is_no_terminal(capsys):
+    shown = console.Console(quiet=False, own_process=False)
+    for fraction in (0.0, 0.01, 0.02, 0.5, 0.51):
+        shown.progress(fraction, "Doing")
+    assert capsys.readouterr().err.splitlines() == ["[  0%] Doing", "[ 50%] Doing"]
+    console.Console(quiet=True, own_process=False).progress(0.3, "Doing")
+    assert not capsys.readouterr().err
+
+
+def test_progress_is_one_line_on_a_terminal(capsys, monkeypatch):
+    monkeypatch.setattr("os.isatty", lambda _: True)
+    shown = console.Console(quiet=False, own_process=False)
+    shown.progress(0.1, "Doing")
+    shown.progress(0.2, "Doing")
+    shown.error("It went wrong.")
+    lines = capsys.readouterr().err.split("\r")
+    assert [line.strip() for line in lines] == ["", "[ 10%] Doing", "[ 20%] Doing", "", "hiermatch: It went wrong."]
+
+
+def test_the_command_is_registered_and_runs(monkeypatch):
+    assert command_line.COMMAND == "hiermatch"
+    monkeypatch.setattr(
+        "hiermatch.hiermatch_addon.command_line.program.main",
+        lambda arguments, *, own_process: (list(arguments), own_process),
+    )
+    assert command_line.run_command(["match"]) == (["match"], True)
+
+
+def test_argument_errors_are_argparse_s():
+    with pytest.raises(argparse.ArgumentTypeError):
+        mesh_argument("body")

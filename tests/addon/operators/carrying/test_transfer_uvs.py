@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator `hiermatch.transfer_uvs`."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from hiermatch.hiermatch_addon.operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
+from hiermatch.hiermatch_addon.scene.attribute_io import read_attribute, read_polygons, read_seams
+
+from tests.addon.scenes import mesh_snapshot
+
+
+@pytest.fixture(autouse=True)
+def operator(empty_file):
+    assert empty_file
+    missing = not hasattr(bpy.types, HIERMATCH_OT_transfer_uvs.__name__)
+    if missing:
+        bpy.utils.register_class(HIERMATCH_OT_transfer_uvs)
+    yield
+    if missing:
+        bpy.utils.unregister_class(HIERMATCH_OT_transfer_uvs)
+
+
+@pytest.fixture
+def pair(dense_pair):
+    """A matched pair; the UVs of the source are its own, those of the target nothing."""
+    source, target = dense_pair
+    bpy.context.scene.hiermatch.source = bpy.context.scene.hiermatch.target = None
+    for layer in list(target.data.uv_layers):
+        target.data.uv_layers.remove(layer)
+    return source, target
+
+
+def carry(**options):
+    return bpy.ops.hiermatch.transfer_uvs(**({"source": "Source", "target": "Target", "refine": False} | options))
+
+
+def names(obj):
+    return [layer.name for layer in obj.data.uv_layers]
+
+
+def extents(obj, name):
+    """Longest extent of each face in UV space."""
+    faces, uvs = read_polygons(obj.data), read_attribute(obj.data, name)
+    low, high = (part.reduceat(uvs, faces.starts[:-1], axis=0) for part in (np.minimum, np.maximum))
+    return (high - low).max(axis=1)
+
+
+def test_the_layer_arrives_without_smeared_faces(pair):
+    source, target = pair
+    assert carry() == {"FINISHED"}
+    assert names(target) == ["UVMap"]
+    # The meshes have 24 x 16 and 28 x 18 faces; a smeared one would have the width of the layer.  At the poles, where
+    # all 24 columns meet, a face reaches over some of them if its corner is next to the pole.
+    sizes = extents(target, "UVMap") / extents(source, "UVMap").max()
+    at_pole = np.array([len(polygon.vertices) == 3 for polygon in target.data.polygons])
+    assert sizes[~at_pole].max() < 1.5
+    assert sizes[at_pole].max() < 4
+    uvs = read_attribute(target.data, "UVMap")
+    assert np.ptp(uvs, axis=0).min() > 0.9
+    seams = read_seams(target.data)
+    assert 10 < seams.sum() < 80
+
+
+def test_seams_are_left_alone_if_not_wanted(pair):
+    target = pair[1]
+    target.data.edges[7].use_seam = True
+    carry(uv_seams=False)
+    assert np.flatnonzero(read_seams(target.data)).tolist() == [7]
+
+
+def test_what_is_active_comes_along(pair):
+    source, target = pair
+    second = source.data.uv_layers.new(name="Second")
+    third = source.data.uv_layers.new(name="Third")
+    source.data.uv_layers.active = second
+    third.active_render = True
+    carry()
+    assert names(target) == ["UVMap", "Second", "Third"]
+    assert target.data.uv_layers.active.name == "Second"
+    assert [layer.name for layer in target.data.uv_layers if layer.active_render] == ["Third"]
+
+
+def test_a_vertex_group_that_is_carried_as_well_takes_the_name(pair):
+    source, target = pair
+    source.vertex_groups.new(name="Mask").add([0, 1, 2], 1.0, "REPLACE")
+    source.data.uv_layers.new(name="Mask")
+    source.data.attributes.new("Fur", "FLOAT", "FACE")
+    source.vertex_groups.new(name="Wool").name = "Fur"
+    bpy.ops.hiermatch.retarget(source="Source", target="Target", refine=False, use_attributes=True)
+    assert {"Mask", "Fur"} <= set(target.vertex_groups.keys())
+    assert names(target) == ["UVMap"]
+    assert "Fur" not in target.data.attributes
+    notes = bpy.context.scene.hiermatch_retarget.report.notes
+    assert 'called "Mask", so that UV map' in notes
+    assert 'called "Fur", so that attribute' in notes
+
+
+def test_some_layers_only(pair):
+    source, target = pair
+    source.data.uv_layers.active = source.data.uv_layers.new(name="Second")
+    source.data.uv_layers.new(name="Third")
+    carry(uv_layers="ACTIVE")
+    assert names(target) == ["Second"]
+    carry(uv_layers="NAMED", uv_names="Third , UVMap")
+    assert set(names(target)) == {"Second", "UVMap", "Third"}
+
+
+def test_a_layer_of_the_same_name_is_replaced(pair):
+    target = pair[1]
+    target.data.uv_layers.new(name="Mine")
+    target.data.uv_layers.new(name="UVMap")
+    before = read_attribute(target.data, "UVMap")
+    mine = read_attribute(target.data, "Mine")
+    carry()
+    assert names(target) == ["Mine", "UVMap"]
+    assert abs(read_attribute(target.data, "UVMap") - before).max() > 0.01
+    np.testing.assert_array_equal(read_attribute(target.data, "Mine"), mine)
+
+
+def test_a_name_that_is_something_else_is_left_out(pair):
+    target = pair[1]
+    target.data.attributes.new("UVMap", "INT", "POINT")
+    assert carry() == {"FINISHED"}
+    assert names(target) == []
+    assert target.data.attributes["UVMap"].data_type == "INT"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"uv_layers": "NAMED"}, "No UV map is named"),
+        ({"uv_layers": "NAMED", "uv_names": "Other"}, 'no UV map "Other"'),
+    ],
+)
+def test_names_that_lead_nowhere(pair, options, message):
+    before = mesh_snapshot(pair[1])
+    with pytest.raises(RuntimeError, match=message):
+        carry(**options)
+    assert mesh_snapshot(pair[1]) == before
+
+
+def test_a_source_without_uvs(pair):
+    source, target = pair
+    source.data.uv_layers.remove(source.data.uv_layers[0])
+    before = mesh_snapshot(target)
+    with pytest.raises(RuntimeError, match="has no UV map"):
+        carry()
+    assert mesh_snapshot(target) == before
+
+
+def test_too_many_layers(pair):
+    for number in range(8):
+        pair[1].data.uv_layers.new(name=f"Layer {number}")
+    with pytest.raises(RuntimeError, match="would have 9 UV maps"):
+        carry()
+
+
+def test_uvs_that_are_no_numbers_change_nothing(pair):
+    source, target = pair
+    source.data.uv_layers[0].uv[3].vector = (float("nan"), 0)
+    before = mesh_snapshot(target)
+    with pytest.raises(RuntimeError, match="not finite"):
+        carry()
+    assert mesh_snapshot(target) == before

@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the sidebar shows."""
+
+from __future__ import annotations
+
+from itertools import product
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from hiermatch.hiermatch_addon.panels import match_panels as panels
+from hiermatch.hiermatch_addon.panels import retarget_panels
+from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, SETTING_NAMES
+from hiermatch.hiermatch_addon.properties.setting_groups import shown_groups
+
+from tests.addon.scenes import QUICK, add_pair, snapshot
+
+KINDS = ("weights", "shape_keys", "uvs", "attributes")
+ELSEWHERE = {f"hiermatch.{name}" for name in ("swap", "clear", "add_demo_pair", "export_match", "import_match")}
+"""Buttons of what is done at once."""
+
+
+class Layout:
+    """A layout that notes what is drawn into it."""
+
+    def __init__(self, drawn):
+        self.__dict__.update(drawn=drawn)
+
+    def _part(self, *_arguments, **_names):
+        return Layout(self.drawn)
+
+    row = column = split = box = _part
+
+    def panel(self, name, *, default_closed):
+        self.drawn.append(("panel", name, default_closed))
+        return self._part(), self._part()
+
+    def label(self, *, text, **_names):
+        self.drawn.append(("label", text))
+
+    def prop(self, owner, name, **_names):
+        assert name in owner.bl_rna.properties, name
+        self.drawn.append(("prop", name))
+
+    def operator_menu_enum(self, name, prop, *, text):
+        group, operator = name.split(".")
+        assert prop in getattr(getattr(bpy.ops, group), operator).get_rna_type().properties
+        self.drawn.append(("menu", name, text))
+
+    def progress(self, *, text, factor):
+        self.drawn.append(("progress", text, factor))
+
+    def operator(self, name, **names):
+        group, operator = name.split(".")
+        assert operator in dir(getattr(bpy.ops, group)), name
+        self.drawn.append(("operator", name) if "depress" not in names else ("switch", name, names["depress"]))
+        return self.__dict__.setdefault("properties", SimpleNamespace())
+
+
+@pytest.fixture
+def context():
+    shading = SimpleNamespace(type="SOLID", color_type="MATERIAL", bl_rna=bpy.types.View3DShading.bl_rna)
+    return SimpleNamespace(
+        scene=bpy.context.scene,
+        view_layer=bpy.context.view_layer,
+        window_manager=bpy.context.window_manager,
+        region=SimpleNamespace(width=280),
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+        space_data=SimpleNamespace(shading=shading),
+    )
+
+
+def draw(context):
+    drawn = []
+    panel = SimpleNamespace(layout=Layout(drawn))
+    panels.HIERMATCH_PT_match.draw(panel, context)
+    return drawn
+
+
+def texts(drawn):
+    return " ".join(entry[1] for entry in drawn if entry[0] == "label")
+
+
+SPECTRAL = {"eigenfunctions": ("EIGENFUNCTIONS",), "eigenpairs": ("HEAT_KERNEL", "WAVE_KERNEL", "EIGENFUNCTIONS")}
+
+
+def shown_settings(context):
+    return [entry[1] for entry in draw(context) if entry[0] == "prop" and entry[1] in SETTING_NAMES]
+
+
+def test_everything_that_can_be_set_is_there_once(context):
+    state, seen = context.scene.hiermatch, set()
+    choices = [("metric", ("GEODESIC", "DIFFUSION")), ("descriptor", ("HISTOGRAM", "EIGENFUNCTIONS"))]
+    for values in product(*(values for _, values in choices)):
+        for (name, _), value in zip(choices, values, strict=True):
+            setattr(state, name, value)
+        props = [entry[1] for entry in draw(context) if entry[0] == "prop"]
+        assert len(props) == len(set(props))
+        seen.update(props)
+    assert seen >= {"source", "target", *OPTION_NAMES}
+
+
+def test_all_settings_but_two_are_tucked_away(context):
+    drawn = draw(context)
+    advanced = drawn.index(("panel", "hiermatch_advanced", True))
+    for name in shown_settings(context):
+        assert (drawn.index(("prop", name)) > advanced) == (name not in ("points", "dense"))
+
+
+def test_only_settings_that_matter_are_shown(context):
+    state = context.scene.hiermatch
+    always = {"points", "metric", "descriptor", "coarse_points", "samples", "neighbourhood", "linear_weight"}
+    metrics = [item.identifier for item in state.bl_rna.properties["metric"].enum_items]
+    descriptors = [item.identifier for item in state.bl_rna.properties["descriptor"].enum_items]
+    for state.metric, state.descriptor in product(metrics, descriptors):
+        shown = set(shown_settings(context))
+        assert shown >= always
+        diffusion, descriptor = state.metric == "DIFFUSION", state.descriptor
+        assert ("diffusion_time" in shown) == diffusion
+        assert {"comparison", "histogram_bins"} <= shown or descriptor in ("HEAT_KERNEL", "WAVE_KERNEL")
+        assert not {"comparison", "histogram_bins"} & shown or descriptor in ("HISTOGRAM", "EIGENFUNCTIONS")
+        assert ("eigenfunctions" in shown) == (descriptor in SPECTRAL["eigenfunctions"])
+        assert ("eigenpairs" in shown) == (diffusion or descriptor in SPECTRAL["eigenpairs"])
+
+
+def test_a_new_setting_is_shown_without_further_ado(context, monkeypatch):
+    monkeypatch.setattr(
+        "hiermatch.hiermatch_addon.properties.setting_groups.SETTING_NAMES", (*SETTING_NAMES, "use_mirrored")
+    )
+    assert shown_groups(context.scene.hiermatch)[0][1][-1] == "use_mirrored"
+
+
+def test_the_groups_have_headings(context):
+    shown = texts(draw(context))
+    for title in ("Metric and Descriptor", "Coarse Match", "Refinement"):
+        assert title in shown
+
+
+def test_the_setup_is_named(context):
+    state = context.scene.hiermatch
+    assert ("menu", "hiermatch.use_setup", "Geodesic Histograms") in draw(context)
+    state.metric, state.descriptor = "DIFFUSION", "HEAT_KERNEL"
+    assert ("menu", "hiermatch.use_setup", "Heat Kernel Signatures") in draw(context)
+    state.descriptor = "WAVE_KERNEL"
+    assert ("menu", "hiermatch.use_setup", "Custom") in draw(context)
+
+
+def test_all_buttons_are_there(context):
+    operators = [entry[1] for entry in draw(context) if entry[0] == "operator"]
+    assert operators == [
+        "hiermatch.swap",
+        "hiermatch.match",
+        "hiermatch.clear",
+        "hiermatch.add_demo_pair",
+        "hiermatch.export_match",
+        "hiermatch.import_match",
+    ]
+
+
+def test_the_button_carries_the_options_of_the_scene(context, monkeypatch):
+    carried = SimpleNamespace()
+    monkeypatch.setattr(Layout, "operator", lambda *_arguments, **_names: carried)
+    context.scene.hiermatch.points = 33
+    context.scene.hiermatch.prefix = "Mine"
+    draw(context)
+    assert {name: getattr(carried, name) for name in OPTION_NAMES} == {
+        name: getattr(context.scene.hiermatch, name) for name in OPTION_NAMES
+    }
+    assert (carried.points, carried.prefix) == (33, "Mine")
+
+
+def test_it_says_what_to_do_until_there_are_two_meshes(context):
+    assert "Pick two meshes" in texts(draw(context))
+    pair = add_pair()
+    assert "Pick two meshes" in texts(draw(context))
+    for obj in pair:
+        obj.select_set(state=True)
+    assert "Pick two meshes" not in texts(draw(context))
+    bpy.ops.object.select_all(action="DESELECT")
+    context.scene.hiermatch.source, context.scene.hiermatch.target = pair
+    assert "Pick two meshes" not in texts(draw(context))
+
+
+def test_while_a_match_runs_there_are_a_bar_and_a_way_out(context):
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_match", panel="HIERMATCH_PT_match")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
+    drawn = draw(context)
+    assert ("progress", "Measuring", 0.4) in drawn
+    assert ("operator", "hiermatch.cancel") in drawn
+    assert ("operator", "hiermatch.match") not in drawn
+
+
+def test_while_something_else_runs_the_bar_is_where_it_was_started(context):
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_retarget", panel="HIERMATCH_PT_retarget")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
+    drawn = draw(context)
+    assert not [entry for entry in drawn if entry[0] == "progress" or entry == ("operator", "hiermatch.cancel")]
+    assert "HierMatch is at work" in texts(drawn)
+    assert ("operator", "hiermatch.match") in drawn
+
+
+def test_a_button_that_starts_a_job_is_its_name_while_one_runs(context):
+    """Else Blender draws it as disabled afterwards, as long as the mouse stays on it."""
+    context.scene.hiermatch.summary.points, context.scene.hiermatch.summary.has_mirrored = 5, True
+
+    def starters():
+        drawn = draw(context)
+        retarget_panels.HIERMATCH_PT_retarget.draw(
+            SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_retarget"), context
+        )
+        return {name for kind, name, *_ in drawn if kind in ("operator", "switch")} - ELSEWHERE
+
+    jobs = {"fit_rig", "flip", "retarget", "wrap", *(f"transfer_{kind}" for kind in KINDS)}
+    assert starters() == {f"hiermatch.{job}" for job in (*jobs, "match")}
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_flip", panel="HIERMATCH_PT_match")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
+    assert starters() == {"hiermatch.retarget", "hiermatch.cancel"}
+
+
+@pytest.mark.parametrize("name", ["HIERMATCH_OT_pick_landmarks", "HIERMATCH_OT_export_match"])
+def test_what_waits_for_clicks_or_a_name_is_no_work(context, name):
+    waiting = SimpleNamespace(bl_idname=name)
+    context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[waiting])])
+    drawn = draw(context)
+    assert ("operator", "hiermatch.match") in drawn
+    assert "HierMatch is at work" not in texts(drawn)
+
+
+def test_the_last_result(context):
+    add_pair()
+    assert "matched" not in texts(draw(context))
+    bpy.ops.hiermatch.match(source="Source", target="Target", **QUICK)
+    shown = texts(draw(context))
+    assert "12 points matched" in shown
+    assert "Source Source Target Target" in shown
+    assert "optimum proven" in shown
+    assert "kept" in shown
+    assert "Worst Point" in shown
+
+
+def test_what_is_not_proven_and_what_is_mirrored(context):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.proven, summary.gap, summary.orientation = 5, False, 0.25, -0.8
+    summary.notes = "The source has two parts.\nMind the gap."
+    drawn = draw(context)
+    shown = texts(drawn)
+    assert ("panel", "hiermatch_notes", True) in drawn
+    assert "2 notes" in shown
+    assert "within 25% of the best" in shown
+    assert "exchanged (-0.80)" in shown
+    assert "The source has two parts." in shown
+    assert "Mind the gap." in shown
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_the_switch_between_two_answers(context, mirrored):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.has_mirrored, summary.mirrored = 5, True, mirrored
+    drawn = draw(context)
+    assert ("switch", "hiermatch.flip", mirrored) in drawn
+    assert "Mirrored Match" not in texts(drawn)
+    summary.has_mirrored = False
+    drawn = draw(context)
+    assert not [entry for entry in drawn if entry[0] == "switch"]
+    assert "Mirrored Match none" in texts(drawn)
+
+
+def test_how_far_the_dense_map_can_be_trusted(context):
+    summary = context.scene.hiermatch.summary
+    summary.points = 5
+    assert "Confidence" not in texts(draw(context))
+    summary.verdict, summary.confidence, summary.stretch = "The map can be trusted.", 0.874, 0.123
+    shown = texts(draw(context))
+    assert "The map can be trusted." in shown
+    assert "Confidence 87%" in shown
+    assert "Distortion 12%" in shown
+    assert "Worst Point" not in shown
+
+
+def test_a_match_that_is_out_of_date(context):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.stale = 5, 'The match is out of date: "Cat" was edited since.'
+    assert "The match is out of date" in texts(draw(context))
+    summary.points = 0
+    assert "The match is out of date" not in texts(draw(context))
+
+
+def test_no_time_is_shown_if_none_is_known(context):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.seconds = 5, 0.0
+    assert "Time" not in texts(draw(context))
+    summary.seconds = 1.24
+    assert "Time 1.2 s" in texts(draw(context))
+
+
+def test_drawing_changes_nothing(context):
+    add_pair()
+    bpy.ops.hiermatch.match(source="Source", target="Target", **QUICK)
+    before = snapshot()
+    draw(context)
+    assert snapshot() == before
+
+
+def test_long_names_of_numbers_stand_inside_their_fields(context, monkeypatch):
+    """A usual sidebar has no room for them beside the fields."""
+    split = {}
+    monkeypatch.setattr(
+        Layout, "prop", lambda self, _owner, name, **_names: split.update({name: self.use_property_split})
+    )
+    monkeypatch.setattr(Layout, "use_property_split", True, raising=False)
+    draw(context)
+    assert not split["coarse_candidates"]
+    assert split["metric"]
+    assert split["settle"]

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from hiermatch.hiermatch_addon.scene.armatures import find_armature, read_rig, read_skeleton
+from mathutils import Matrix
+
+from tests.addon.rigs import add_armature, add_rigged, pose
+from tests.addon.scenes import add_blob
+from tests.skeletons import CONTROLS, creature_bones, creature_weights
+
+IMPORTED = Matrix.Translation((1, 2, 3)) @ Matrix.Rotation(np.pi / 2, 4, "X") @ Matrix.Scale(0.01, 4)
+"""What files of other programs often come with."""
+
+
+def test_the_modifiers_armature_counts_before_the_parent():
+    obj, armature = add_rigged()
+    other = add_armature("Other")
+    obj.parent = other
+    assert find_armature(obj) == armature
+    obj.modifiers.clear()
+    assert find_armature(obj) == other
+    obj.parent = None
+    assert find_armature(obj) is None
+
+
+def test_a_modifier_without_an_armature_is_passed_over():
+    obj, armature = add_rigged()
+    obj.modifiers.new("Empty", "ARMATURE")
+    obj.modifiers.move(1, 0)
+    assert find_armature(obj) == armature
+
+
+def test_a_rig_is_read_as_it_was_made():
+    obj, armature = add_rigged()
+    rig = read_rig(obj)
+    names, parents, heads, tails = creature_bones()
+    order = [names.index(name) for name in rig.names]
+    assert rig.armature_name == armature.name
+    assert sorted(order) == list(range(len(names)))
+    np.testing.assert_allclose(rig.skeleton.heads, heads[order], atol=1e-6)
+    np.testing.assert_allclose(rig.skeleton.tails, tails[order], atol=1e-6)
+    for bone, number in enumerate(order):
+        parent = rig.skeleton.parents[bone]
+        assert (order[parent] if parent >= 0 else -1) == parents[number]
+    rest = np.array([vertex.co for vertex in obj.data.vertices])
+    np.testing.assert_allclose(rig.weights.toarray(), creature_weights(rest)[:, order].toarray(), atol=1e-5)
+
+
+def test_bones_are_read_in_the_world_and_at_rest():
+    obj, armature = add_rigged(matrix=IMPORTED)
+    before = read_rig(obj)
+    pose(armature)
+    rig = read_rig(obj)
+    np.testing.assert_array_equal(rig.skeleton.heads, before.skeleton.heads)
+    bone = armature.data.bones["head"]
+    tail = rig.skeleton.tails[rig.names.index("head")]
+    np.testing.assert_allclose(tail, IMPORTED @ bone.tail_local, atol=1e-6)
+    np.testing.assert_array_equal(read_skeleton(armature).tails, rig.skeleton.tails)
+
+
+def test_weights_sum_to_one_over_the_bones_that_deform():
+    obj, _ = add_rigged()
+    obj.vertex_groups.new(name="Selection").add(range(len(obj.data.vertices)), 0.7, "REPLACE")
+    obj.vertex_groups.new(name="root").add([0], 1.0, "REPLACE")  # a control, whose weight moves nothing
+    for group in obj.vertex_groups:
+        group.remove([3])
+    rig = read_rig(obj)
+    totals = np.asarray(rig.weights.sum(axis=1)).ravel()
+    np.testing.assert_allclose(np.delete(totals, 3), 1, atol=1e-6)
+    assert totals[3] == 0
+    for name in CONTROLS:
+        assert rig.weights[:, [rig.names.index(name)]].nnz == 0
+
+
+def test_there_is_no_rig_without_an_armature_or_weights():
+    obj, _ = add_rigged()
+    obj.vertex_groups.clear()
+    assert read_rig(obj) is None
+    obj.vertex_groups.new(name="head")
+    assert read_rig(obj) is None
+    assert read_rig(add_blob("Blob")) is None
+    assert bpy.data.armatures
