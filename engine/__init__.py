@@ -3,9 +3,12 @@
 
 from .dense.densify import DenseMatch, densify, densify_steps
 from .dense.quality import MatchQuality
-from .hierarchical.settings import MatchSettings
+from .geometry.geodesics import GeodesicSolver
+from .geometry.voronoi_labels import nearest_regions
+from .hierarchical.settings import SETUPS, MatchSettings
 from .hierarchical.sparse_result import CoarseMatch, Level
 from .matching.matching import match, match_steps
+from .matching.refinement import distortion_after, placed_by_map, refine_map, refine_map_steps
 from .matching.result import MatchResult
 from .matching.retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
 from .matching.symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
@@ -18,28 +21,41 @@ from .mesh.triangle_mesh import TriangleMesh
 from .retarget.morphing import in_between
 from .retarget.rig.fitted_rig import FittedRig
 from .retarget.rig.joint_placement import PlacedJoints, place_joints
-from .retarget.rig.rest_pose import RestPose, rest_pose
+from .retarget.rig.rest_pose import RestPose, is_posed, rest_pose
 from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
 from .retarget.rig.skeleton import Skeleton
+from .retarget.values.attribute_transfer import CarriedValues, Crossing, Domain, carry_values_steps
+from .retarget.values.corner_transfer import carry_normals
 from .retarget.values.deformation_gradients import LocalFrames, bone_frames, surface_frames
-from .retarget.values.shape_key_transfer import carry_offsets_steps
+from .retarget.values.face_correspondence import FacePlaces
+from .retarget.values.face_transfer import carry_face_values
+from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
 from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
 from .retarget.weights.skin_weights import carried as carry_weights
-from .retarget.weights.weight_transfer import CarriedWeights, carry_weights_steps
-from .retarget.wrapping import WrappedSurface, wrap_steps
+from .retarget.weights.skin_weights import row_sums
+from .retarget.weights.weight_transfer import CarriedWeights, Columns, carry_weights_steps, put_in
+from .retarget.wrapping import WrappedSurface, kept_in_place, wrap_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
-from .runtime.progress import Progress, run
-from .runtime.worker import use_processes
+from .runtime.progress import Progress, Steps, run, within
+from .runtime.worker import close_helpers, use_processes
 from .shapes.shape import Shape
+from .shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
 
 __all__ = [
+    "SETUPS",
     "CarriedUVs",
+    "CarriedValues",
     "CarriedWeights",
     "ClosestPoints",
     "CoarseMatch",
+    "Columns",
+    "Crossing",
     "DenseMatch",
+    "Domain",
+    "FacePlaces",
     "FittedRig",
+    "GeodesicSolver",
     "HierMatchError",
     "Level",
     "LocalFrames",
@@ -56,9 +72,12 @@ __all__ = [
     "RetrievalSettings",
     "RetrievedMatch",
     "RigError",
+    "Scaling",
     "SettingsError",
     "Shape",
     "Skeleton",
+    "Steps",
+    "SurfaceDistances",
     "SurfaceMap",
     "SurfacePoints",
     "Symmetriser",
@@ -66,27 +85,42 @@ __all__ = [
     "TriangleMesh",
     "WrappedSurface",
     "bone_frames",
+    "carry_face_values",
+    "carry_normals",
     "carry_offsets_steps",
     "carry_uvs_steps",
+    "carry_values_steps",
     "carry_weights",
     "carry_weights_steps",
+    "close_helpers",
     "densify",
     "densify_steps",
+    "distortion_after",
     "find_symmetry",
     "find_symmetry_steps",
     "fit_rig",
     "fit_rig_steps",
     "in_between",
+    "is_posed",
+    "kept_in_place",
     "match",
     "match_steps",
+    "nearest_regions",
     "place_joints",
+    "placed_by_map",
+    "put_in",
+    "refine_map",
+    "refine_map_steps",
     "rest_pose",
     "retrieve",
     "retrieve_steps",
+    "row_sums",
     "run",
     "surface_frames",
     "symmetry_map",
     "symmetry_map_steps",
+    "to_all_vertices_steps",
     "use_processes",
+    "within",
     "wrap_steps",
 ]

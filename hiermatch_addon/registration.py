@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import bpy
 
-from ..engine.runtime.worker import close_helpers
+from ..engine import close_helpers
 from .command_line import register_command, unregister_command
 from .common.translations import register_translations, unregister_translations
 from .operators.cancel import HIERMATCH_OT_cancel

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import bpy
 
+from .command import COMMAND
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["COMMAND", "register_command", "run_command", "unregister_command"]
-
-COMMAND: Final = "hiermatch"
-"""What follows ``blender --command``."""
+__all__ = ["register_command", "run_command", "unregister_command"]
 
 _handles: Final[list[Any]] = []
 """The one thing that Blender hands out and nobody else keeps: without it the command cannot be unregistered."""

@@ -7,8 +7,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .command import EXIT_CODES, ExitCode, UsageError
 from .console import Console, interruptible
-from .exit_codes import EXIT_CODES, ExitCode, UsageError
 from .ledger import Ledger, counts, summary_rows
 from .manifest import COMMANDS, read_manifest, take_shard
 from .meshes import mesh_argument

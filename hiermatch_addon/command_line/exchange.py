@@ -13,7 +13,7 @@ from ..properties.panel_state import state_of
 from ..properties.summary import remember
 from ..storage.match_exchange import apply_match, collect_match
 from ..storage.match_file import load_match, save_match
-from .exit_codes import EXIT_CODES
+from .command import EXIT_CODES
 from .match import add_pair_arguments, load_pair
 from .outputs import output_argument, save
 from .reports import add_report_options, run_reported
@@ -21,8 +21,8 @@ from .reports import add_report_options, run_reported
 if TYPE_CHECKING:
     import argparse
 
+    from .command import ExitCode
     from .console import Console
-    from .exit_codes import ExitCode
     from .reports import Report
 
 __all__ = ["add_commands"]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..common.errors import ObjectError
-from .exit_codes import UsageError
+from .command import UsageError
 from .options import option_names, to_arguments
 from .retarget import NOT_OF_THE_MATCH
 

@@ -16,8 +16,8 @@ from ..properties.summary import remember
 from ..storage import writing
 from ..storage.match_exchange import collect_match
 from ..storage.match_file import save_match
+from .command import EXIT_CODES, ExitCode
 from .console import Console, drive
-from .exit_codes import EXIT_CODES, ExitCode
 from .meshes import load_meshes, mesh_argument
 from .options import add_options, chosen_options, given_options
 from .outputs import output_argument, save

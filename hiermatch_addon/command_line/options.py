@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import bpy
 import numpy as np
 
-from .exit_codes import UsageError
+from .command import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping

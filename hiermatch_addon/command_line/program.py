@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from ...engine import HierMatchError
 from . import batch, exchange, match, retarget, symmetry
+from .command import EXIT_CODES, ExitCode, UsageError
 from .console import Console
-from .exit_codes import EXIT_CODES, ExitCode, UsageError
 from .options import Parser
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ import bpy
 from ...engine import HierMatchError
 from ..common.access import mesh_of
 from ..common.file_writing import write_whole
+from .command import ExitCode
 from .console import Console, interruptible
-from .exit_codes import ExitCode
 
 if TYPE_CHECKING:
     import argparse

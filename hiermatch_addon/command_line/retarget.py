@@ -14,8 +14,8 @@ from ..properties.panel_state import state_of
 from ..properties.summary import remember
 from ..transfers.options.retarget import chosen_transfers
 from ..transfers.retarget_properties import remember_transfer
+from .command import EXIT_CODES
 from .console import drive
-from .exit_codes import EXIT_CODES
 from .match import add_pair_arguments, add_result_options, load_pair, save_results, warn_if_nothing_is_written
 from .options import add_options, chosen_options, given_options
 from .reports import add_report_options, run_reported
@@ -23,8 +23,8 @@ from .reports import add_report_options, run_reported
 if TYPE_CHECKING:
     import argparse
 
+    from .command import ExitCode
     from .console import Console
-    from .exit_codes import ExitCode
     from .reports import Report
 
 __all__ = ["NOT_OF_THE_MATCH", "add_commands"]

@@ -17,8 +17,8 @@ from ..storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, W
 from ..storage.vertex_maps import StoredMaps
 from ..transfers.options.symmetrise import symmetrise_settings
 from ..transfers.symmetrise import SymmetriseJob
+from .command import EXIT_CODES
 from .console import drive
-from .exit_codes import EXIT_CODES
 from .match import add_result_options
 from .meshes import load_meshes, mesh_argument
 from .options import add_options, chosen_options, given_options
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     import argparse
 
     from ...engine import DenseMatch, TriangleMesh
+    from .command import ExitCode
     from .console import Console
-    from .exit_codes import ExitCode
     from .reports import Report
 
 __all__ = ["add_commands"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from . import COMMAND
+from .command import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

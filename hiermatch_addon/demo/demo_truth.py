@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
-from ...engine import TriangleMesh
-from ...engine.geometry.geodesics import GeodesicSolver
+from ...engine import GeodesicSolver, TriangleMesh
 from ..common.access import mesh_of
 from ..scene.mesh_io import read_mesh
 from .demo_pair import REST_ATTRIBUTE

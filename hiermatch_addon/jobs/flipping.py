@@ -7,9 +7,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ...engine import Shape, densify_steps
-from ...engine.runtime.progress import within
-from ...engine.shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
+from ...engine import Shape, SurfaceDistances, densify_steps, to_all_vertices_steps, within
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..scene.mesh_io import read_mesh
@@ -26,8 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ...engine import SurfacePoints, TriangleMesh
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps, SurfacePoints, TriangleMesh
     from ..storage.contents import Content
     from ..storage.halves import Half
 

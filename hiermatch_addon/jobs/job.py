@@ -9,9 +9,16 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...engine import MatchSettings, Progress, SettingsError, densify_steps, match_steps
-from ...engine.matching.refinement import distortion_after, placed_by_map
-from ...engine.runtime.progress import within
+from ...engine import (
+    MatchSettings,
+    Progress,
+    SettingsError,
+    densify_steps,
+    distortion_after,
+    match_steps,
+    placed_by_map,
+    within,
+)
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..properties.properties import match_settings
@@ -26,8 +33,7 @@ from ..storage.vertex_maps import StoredMaps, add_maps
 from .stepped_job import SteppedJob
 
 if TYPE_CHECKING:
-    from ...engine import DenseMatch, MatchResult
-    from ...engine.runtime.progress import Steps
+    from ...engine import DenseMatch, MatchResult, Steps
     from ..properties.properties import MatchOptions
     from ..storage.contents import Content
     from ..storage.vertex_maps import MapPair

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from ...engine import symmetry_map_steps
-from ...engine.runtime.progress import within
+from ...engine import symmetry_map_steps, within
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..scene.mesh_io import position_digest, read_mesh, topology
@@ -22,8 +21,7 @@ from .stepped_job import SteppedJob
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...engine import TriangleMesh
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps, TriangleMesh
     from ..storage.landmarks import Landmark
 
 __all__ = ["MirrorJob"]

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...engine import Progress
-from ...engine.matching.refinement import refine_map_steps
-from ...engine.runtime.progress import within
+from ...engine import Progress, refine_map_steps, within
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..scene.mesh_io import read_mesh
@@ -26,7 +24,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps
     from ..storage.halves import Half
 
 __all__ = ["RefineJob"]

@@ -12,7 +12,7 @@ from ...engine import Progress
 if TYPE_CHECKING:
     import bpy
 
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps
 
 __all__ = ["SteppedJob"]
 

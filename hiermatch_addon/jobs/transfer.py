@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     import bpy
 
-    from ...engine import FittedRig
-    from ...engine.runtime.progress import Steps
+    from ...engine import FittedRig, Steps
     from ..storage.vertex_maps import MapPair
 
 __all__ = ["Passage", "Transfer", "TransferReport"]

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...engine import HierMatchError, Progress, fit_rig_steps
-from ...engine.runtime.progress import within
+from ...engine import HierMatchError, Progress, fit_rig_steps, within
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..scene.armatures import read_rig
@@ -26,8 +25,7 @@ from .transfer import Passage, TransferReport
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ...engine import TriangleMesh
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps, TriangleMesh
     from ..scene.armatures import SourceRig
     from .job import JobOptions, Outcome
     from .transfer import Transfer

@@ -6,8 +6,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, Final
 
-from ...engine import MatchSettings
-from ...engine.hierarchical.settings import SETUPS
+from ...engine import SETUPS, MatchSettings
 from .properties import set_settings, setting_of, to_identifier
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from .armatures import armature_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from ...engine.retarget.rig.joint_placement import PlacedJoints
+    from ...engine import PlacedJoints
 
 __all__ = ["copy_armature", "move_joints", "repoint"]
 

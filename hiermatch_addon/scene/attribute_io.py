@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...engine.mesh.polygons import Polygons
+from ...engine import Polygons
 from ..common.access import mesh_of
 
 if TYPE_CHECKING:

@@ -6,9 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...engine import Progress
-from ...engine.matching.refinement import distortion_after, placed_by_map
-from ...engine.runtime.progress import run, within
+from ...engine import Progress, distortion_after, placed_by_map, run, within
 from . import writing
 from .contents import contents_steps
 from .stored_match import CornerPoints, Quality
@@ -19,8 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ...engine import DenseMatch, SurfacePoints, TriangleMesh
-    from ...engine.runtime.progress import Steps
+    from ...engine import DenseMatch, Steps, SurfacePoints, TriangleMesh
     from .contents import Content
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ...engine import Progress
-from ...engine.runtime.progress import run
+from ...engine import Progress, run
 from .views import colors
 from .views.stretch import DOUBLED, vertex_stretch
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps
     from .vertex_maps import MapPair
 
 __all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents", "contents_steps"]

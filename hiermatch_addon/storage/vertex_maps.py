@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...engine import MeshError, SurfaceMap, SurfacePoints
-from ...engine.mesh.closest_points import ClosestPoints
+from ...engine import ClosestPoints, MeshError, SurfaceMap, SurfacePoints
 from ..scene.mesh_io import read_values
 
 if TYPE_CHECKING:

@@ -7,11 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine.retarget.values.attribute_transfer import Crossing, carry_values_steps
-from ...engine.retarget.values.corner_transfer import carry_normals
-from ...engine.retarget.values.deformation_gradients import surface_frames
-from ...engine.retarget.values.face_transfer import carry_face_values
-from ...engine.runtime.progress import Progress, within
+from ...engine import Crossing, Progress, carry_face_values, carry_normals, carry_values_steps, surface_frames, within
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted
@@ -36,9 +32,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.mesh.polygons import Polygons
-    from ...engine.retarget.values.attribute_transfer import Domain
-    from ...engine.runtime.progress import Steps
+    from ...engine import Domain, Polygons, Steps
     from ..jobs.transfer import Passage
     from ..scene.attribute_io import AttributeLayout
     from .options.attributes import AttributeSettings

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ...engine.retarget.rig.joint_placement import place_joints
-from ...engine.retarget.rig.rest_pose import is_posed, rest_pose
-from ...engine.runtime.progress import Progress
+from ...engine import Progress, is_posed, place_joints, rest_pose
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
@@ -26,9 +24,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.retarget.rig.joint_placement import PlacedJoints
-    from ...engine.retarget.rig.rest_pose import RestPose
-    from ...engine.runtime.progress import Steps
+    from ...engine import PlacedJoints, RestPose, Steps
     from ..jobs.transfer import Passage
     from .options.rig import RigSettings
 

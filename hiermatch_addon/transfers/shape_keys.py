@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine.retarget.values.deformation_gradients import bone_frames, surface_frames
-from ...engine.retarget.values.shape_key_transfer import carry_offsets_steps
+from ...engine import bone_frames, carry_offsets_steps, surface_frames
 from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps
     from ..jobs.transfer import Passage
     from .options.shape_keys import ShapeKeySettings
 

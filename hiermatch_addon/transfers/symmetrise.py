@@ -11,9 +11,7 @@ import bpy
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...engine import Progress, symmetry_map_steps
-from ...engine.retarget.values.symmetrising import Symmetriser
-from ...engine.runtime.progress import within
+from ...engine import Progress, Symmetriser, symmetry_map_steps, within
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted
@@ -40,7 +38,7 @@ from .wrap import wrap_key_name
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps
     from .options.symmetrise import SymmetriseSettings
 
 __all__ = ["SymmetriseJob"]

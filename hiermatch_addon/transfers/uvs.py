@@ -5,9 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...engine.retarget.values.face_correspondence import FacePlaces
-from ...engine.retarget.values.uv_transfer import carry_uvs_steps
-from ...engine.runtime.progress import Progress, within
+from ...engine import FacePlaces, Progress, carry_uvs_steps, within
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted
@@ -25,9 +23,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.mesh.polygons import Polygons
-    from ...engine.retarget.values.uv_transfer import CarriedUVs
-    from ...engine.runtime.progress import Steps
+    from ...engine import CarriedUVs, Polygons, Steps
     from ..jobs.transfer import Passage
     from .options.uvs import UVSettings
 

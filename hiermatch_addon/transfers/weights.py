@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...engine.retarget.weights.skin_weights import row_sums
-from ...engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
+from ...engine import Columns, carry_weights_steps, put_in, row_sums
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps
     from ..jobs.transfer import Passage
     from .options.weights import WeightSettings
 

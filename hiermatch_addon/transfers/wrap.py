@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine.retarget.morphing import in_between
-from ...engine.retarget.wrapping import kept_in_place, wrap_steps
-from ...engine.runtime.progress import Progress, within
+from ...engine import Progress, in_between, kept_in_place, within, wrap_steps
 from ..common.access import mesh_of
 from ..jobs.transfer import TransferReport
 from ..scene.mesh_io import vertex_positions
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine.runtime.progress import Steps
+    from ...engine import Steps
     from ..jobs.transfer import Passage
     from .options.wrap import WrapSettings
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ....engine.geometry.voronoi_labels import nearest_regions
+from ....engine import nearest_regions
 from ...common.access import mesh_of
 from ...common.errors import ObjectError
 from ...scene.mesh_io import read_mesh

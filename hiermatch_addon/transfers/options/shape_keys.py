@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 if TYPE_CHECKING:
-    from ....engine.retarget.values.shape_key_transfer import Scaling
+    from ....engine import Scaling
 
 __all__ = ["ShapeKeyOptions", "ShapeKeySettings", "shape_key_settings"]
 

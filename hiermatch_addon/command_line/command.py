@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""With what the command ends."""
+"""Name of the command, and its exit codes."""
 
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Final
 
 from ...engine import HierMatchError
 
-__all__ = ["EXIT_CODES", "ExitCode", "UsageError"]
+__all__ = ["COMMAND", "EXIT_CODES", "ExitCode", "UsageError"]
+
+COMMAND: Final = "hiermatch"
+"""What follows ``blender --command``."""
 
 
 class ExitCode(IntEnum):
