@@ -144,11 +144,6 @@ class Pair:
         forbidden: NDArray[np.bool_] = of_landmark & (rows != columns)
         return forbidden
 
-    def keeps_landmarks(self, assignment: NDArray[np.int64]) -> bool:
-        """Say whether an assignment (n,) of sample numbers takes every landmark to its partner."""
-        count = min(self.landmarks, len(assignment))
-        return bool((assignment[:count] == np.arange(count)).all())
-
     def orientation_term(self, coarse: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
         """Penalise matches that do not keep (sign 1) or do not mirror (sign -1) the surface, (S, T).
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
 from ..shapes.enclosing_surface import separate_limbs, with_limbs_steps
+from ..shapes.landmarks import landmark_pairs
 from .partial_match import has_border
 from .pieced_body import PiecedBody, resized_share, torn_share, without_partner
 from .shape_matching import matched_steps
@@ -62,7 +63,13 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         The more credible one.
     x, y : Shape
         What was matched.
+
+    Raises
+    ------
+    MatchError
+        If landmarks are at fault, or neither the main parts nor the joined bodies can be matched.
     """
+    landmark_pairs(x, y, task.landmarks, task.settings.points)  # what is wrong with them is wrong for every part
     limbs = separate_limbs(x.surface.cleaned), separate_limbs(y.surface.cleaned)
     if not (limbs[0].any() or limbs[1].any()):
         return (yield from matched_steps(x, y, task)), x, y

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .prepared_surface import PreparedSurface
     from .shape import Shape
 
-__all__ = ["LandmarkPlaces", "Landmarks", "locate_landmarks", "placed_at_vertices"]
+__all__ = ["LandmarkPlaces", "Landmarks", "landmark_pairs", "locate_landmarks", "placed_at_vertices"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +85,34 @@ def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int) -> Landmar
         If they are no such pairs, are too many, name a vertex twice, one that does not exist, or one that is not on the
         main part of its mesh.
     """
-    array = np.asarray(pairs)
-    if array.size == 0:
+    array = landmark_pairs(x, y, pairs, most)
+    if not len(array):
         return None
+    source, target = array.T
+    return Landmarks(_places(x.surface, source, "source"), _places(y.surface, target, "target"))
+
+
+def landmark_pairs(x: Shape, y: Shape, pairs: ArrayLike | None, most: int) -> NDArray[np.int64]:
+    """Check what can be checked of landmarks before it is known which parts of the surfaces are matched.
+
+    Parameters
+    ----------
+    x, y, pairs, most
+        As in `locate_landmarks`; None stands for no landmarks.
+
+    Returns
+    -------
+    (k, 2) array of int
+        The pairs.
+
+    Raises
+    ------
+    MatchError
+        If they are no such pairs, are too many, name a vertex twice, or one that does not exist.
+    """
+    array = np.asarray([] if pairs is None else pairs)
+    if array.size == 0:
+        return np.empty((0, 2), np.int64)
     if array.ndim != 2 or array.shape[1] != 2 or not np.issubdtype(array.dtype, np.integer):
         raise MatchError(
             "Landmarks should be pairs of vertex numbers, first of the source and then of the target: whole numbers in "
@@ -98,8 +123,10 @@ def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int) -> Landmar
             f"{len(array)} landmarks are more than the {most} points that are matched. "
             "Use more points or fewer landmarks."
         )
-    source, target = array.astype(np.int64).T
-    return Landmarks(_places(x.surface, source, "source"), _places(y.surface, target, "target"))
+    array = array.astype(np.int64)
+    for surface, vertices, name in zip((x.surface, y.surface), array.T, ("source", "target"), strict=True):
+        _check_vertices(vertices, surface.original.vertex_count, name)
+    return array
 
 
 def placed_at_vertices(
@@ -112,9 +139,8 @@ def placed_at_vertices(
     return SurfacePoints.from_barycentric(mesh, triangles, barycentric)
 
 
-def _places(surface: PreparedSurface, vertices: NDArray[np.int64], name: str) -> LandmarkPlaces:
-    """Find landmarks on one mesh, or raise an error."""
-    count = surface.original.vertex_count
+def _check_vertices(vertices: NDArray[np.int64], count: int, name: str) -> None:
+    """Raise an error if vertices (k,) of a mesh of so many are named twice, or are none."""
     for bad in np.flatnonzero((vertices < 0) | (vertices >= count))[:1]:
         raise MatchError(
             f"Landmark {bad + 1} is at vertex {vertices[bad]} of the {name}, which has no such vertex: they are "
@@ -125,6 +151,10 @@ def _places(surface: PreparedSurface, vertices: NDArray[np.int64], name: str) ->
             f"Landmarks {first + 1} and {second + 1} are both at vertex {vertices[first]} of the {name}. "
             "Use a vertex for one landmark only."
         )
+
+
+def _places(surface: PreparedSurface, vertices: NDArray[np.int64], name: str) -> LandmarkPlaces:
+    """Find landmarks on one mesh, or raise an error."""
     for bad in np.flatnonzero(surface.cleaned.vertex_parts[vertices] != 0)[:1]:
         raise MatchError(
             f"Landmark {bad + 1} is at vertex {vertices[bad]} of the {name}, which is not on its main part, "

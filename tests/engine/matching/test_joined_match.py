@@ -150,3 +150,11 @@ def test_bodies_in_one_piece_are_matched_as_they_are(whole):
     assert x is shape
     assert y is shape
     assert result.distortion == pytest.approx(0, abs=1e-5)
+
+
+@pytest.mark.parametrize(("pairs", "fault"), [([[0, 10**9]], "no such vertex"), ([[3, 5], [3, 6]], "both at vertex 3")])
+def test_wrong_landmarks_are_said_before_anything_is_matched(pairs, fault, whole, modular, monkeypatch):
+    monkeypatch.setattr("engine.matching.joined_match.matched_steps", None)
+    shapes = Shape(whole[0]), Shape(modular.mesh)
+    with pytest.raises(MatchError, match=fault):
+        run(matched_with_pieces_steps(*shapes, MatchTask(QUICK, pairs)))
