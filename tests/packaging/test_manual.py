@@ -13,7 +13,7 @@ from tests.stories.blender_session import blender_session
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
 LARGEST_PICTURE = 150_000
 
 # Placeholders of GNU parallel and of the shell, and what they may stand for.
@@ -33,7 +33,7 @@ def headings(page):
 
 def links(page):
     """What a page links to and shows, but for other sites: file and anchor."""
-    found = re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", text(page))
+    found = re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", re.sub(r"```math.*?```", "", text(page), flags=re.DOTALL))
     return [(name, anchor) for name, anchor in found if "://" not in name]
 
 
@@ -69,13 +69,25 @@ def test_links_lead_somewhere(page):
 def test_all_pages_and_pictures_are_reached_and_pictures_are_small():
     reached = {(page.parent / name).resolve() for page in PAGES for name, _ in links(page) if name}
     pictures = list((DOCS / "images").iterdir())
-    assert {path.name for path in [*DOCS.glob("*.md"), *pictures]} <= {path.name for path in reached}
+    assert {*DOCS.rglob("*.md"), *pictures} <= reached
     assert [path.name for path in pictures if path.stat().st_size > LARGEST_PICTURE] == []
 
 
 def test_the_index_names_every_page():
     named = {name for name, _ in links(DOCS / "manual.md")}
     assert named >= {page.name for page in DOCS.glob("*.md")} - {"manual.md"}
+
+
+def test_the_index_of_the_method_names_every_page_of_it():
+    folder = DOCS / "method"
+    named = {name for name, _ in links(folder / "README.md")}
+    assert named >= {page.name for page in folder.glob("*.md")} - {"README.md"}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_modules_and_folders_that_are_named_are_there(page):
+    named = re.findall(r"`((?:engine|hiermatch_addon|tests|tools)/[\w./]*)`", text(page))
+    assert [name for name in named if not (ROOT / name).exists()] == []
 
 
 @pytest.mark.parametrize("block", python_blocks())
