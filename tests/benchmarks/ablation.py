@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What each mechanism of the dense match buys: fixed pairs of every kind, with each mechanism switched off in turn.
+
+Of each mechanism and kind of pair: the mean error with everything and without it, how many pairs become wrong, how many
+become right, how many maps change at all, and the seconds with and without.  All is done in one process, where what is
+switched off is off; so seconds are longer than a user's.
+
+    python -m tests.benchmarks.ablation --data FOLDER
+    python -m tests.benchmarks.ablation --data FOLDER --kinds near,pieces --mechanisms "rigid maps,limb sides"
+
+FOLDER holds the shapes with known truth that all benchmarks use, see `known_shapes`; long bodies are made here.
+"""
+
+import argparse
+import csv
+import time
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+from engine import HierMatchError, TriangleMesh, match, use_processes
+from tests.benchmarks.clothed import clothed, garments
+from tests.benchmarks.known_shapes import LOST, KnownShape, KnownShapes
+from tests.benchmarks.modular import as_it_is, ends_of, put_together
+from tests.benchmarks.partial_pairs import cut_off
+from tests.messes import partly_turned, without_faces
+from tests.shapes import capsule_surface
+
+WRONG = 0.03
+"""Share of places that are brought to another part of the body from which on a pair counts as wrong."""
+
+WHOLE = {
+    "near": ("cat0:cat1", "dog0:dog5", "michael1:michael19"),
+    "persons": ("tr_reg_002:tr_reg_017", "tr_reg_000:tr_reg_004", "tr_reg_023:tr_reg_008"),
+    "unlike": ("8_gorilla_01:8_man_01", "8_man_03:8_gorilla_03"),
+}
+"""Kind -> pairs by name, which are matched as they are."""
+
+OTHERS = ("cat2:cat8", "tr_reg_011:tr_reg_035")
+"""Pairs of which parts are cut off, and which are taken to pieces, clothed and broken."""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """Two meshes to be matched, each with the whole body and, for each vertex, that of the whole body, or -1."""
+
+    kind: str
+    name: str
+    bodies: tuple
+    meshes: tuple
+    wholes: tuple
+
+
+def returned(value):
+    """A computation in steps that is over at once."""
+    return value
+    yield
+
+
+def nothing(*_given, **_options):
+    return None
+
+
+def pieces_apart(x, y, task):
+    """Match main parts alone, and never join the pieces of a body."""
+    result = yield from import_module("engine.matching.shape_matching").matched_steps(x, y, task)
+    return result, x, y
+
+
+def without_starts(own):
+    """Propose maps without what the sparse match found."""
+    return lambda x, y, starts=(), *, search=True, **options: own(
+        x, y, () if search else starts, search=search, **options
+    )
+
+
+def agreeing_already(own):
+    """Follow the target once at last, and never go on in turns."""
+    return lambda follow, fit: _only_last(own, follow, fit)
+
+
+def _only_last(own, follow, fit):
+    with switched(("engine.dense.registered_hypotheses._DISAGREE", lambda _: ())):
+        return (yield from own(follow, fit))
+
+
+R, D, P = "engine.dense.registered_hypotheses", "engine.dense.dense_registration", "engine.registration.prolongation"
+MECHANISMS = {
+    "the paper's answers": [(f"{D}.map_hypotheses_steps", without_starts)],
+    "rigid maps": [("engine.dense.dense_hypotheses.rigid_maps", lambda _: lambda *_given: [])],
+    "matchings as they are": [(f"{D}.unrefined_hypotheses_steps", lambda _: lambda *_given: returned([]))],
+    "limb sides": [(f"{D}.repaired_start_steps", lambda _: lambda *_given: returned(None))],
+    "rolling back": [(f"{R}.Follower.rolled_back_steps", lambda _: lambda _self, candidate: returned([candidate]))],
+    "untwisting": [
+        (
+            f"{R}.untwisted",
+            lambda _: lambda _x, _s, _t, positions, _i=1.0: SimpleNamespace(positions=positions, otherwise=[]),
+        )
+    ],
+    "other windings": [(f"{R}.untwisted", lambda own: lambda *given: own(*given)._replace(otherwise=[]))],
+    "close contest": [(f"{D}._contenders", lambda own: lambda *given: own(*given)[:1])],
+    "agreeing in turns": [(f"{R}.Follower.settled_steps", agreeing_already)],
+    "softening by strain": [("engine.registration.registration._softened", lambda _: lambda elastic, *_given: elastic)],
+    "mended patches": [(f"{P}.with_patches_mended", lambda _: lambda _mesh, images, *_given: images)],
+    "untangling": [(f"{P}.untangle_steps", lambda _: lambda *_given, **_options: returned(None))],
+    "finer coarse shapes": [
+        ("engine.matching.shape_matching.finer_shapes_steps", lambda _: lambda x, y, _count: returned((x, y)))
+    ],
+    "joined pieces": [("engine.matching.matching.matched_with_pieces_steps", lambda _: pieces_apart)],
+    "parts": [("engine.matching.matching.part_matched_steps", lambda _: lambda result, *_given: returned(result))],
+    "spikes pulled in": [("engine.repair.cleaning._pull_in_spikes", lambda _: nothing)],
+    "pinched gaps": [("engine.repair.cleaning.pinched_gaps", lambda _: lambda *_given: np.empty(0, np.int64))],
+}
+"""Mechanism -> what is put in the place of what, made of the latter."""
+
+
+@contextmanager
+def switched(*patches):
+    """Put something in the place of attributes, given by module and name, for a while."""
+    with ExitStack() as undo:
+        for path, make in patches:
+            owner, name = owner_of(path)
+            own = getattr(owner, name)
+            setattr(owner, name, make(own))
+            undo.callback(setattr, owner, name, own)
+        yield
+
+
+def owner_of(path):
+    """The module or class that an attribute belongs to, and its name."""
+    where, _, name = path.rpartition(".")
+    try:
+        return import_module(where), name
+    except ModuleNotFoundError:
+        module, _, cls = where.rpartition(".")
+        return getattr(import_module(module), cls), name
+
+
+def cases(shapes, kinds):
+    """All pairs of some kinds."""
+    for kind in kinds:
+        yield from _whole(shapes, kind) if kind in WHOLE else _made(shapes, kind)
+
+
+def _whole(shapes, kind):
+    for name in WHOLE[kind]:
+        bodies = tuple(shapes.read(one) for one in name.split(":"))
+        meshes = tuple(body.mesh for body in bodies)
+        yield Case(kind, name, bodies, meshes, tuple(np.arange(mesh.vertex_count) for mesh in meshes))
+
+
+def _made(shapes, kind):
+    if kind == "long":
+        yield from _long_bodies()
+        return
+    for number, name in enumerate(OTHERS):
+        bodies = tuple(shapes.read(one) for one in name.split(":"))
+        random = np.random.default_rng(number)
+        first, second = (as_it_is(body.mesh) for body in bodies)
+        if kind == "parts":
+            part = cut_off(bodies[1].mesh, 0.6, number)
+            second = SimpleNamespace(mesh=part.mesh, whole=part.vertices)
+        elif kind == "pieces":
+            second = put_together(bodies[1], *ends_of(bodies[1], random), "capped")
+        elif kind == "clothed":
+            worn = garments(bodies[0], random)
+            first, second = (
+                SimpleNamespace(mesh=c.mesh, whole=np.where(c.pieces == 0, c.bare, -1))
+                for c in (clothed(body, worn) for body in bodies)
+            )
+        elif kind == "messy":
+            vertices, triangles = without_faces(bodies[1].mesh.vertices, bodies[1].mesh.triangles, 0.01, seed=number)
+            vertices, triangles = partly_turned(vertices, triangles, seed=number)
+            second = SimpleNamespace(mesh=TriangleMesh(vertices, triangles), whole=np.arange(len(vertices)))
+        else:
+            message = f"There is no kind {kind}."
+            raise ValueError(message)
+        yield Case(kind, name, bodies, (first.mesh, second.mesh), (first.whole, second.whole))
+
+
+def _long_bodies():
+    """A worm with a thin tail, a dent and a fin, straight, and meshed anew and bent."""
+    capsules = [((0, 0, 0), (2.6, 0, 0), 0.16, 0.05), ((0.1, 0, 0.05), (0.1, 0.0, 0.3), 0.05, 0.03)]
+    box = [[-0.4, -0.4, -0.4], [2.9, 0.4, 0.5]]
+    meshes, rests = [], []
+    for turn, bend in ((0.0, 0.0), (0.4, 0.9)):
+        rest, triangles = capsule_surface(capsules, box, 22, turn)
+        vertices = rest.copy()
+        angle = bend * rest[:, 0]
+        if bend:
+            vertices[:, 0] = (np.sin(angle) * (1 / bend - rest[:, 1])).ravel()
+            vertices[:, 1] = 1 / bend - np.cos(angle) * (1 / bend - rest[:, 1])
+        meshes.append(TriangleMesh(vertices, triangles))
+        rests.append(rest)
+    nearest = np.linalg.norm(rests[0][:, None] - rests[1], axis=2).argmin(axis=1)
+    places = np.arange(len(rests[0]))
+    bodies = (
+        KnownShape("worm", "made", meshes[0], places, places),
+        KnownShape("bent worm", "made", meshes[1], nearest, nearest),
+    )
+    yield Case("long", "worm:bent worm", bodies, tuple(meshes), tuple(np.arange(m.vertex_count) for m in meshes))
+
+
+def measured(case):
+    """Error x 100 / sqrt(area), share of lost places, seconds, and what tells maps apart."""
+    numbers = []
+    for body, whole in zip(case.bodies, case.wholes, strict=True):
+        found = np.full(body.mesh.vertex_count, -1)
+        found[whole[whole >= 0]] = np.flatnonzero(whole >= 0)
+        numbers.append(found[body.samples])
+    kept = (numbers[0] >= 0) & (numbers[1] >= 0)
+    start = time.perf_counter()
+    try:
+        result = match(*case.meshes)
+    except HierMatchError:
+        return 100.0, 1.0, time.perf_counter() - start, 0
+    seconds = time.perf_counter() - start
+    errors = []
+    for found, own, there in (
+        (result.source_to_target, 0, 1),
+        (result.target_to_source, 1, 0),
+    ):
+        images = case.wholes[there][found.nearest_vertices[numbers[own]]]
+        known = kept & (images >= 0)
+        errors.append(case.bodies[there].vertex_errors(images)[known])
+    errors = np.concatenate(errors)
+    return errors.mean(), (errors > LOST).mean(), seconds, hash(result.target_to_source.barycentric.tobytes())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True, help="folder with the shapes")
+    every = ("near", "persons", "unlike", "parts", "pieces", "clothed", "long", "messy")
+    parser.add_argument("--kinds", default=",".join(every), help="kinds of pairs (default %(default)s)")
+    parser.add_argument("--mechanisms", default=",".join(MECHANISMS), help="what to switch off (default: all in turn)")
+    parser.add_argument("--most", type=int, default=99, help="pairs of each kind at most")
+    parser.add_argument("--csv", type=Path, help="file to which each match is written")
+    options = parser.parse_args()
+    use_processes(1)
+    chosen = {}
+    for case in cases(KnownShapes(options.data), options.kinds.split(",")):
+        chosen.setdefault(case.kind, []).append(case)
+    chosen = {kind: of_kind[: options.most] for kind, of_kind in chosen.items()}
+    rows = []
+    print(f"{'switched off':24s} {'kind':9s} pairs   error  without  new wrong  new right  changed  seconds  without")
+    for kind, of_kind in chosen.items():
+        base = [measured(case) for case in of_kind]
+        for mechanism in options.mechanisms.split(","):
+            with switched(*MECHANISMS[mechanism]):
+                other = [measured(case) for case in of_kind]
+            rows += [(mechanism, kind, c.name, *b, *o) for c, b, o in zip(of_kind, base, other, strict=True)]
+            print(_row(mechanism, kind, base, other), flush=True)
+    if options.csv:
+        with options.csv.open("w", newline="") as file:
+            csv.writer(file).writerows(rows)
+
+
+def _row(mechanism, kind, base, other):
+    error, _, seconds, _ = np.mean(base, axis=0)
+    without, _, without_seconds, _ = np.mean(other, axis=0)
+    wrong, right = (
+        sum(b[1] <= WRONG < o[1] for b, o in zip(first, second, strict=True))
+        for first, second in ((base, other), (other, base))
+    )
+    changed = sum(b[3] != o[3] for b, o in zip(base, other, strict=True))
+    return (
+        f"{mechanism:24s} {kind:9s} {len(base):5d} {error:7.2f} {without:8.2f} {wrong:10d} {right:10d} {changed:8d}"
+        f" {seconds:8.1f} {without_seconds:8.1f}"
+    )
+
+
+if __name__ == "__main__":
+    main()
