@@ -89,7 +89,13 @@ class SurfaceMap:
 
     @classmethod
     def identity(cls, mesh: TriangleMesh) -> SurfaceMap:
-        """Map every vertex of a mesh to itself; every vertex must have a triangle."""
+        """Map every vertex of a mesh to itself.
+
+        Raises
+        ------
+        MeshError
+            If a vertex is in no triangle: there is no surface at it.
+        """
         return cls.from_points(mesh, SurfacePoints.at_vertices(mesh, np.arange(mesh.vertex_count)))
 
     def __len__(self) -> int:

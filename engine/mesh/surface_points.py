@@ -57,14 +57,24 @@ class SurfacePoints:
 
     @classmethod
     def at_vertices(cls, mesh: TriangleMesh, vertices: NDArray[np.int64]) -> SurfacePoints:
-        """Make points at vertices (k,), each in the first triangle around it that has one.
+        """Make points at vertices (k,), each in the first triangle around it.
 
-        Every vertex must have a triangle.
+        Raises
+        ------
+        MeshError
+            If a vertex is in no triangle: there is no surface at it.
         """
         first_corner = np.full(mesh.vertex_count, -1)
         flat = mesh.triangles.ravel()
         first_corner[flat[::-1]] = np.arange(len(flat))[::-1]
-        triangles, corner = np.divmod(first_corner[vertices], 3)
+        chosen = first_corner[vertices]
+        if (chosen < 0).any():
+            loose = np.asarray(vertices)[chosen < 0]
+            raise MeshError(
+                f"Vertex {loose[0]} of the mesh is in no face, so that it is not on the surface. "
+                "Delete loose vertices, or choose one that has a face."
+            )
+        triangles, corner = np.divmod(chosen, 3)
         return cls.from_barycentric(mesh, triangles, np.eye(3)[corner])
 
     @classmethod

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from engine import MatchError, SurfacePoints, TriangleMesh
+from engine import MatchError, MeshError, SurfacePoints, TriangleMesh
 from engine.mesh import surface_map
 from engine.mesh.closest_points import ClosestPoints
 from engine.mesh.surface_map import SurfaceMap
@@ -115,6 +115,12 @@ def test_the_identity_changes_nothing(fine, coarse):
     np.testing.assert_array_equal(identity.positions, coarse.vertices)
     np.testing.assert_allclose(mapped.then(identity, coarse).positions, mapped.positions, atol=1e-12)
     np.testing.assert_allclose(SurfaceMap.identity(fine).then(mapped, coarse).positions, mapped.positions, atol=1e-12)
+
+
+def test_a_mesh_with_a_loose_vertex_has_no_identity(fine):
+    loose = TriangleMesh(np.vstack([fine.vertices, [[9.0, 9.0, 9.0]]]), fine.triangles)
+    with pytest.raises(MeshError, match="no face"):
+        SurfaceMap.identity(loose)
 
 
 def test_affine_maps_follow_one_another_exactly(flat, other_flat):

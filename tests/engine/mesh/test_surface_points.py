@@ -80,3 +80,10 @@ def test_points_are_found_by_the_corners_of_their_triangle():
     np.testing.assert_array_equal(again.barycentric, points.barycentric)
     with pytest.raises(MeshError, match="no triangle"):
         SurfacePoints.from_corners(mesh, np.array([[0, 1, 2]]), np.array([[1.0, 0, 0]]))
+
+
+def test_a_vertex_without_a_triangle_is_on_no_surface(mesh):
+    loose = TriangleMesh(np.vstack([mesh.vertices, [[9.0, 9.0, 9.0]]]), mesh.triangles)
+    with pytest.raises(MeshError, match=f"Vertex {mesh.vertex_count} .*no face"):
+        SurfacePoints.at_vertices(loose, np.array([3, mesh.vertex_count]))
+    assert SurfacePoints.at_vertices(loose, np.array([3])).nearest_vertices.tolist() == [3]
