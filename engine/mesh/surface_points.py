@@ -89,10 +89,19 @@ class SurfacePoints:
             If the mesh has no such triangle.
         """
 
+        def lower_sides(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+            """Name the side between the two lowest corners of each triangle by one number."""
+            low, middle, _ = np.sort(triangles, axis=1).T
+            return low * mesh.vertex_count + middle
+
+        sides = np.unique(lower_sides(mesh.triangles))
+
         def keys(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-            """Name each triangle by one number, whatever corner it starts at."""
-            low, middle, high = np.sort(triangles, axis=1).T
-            return (low * mesh.vertex_count + middle) * mesh.vertex_count + high
+            """Name each triangle by one number, whatever corner it starts at; -1 if the mesh has no such side."""
+            # Sides are numbered: a number made of three vertices has no room in 64 bits beyond two million of these.
+            wanted = lower_sides(triangles)
+            number = np.searchsorted(sides, wanted).clip(max=len(sides) - 1)
+            return np.where(sides[number] == wanted, number * mesh.vertex_count + triangles.max(axis=1), -1)
 
         known, asked = keys(mesh.triangles), keys(corners)
         order = np.argsort(known, kind="stable")

@@ -126,9 +126,9 @@ def carry_values_steps(
         return CarriedValues(texts[carried.values], carried.lost)
     if np.issubdtype(array.dtype, np.floating) and not blended:
         # The same bits as whole numbers, which are never mixed.
-        whole = np.ascontiguousarray(array, np.float32).view(np.int32)
-        carried = yield from carry_values_steps(whole, domain, crossing)
-        return CarriedValues(carried.values.view(np.float32), carried.lost)
+        real = np.ascontiguousarray(array, np.float64 if array.itemsize > np.float64().itemsize else array.dtype)
+        carried = yield from carry_values_steps(real.view(f"i{real.itemsize}"), domain, crossing)
+        return CarriedValues(carried.values.view(real.dtype).astype(array.dtype, copy=False), carried.lost)
     if np.issubdtype(array.dtype, np.floating) and not np.isfinite(array).all():
         array = np.nan_to_num(array, nan=0.0, posinf=0.0, neginf=0.0)
     if domain == "EDGE":

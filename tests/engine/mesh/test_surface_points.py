@@ -87,3 +87,17 @@ def test_a_vertex_without_a_triangle_is_on_no_surface(mesh):
     with pytest.raises(MeshError, match=f"Vertex {mesh.vertex_count} .*no face"):
         SurfacePoints.at_vertices(loose, np.array([3, mesh.vertex_count]))
     assert SurfacePoints.at_vertices(loose, np.array([3])).nearest_vertices.tolist() == [3]
+
+
+def test_triangles_of_very_many_vertices_are_told_apart():
+    # Numbers made of all three vertices of these two triangles are the same in 64 bits.
+    middle = np.array([2**21, 2**21 + 1])
+    triangles = np.array([[5, *middle], [5 + 2**20, *middle]])
+    count = 2**22
+    mesh = TriangleMesh.__new__(TriangleMesh)
+    object.__setattr__(mesh, "vertices", np.broadcast_to(np.zeros(3), (count, 3)))
+    object.__setattr__(mesh, "triangles", triangles)
+    found = SurfacePoints.from_corners(mesh, triangles[:, [1, 2, 0]], np.full((2, 3), 1 / 3))
+    assert found.triangles.tolist() == [0, 1]
+    with pytest.raises(MeshError, match="no triangle"):
+        SurfacePoints.from_corners(mesh, triangles[:1] + [[2**19, 0, 0]], np.full((1, 3), 1 / 3))

@@ -105,6 +105,18 @@ def test_rotations_are_never_mixed():
     assert {tuple(row) for row in carried.tolist()} <= {tuple(row) for row in turns.tolist()}
 
 
+@pytest.mark.parametrize("domain", ["POINT", "EDGE", "FACE", "CORNER"])
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.float64, np.longdouble])
+def test_what_is_not_mixed_keeps_its_precision(domain, kind):
+    side = tube(9, 5)
+    values = np.random.default_rng(5).normal(size=(count(domain, side), 2)).astype(kind)
+    if kind is np.longdouble:
+        values = values.astype(np.float64).astype(kind)  # no whole numbers are as long
+    carried = carry(values, domain, crossing(side, side), blended=False)
+    assert carried.dtype == kind
+    np.testing.assert_array_equal(carried, values)
+
+
 def test_marked_edges_are_traced_and_others_are_not():
     source, target = grid(8, 8), grid(8, 4)
     way = crossing(source, target)
