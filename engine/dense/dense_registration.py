@@ -96,8 +96,8 @@ class RegisteredPair:
 
     @property
     def likeness(self) -> float | None:
-        """How credible the best candidate was, whatever the others; None with landmarks, which know more."""
-        return None if self.landmarks is not None else self.candidates[0].likeness
+        """How credible the best candidate was, whatever the others; None with landmarks or without candidates."""
+        return self.candidates[0].likeness if self.landmarks is None and self.candidates else None
 
 
 def registered_pair_steps(

@@ -10,7 +10,7 @@ from engine import Shape, SurfacePoints, TriangleMesh, run
 from engine.dense import dense_hypotheses as map_hypotheses
 from engine.dense import dense_registration as dense_map
 from engine.dense.dense_hypotheses import LandmarkStart, assessed_everywhere, map_hypotheses_steps
-from engine.dense.dense_registration import EIGENPAIRS, are_distinct, registered_pair_steps
+from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, are_distinct, registered_pair_steps
 from engine.dense.densify import dense_match_steps
 from engine.dense.functional_maps import PointMaps
 from engine.dense.landmark_selection import Steered
@@ -484,3 +484,7 @@ def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_lit
     assert are_distinct(places, places + limb, areas)
     assert not are_distinct(places, places + limb * (np.arange(400) < 4)[:, None], areas)
     assert are_distinct(places, places + 4 * offset, areas)
+
+
+def test_a_pair_that_nothing_was_compared_for_has_no_likeness():
+    assert RegisteredPair(*[None] * 6, candidates=(), margin=None).likeness is None

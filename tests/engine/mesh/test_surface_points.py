@@ -100,4 +100,4 @@ def test_triangles_of_very_many_vertices_are_told_apart():
     found = SurfacePoints.from_corners(mesh, triangles[:, [1, 2, 0]], np.full((2, 3), 1 / 3))
     assert found.triangles.tolist() == [0, 1]
     with pytest.raises(MeshError, match="no triangle"):
-        SurfacePoints.from_corners(mesh, triangles[:1] + [[2**19, 0, 0]], np.full((1, 3), 1 / 3))
+        SurfacePoints.from_corners(mesh, triangles[:1] + np.array([2**19, 0, 0]), np.full((1, 3), 1 / 3))
