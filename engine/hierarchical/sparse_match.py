@@ -121,10 +121,10 @@ def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
     settings = pair.settings
     candidates = flat_candidates(settings.points, pair.target.sample_count)
     hypotheses = []
-    for variant in pair.variants(2):
-        found = yield from within(
-            flat_steps(variant, settings.points, candidates, count=2, node_limit=settings.node_limit), 0.0, 1.0
-        )
+    variants = pair.variants(2)
+    for number, variant in enumerate(variants):
+        steps = flat_steps(variant, settings.points, candidates, count=2, node_limit=settings.node_limit)
+        found = yield from within(steps, number / len(variants), (number + 1) / len(variants))
         hypotheses += [assess(Coarse(variant, matching), [Refined(matching.assignment, 0)]) for matching in found]
     return [_at_samples(hypothesis, hypothesis.levels, candidates) for hypothesis in two_answers(hypotheses)]
 

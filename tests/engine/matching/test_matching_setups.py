@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from engine import MatchSettings, Shape, TriangleMesh, match
+from engine import MatchSettings, Shape, TriangleMesh, match, match_steps
 from engine.hierarchical.sampled_pair import Pair
 from engine.hierarchical.settings import SETUPS
 from engine.runtime.progress import run
@@ -77,3 +77,16 @@ def test_eigenfunctions_give_a_variant_per_sign_sequence(bodies):
 def test_a_bijective_coarse_match_uses_every_candidate(bodies):
     result = match(*bodies[:2], MatchSettings(**QUICK, constraint="bijective"))
     assert result.coarse.candidates == len(result.coarse.source_vertices)
+
+
+SLOW = [pytest.param(solver, marks=pytest.mark.slow) for solver in ("hierarchical", "gmds")]
+
+
+@pytest.mark.parametrize("solver", ["flat", *SLOW])
+@pytest.mark.parametrize("choices", CHOICES.values(), ids=CHOICES)
+def test_progress_never_decreases(bodies, choices, solver):
+    points = 10 if solver == "flat" else 12
+    settings = MatchSettings(points=points, samples=50, hypotheses=4, dense=False, solver=solver, **choices)
+    fractions = [progress.fraction for progress in match_steps(*bodies[:2], settings)]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1
