@@ -121,7 +121,7 @@ def match_steps(
             result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.06, end)
             result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
     yield Progress(1.0, "Done")
-    return result
+    return task.clock.noted(result)
 
 
 def _shapes_steps(

@@ -54,6 +54,11 @@ class Clock:
         self.laps[name] = self.laps.get(name, 0.0) + now - self._last
         self._last = now
 
+    def noted(self, result: MatchResult) -> MatchResult:
+        """Note on a result, and on its mirrored one, all laps until now."""
+        mirrored = None if result.mirrored is None else self.noted(result.mirrored)
+        return replace(result, mirrored=mirrored, seconds=dict(self.laps))
+
 
 @dataclass(frozen=True, eq=False)
 class MatchTask:
@@ -260,7 +265,7 @@ def _result(
         source_distances=rows[0],
         target_distances=rows[1],
         notes=notes,
-        seconds=seconds,
+        seconds=dict(seconds),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, match, match_steps
+from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
 from tests.shapes import creature, icosphere, permuted, rotation
 
@@ -226,3 +227,16 @@ def test_few_points_on_tiny_meshes_work():
     result = match(mesh, mesh, MatchSettings(points=5, coarse_points=4, coarse_candidates=8, dense=False))
     assert len(result.target_points) == 5
     assert result.distortion == pytest.approx(0, abs=1e-9)
+
+
+def test_seconds_that_are_taken_later_change_no_result(bodies):
+    task = MatchTask(replace(QUICK, points=10, samples=60, settle=False), None)
+    result = run(matched_steps(Shape(bodies[0]), Shape(bodies[1]), task))
+    before = dict(result.seconds)
+    task.clock.lap("coarse")
+    task.clock.lap("later")
+    assert result.seconds == before
+    noted = task.clock.noted(result)
+    assert noted.seconds == task.clock.laps
+    assert noted.seconds is not task.clock.laps
+    assert noted.mirrored is None or noted.mirrored.seconds == noted.seconds

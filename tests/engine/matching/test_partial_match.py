@@ -65,6 +65,10 @@ def test_what_the_half_lacks_is_said_to_have_no_partner(result, whole):
     assert "of the source has a partner" in result.quality.sentence
 
 
+def test_the_time_that_parts_were_looked_for_is_noted(result):
+    assert result.seconds["missing parts"] > 0
+
+
 def test_every_vertex_has_an_image_and_matched_points_lie_on_what_both_show(result, whole, half):
     assert len(result.source_to_target) == whole[0].vertex_count
     assert len(result.target_to_source) == half[0].vertex_count
