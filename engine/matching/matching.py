@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..hierarchical.settings import MatchSettings
-from ..runtime.blas_threads import one_thread
+from ..runtime.blas_threads import on_one_thread
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, run, within
@@ -89,6 +89,7 @@ def match(
     return run(match_steps(source, target, settings, landmarks=landmarks, excluded=excluded))
 
 
+@on_one_thread
 def match_steps(
     source: TriangleMesh | Shape,
     target: TriangleMesh | Shape,
@@ -112,14 +113,13 @@ def match_steps(
     settings = settings or MatchSettings()
     task = MatchTask(settings, landmarks)
     call_helpers()
-    with one_thread():
-        x, y = yield from within(_shapes_steps((source, target), excluded), 0.0, 0.06)
-        if not settings.dense:
-            result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
-        else:
-            end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
-            result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.06, end)
-            result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
+    x, y = yield from within(_shapes_steps((source, target), excluded), 0.0, 0.06)
+    if not settings.dense:
+        result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
+    else:
+        end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
+        result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.06, end)
+        result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
     yield Progress(1.0, "Done")
     return task.clock.noted(result)
 

@@ -16,6 +16,7 @@ from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
+from ..runtime.blas_threads import on_one_thread
 from ..runtime.errors import MatchError, SettingsError
 from ..runtime.progress import Progress, Steps, run, within
 from ..shapes.shape import Shape
@@ -177,6 +178,7 @@ def retrieve(
     return run(retrieve_steps(query, shapes, settings))
 
 
+@on_one_thread
 def retrieve_steps(
     query: TriangleMesh | Shape,
     shapes: Sequence[TriangleMesh | Shape],

@@ -14,6 +14,7 @@ from ..geometry.laplacian import laplace_beltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.surface_points import SurfacePoints
 from ..registration.elastic import ElasticSurface
+from ..runtime.blas_threads import on_one_thread
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress
 from .values.deformation_gradients import surface_frames
@@ -67,6 +68,7 @@ class WrappedSurface:
     folded: float
 
 
+@on_one_thread
 def wrap_steps(
     source: TriangleMesh,
     target: TriangleMesh,

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import ctypes
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 import scipy
@@ -15,7 +15,12 @@ import scipy
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-__all__ = ["Library", "libraries", "one_thread", "thread_counts"]
+    from .progress import Steps
+
+__all__ = ["Library", "libraries", "on_one_thread", "one_thread", "thread_counts"]
+
+Given = ParamSpec("Given")
+Result = TypeVar("Result")
 
 _FOLDERS = "{}.libs", "{}/.dylibs"
 """Where wheels of a package have libraries of others: on Linux and Windows, and on macOS."""
@@ -80,3 +85,26 @@ def one_thread() -> Iterator[None]:
         if _State.depth == 0:
             for library, count in zip(libraries(), _State.before, strict=True):
                 library.limit(count)
+
+
+def on_one_thread(function: Callable[Given, Steps[Result]]) -> Callable[Given, Steps[Result]]:
+    """Compute each step of a generator function under `one_thread`, and nothing between them.
+
+    Between two steps the program around goes on with work of its own, which may want all threads.
+    """
+
+    @wraps(function)
+    def begun(*args: Given.args, **kwargs: Given.kwargs) -> Steps[Result]:
+        steps = function(*args, **kwargs)
+        try:
+            while True:
+                with one_thread():
+                    try:
+                        progress = next(steps)
+                    except StopIteration as stop:
+                        return stop.value
+                yield progress
+        finally:
+            steps.close()
+
+    return begun

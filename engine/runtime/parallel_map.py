@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from .blas_threads import one_thread
+from .blas_threads import on_one_thread
 from .errors import HierMatchError
 from .progress import Progress, within
 from .worker import present_helpers
@@ -32,6 +32,7 @@ _LOOK = 0.02
 """Seconds between two looks at whether a helper is done."""
 
 
+@on_one_thread
 def shared_steps(
     work: Callable[[Common, Item], Steps[Result]], common: Common, items: Sequence[Item]
 ) -> Steps[list[Result]]:
@@ -63,10 +64,11 @@ def shared_steps(
     HierMatchError
         What the first of them raises.
     """
-    with one_thread(), _Sharing(work, common, items) as sharing:
+    with _Sharing(work, common, items) as sharing:
         return (yield from sharing.steps())
 
 
+@on_one_thread
 def beside_steps(
     own: Steps[Own], work: Callable[[Common, Item], Steps[Result]], common: Common, items: Sequence[Item]
 ) -> Steps[tuple[Own, list[Result]]]:
@@ -84,7 +86,7 @@ def beside_steps(
     pair
         The result of the former, and the list of results of the latter.
     """
-    with one_thread(), _Sharing(work, common, items) as sharing:
+    with _Sharing(work, common, items) as sharing:
         result = yield from within(sharing.meanwhile_steps(own), 0.0, 0.5)
         return result, (yield from within(sharing.steps(), 0.5, 1.0))
 

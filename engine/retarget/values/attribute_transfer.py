@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ...runtime.blas_threads import on_one_thread
 from ...runtime.errors import MatchError
 from .corner_transfer import carry_corner_values, carry_point_marks, carry_point_values
 from .edge_tracing import nearest_edge_values, trace_edges_steps
@@ -75,6 +76,7 @@ class CarriedValues:
     lost: int = 0
 
 
+@on_one_thread
 def carry_values_steps(
     values: NDArray[Any], domain: Domain, crossing: Crossing, *, blended: bool = True, marks: bool = False
 ) -> Steps[CarriedValues]:

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...runtime.blas_threads import on_one_thread
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress
 
@@ -37,6 +38,7 @@ _LEAST_CONFIDENCE = 0.02
 _TINY = np.finfo(float).tiny
 
 
+@on_one_thread
 def carry_offsets_steps(
     offsets: ArrayLike,
     frames: LocalFrames,

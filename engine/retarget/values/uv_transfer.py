@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...runtime.blas_threads import on_one_thread
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress
 from .charts import cut_into_sheets
@@ -70,6 +71,7 @@ class CarriedUVs:
     untrusted: int
 
 
+@on_one_thread
 def carry_uvs_steps(
     uvs: ArrayLike, source: Polygons, places: FacePlaces, areas: NDArray[np.float64]
 ) -> Steps[CarriedUVs]:

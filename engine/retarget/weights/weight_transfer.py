@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, hstack
 
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...runtime.blas_threads import on_one_thread
 from ...runtime.progress import Progress
 from .rigid_parts import with_rigid_parts
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
@@ -66,6 +67,7 @@ class Columns:
     yielding: bool = False
 
 
+@on_one_thread
 def carry_weights_steps(
     weights: csr_array,
     source: TriangleMesh,

@@ -1,8 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
 
+import engine
+from engine import MatchSettings, Progress, TriangleMesh, run
+from engine.matching.refinement import refine_map_steps
+from engine.retarget.values.attribute_transfer import carry_values_steps
 from engine.runtime import blas_threads
-from engine.runtime.blas_threads import one_thread, thread_counts
+from engine.runtime.blas_threads import on_one_thread, one_thread, thread_counts
+from tests.shapes import icosphere
+
+ENTRIES = [
+    *(getattr(engine, name) for name in engine.__all__ if name.endswith("_steps")),
+    carry_values_steps,
+    refine_map_steps,
+]
 
 
 @pytest.fixture
@@ -50,3 +61,58 @@ def test_without_a_copy_nothing_is_changed(monkeypatch):
     monkeypatch.setattr(blas_threads, "libraries", tuple)
     with one_thread():
         assert thread_counts() == []
+
+
+@on_one_thread
+def seen_steps(count):
+    for number in range(count):
+        assert thread_counts() == [1, 1]
+        yield Progress(number / count, "")
+    return thread_counts()
+
+
+def test_each_step_has_one_thread_and_what_is_between_has_all(two_threads):
+    for _ in seen_steps(3):
+        assert thread_counts() == two_threads
+    assert run(seen_steps(3)) == [1, 1]
+    assert thread_counts() == two_threads
+
+
+def test_steps_that_fail_or_are_closed_leave_all_threads(two_threads):
+    closed = []
+
+    @on_one_thread
+    def failing_steps(*, fails):
+        try:
+            yield Progress(0.0, "")
+            if fails:
+                raise ZeroDivisionError
+            yield Progress(0.5, "")
+        finally:
+            closed.append(fails)
+
+    with pytest.raises(ZeroDivisionError):
+        run(failing_steps(fails=True))
+    steps = failing_steps(fails=False)
+    next(steps)
+    steps.close()
+    assert closed == [True, False]
+    assert thread_counts() == two_threads
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.__name__)
+def test_every_entry_has_one_thread_in_its_steps(entry):
+    assert entry.__code__ is on_one_thread(seen_steps).__code__
+    assert entry.__wrapped__
+
+
+def test_the_threads_of_a_program_are_its_own_while_a_match_waits(two_threads):
+    mesh = TriangleMesh(*icosphere(6))
+    for steps in (
+        engine.match_steps(mesh, mesh, MatchSettings(points=10, samples=60)),
+        engine.find_symmetry_steps(mesh, MatchSettings(points=10, samples=60)),
+    ):
+        for _ in range(5):
+            next(steps)
+            assert thread_counts() == two_threads
+        steps.close()
