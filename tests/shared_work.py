@@ -7,6 +7,7 @@ import time
 
 from engine.runtime.errors import MatchError
 from engine.runtime.progress import Progress
+from engine.runtime.worker import search_threads
 
 
 class Kept:
@@ -32,6 +33,12 @@ def process_of(_, __):
     sys.stdout.flush()
     yield from squared(0, 0)
     return os.getpid()
+
+
+def threads_of(_, __):
+    """Say how many threads a search may take, and in which process."""
+    yield from squared(0, 0)
+    return search_threads(), os.getpid()
 
 
 def value_of(kept, factor):

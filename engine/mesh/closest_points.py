@@ -12,6 +12,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from ..runtime.errors import MeshError
+from ..runtime.worker import search_threads
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -228,7 +229,7 @@ class ClosestPoints:
         count = min(count, tree.n)
         found = np.empty((len(points), count), np.int64)
         # Many points are looked up neighbour after neighbour, else every step in the tree has to wait for the memory,
-        # and by all processors.
+        # and by as many threads as may be.
         many = len(points) >= _MANY
         order = _spatial_order(points) if many else np.arange(len(points))
         for start in range(0, len(points), _TREE_CHUNK):
@@ -236,7 +237,7 @@ class ClosestPoints:
             query = points[part]
             if normals is not None and weight:
                 query = np.concatenate([query, weight * normals[part]], axis=1)
-            found[part] = tree.query(query, np.arange(1, count + 1), workers=-1 if many else 1)[1]
+            found[part] = tree.query(query, np.arange(1, count + 1), workers=search_threads() if many else 1)[1]
         return self._rings.used[found]
 
     def nearest(

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from ..geometry.orientation import tangent_gradient
 from ..geometry.procrustes import nearest_rotations
+from ..runtime.worker import search_threads
 from ..shapes.extremities import spread_extremities
 
 if TYPE_CHECKING:
@@ -224,8 +225,8 @@ def _turned_back(
             places, seen = positions[ring.vertices] - centre, normals[ring.vertices]
             features = [_turned(places, axis) + centre, _NORMAL_LENGTH * _turned(seen, axis)]
             asked.append(np.concatenate(features, axis=2).reshape(-1, 6))
-        # So many points are looked up by all processors.
-        nearest = tree.query(np.concatenate(asked), workers=-1)[1]
+        # So many points are looked up by as many threads as may be.
+        nearest = tree.query(np.concatenate(asked), workers=search_threads())[1]
         met = np.split(target.vertices[nearest], np.cumsum([len(each) for each in asked[:-1]]))
         for ring, radius, images in zip(limb.rings, limb.radii, met, strict=True):
             rest = source.vertices[ring.vertices]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from .progress import Steps
 
-__all__ = ["Helper", "Task", "call_helpers", "close_helpers", "present_helpers", "use_processes"]
+__all__ = ["Helper", "Task", "call_helpers", "close_helpers", "present_helpers", "search_threads", "use_processes"]
 
 _VARIABLE = "HIERMATCH_PROCESSES"
 """Environment variable that says how many processes may be at work, this one counted."""
@@ -117,6 +117,11 @@ class Helper:
         self.look()
         return self._begun and self._task is None and not self.is_over
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether it was given an order to which there is no reply yet."""
+        return self._task is not None
+
     def has(self, value: object) -> bool:
         """Say whether something is kept there, that is sent only once."""
         return value in self._sent
@@ -181,7 +186,7 @@ class _Crew:
 
     def __init__(self) -> None:
         self.process = os.getpid()
-        self.most = _default_processes()
+        self.most, self.cores = _defaults()
         self.helpers: list[Helper] = []
 
     def present(self) -> list[Helper]:
@@ -193,13 +198,17 @@ class _Crew:
         return self.helpers
 
 
-def _default_processes() -> int:
-    """How many processes may be at work if nothing else is said."""
+def _cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _defaults() -> tuple[int, int]:
+    """How many processes may be at work, and how many cores be used, if nothing else is said."""
     wanted = os.environ.get(_VARIABLE, "")
     if wanted.isdecimal():
-        return max(int(wanted), 1)
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(cores, _MOST)
+        return max(int(wanted), 1), max(int(wanted), 1)
+    return min(_cores(), _MOST), _cores()
 
 
 _crew = _Crew()
@@ -209,9 +218,9 @@ def _own_crew() -> _Crew:
     """Return the helpers of this process; one that was forked has none yet, and must leave its parent's alone."""
     global _crew  # noqa: PLW0603
     if _crew.process != os.getpid():
-        most = _crew.most
+        most, cores = _crew.most, _crew.cores
         _crew = _Crew()
-        _crew.most = most
+        _crew.most, _crew.cores = most, cores
     return _crew
 
 
@@ -225,9 +234,19 @@ def use_processes(count: int | None = None) -> None:
         ``HIERMATCH_PROCESSES`` says, or two if there are two cores.
     """
     crew = _own_crew()
-    crew.most = _default_processes() if count is None else max(count, 1)
+    crew.most, crew.cores = _defaults() if count is None else (max(count, 1), max(count, 1))
     for helper in crew.present()[crew.most - 1 :]:
         helper.end()
+
+
+def search_threads() -> int:
+    """Count the threads that a search for many points may take here: the cores that no helper is at work on.
+
+    If it was said how many processes may be at work, it is that many cores: a helper, or one of several matches at
+    once, has one.
+    """
+    crew = _own_crew()
+    return max(min(crew.cores, _cores()) - sum(helper.is_busy for helper in crew.helpers), 1)
 
 
 def call_helpers() -> None:

@@ -12,7 +12,7 @@ import pytest
 from engine import MatchError, Progress, TriangleMesh, match, run
 from engine.runtime.parallel_map import beside_steps, here_steps, shared_steps
 from engine.runtime.pipes import send
-from engine.runtime.worker import call_helpers, close_helpers, present_helpers, use_processes
+from engine.runtime.worker import call_helpers, close_helpers, present_helpers, search_threads, use_processes
 from engine.runtime.worker_main import READY
 from tests import shared_work
 from tests.shapes import creature
@@ -262,6 +262,40 @@ def test_by_default_two_cores_are_used(monkeypatch):
         use_processes()
         call_helpers()
         assert len(present_helpers()) == processes - 1
+
+
+@pytest.mark.usefixtures("no_helpers")
+def test_searches_take_the_cores_that_are_left(monkeypatch):
+    monkeypatch.delenv("HIERMATCH_PROCESSES", raising=False)
+    for cores in 1, 2, 64:
+        monkeypatch.setattr(os, "sched_getaffinity", lambda _, n=cores: set(range(n)), raising=False)
+        use_processes()
+        assert search_threads() == cores
+    for said, threads in (1, 1), (3, 3), (100, 64):
+        use_processes(said)
+        assert search_threads() == threads
+        monkeypatch.setenv("HIERMATCH_PROCESSES", str(said))
+        use_processes()
+        assert search_threads() == threads
+
+
+def test_searches_leave_a_core_to_a_helper_at_work_which_has_one(helper, monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(4)), raising=False)
+    use_processes(2)
+    assert search_threads() == 2
+    seen = run(shared_steps(shared_work.threads_of, None, range(6)))
+    assert {threads for threads, pid in seen if pid == helper.pid} == {1}
+    assert {threads for threads, pid in seen if pid == os.getpid()} <= {1, 2}
+    task = helper.start(shared_work.process_of, None, 0)
+    assert search_threads() == 1
+    wait_until(lambda: helper.look() or task.is_over)
+    assert search_threads() == 2
+
+
+@pytest.mark.parametrize("module", ["engine.mesh.closest_points", "engine.registration.axial_twists"])
+def test_no_search_takes_all_cores_by_itself(module):
+    path = ROOT.joinpath(*module.split(".")).with_suffix(".py")
+    assert "workers=-1" not in path.read_text(encoding="utf8")
 
 
 def test_helpers_begin_while_something_else_is_done_here(helper):
