@@ -165,6 +165,25 @@ def compacted(vertices, triangles):
     return vertices[used], inverse.reshape(-1, 3)
 
 
+def cut_open(vertices, triangles, seam):
+    """Cut a mesh open between its triangles, as files cut it at UV seams.
+
+    `seam` (m,) tells which triangles are on the one side; their vertices on the border are copied.
+
+    Returns
+    -------
+    vertices, triangles
+        The mesh.
+    home : (n',) array of int
+        The vertex that each was before.
+    """
+    shared = np.intersect1d(triangles[seam], triangles[~seam])
+    copies = np.arange(len(vertices))
+    copies[shared] = len(vertices) + np.arange(len(shared))
+    home = np.append(np.arange(len(vertices)), shared)
+    return vertices[home], np.where(seam[:, None], copies[triangles], triangles), home
+
+
 def outward(vertices, triangles):
     """Turn the triangles of a shape that is star-shaped about the origin so that they look away from it."""
     a, b, c = vertices[triangles].transpose(1, 0, 2)

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from ..geometry.laplacian import laplace_beltrami
 from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.connectivity.welded_parts import WeldedParts
 from .values.deformation_gradients import surface_frames
 
 if TYPE_CHECKING:
@@ -40,7 +41,8 @@ def in_between(
     r"""Interpolate between a surface and a deformed one.
 
     Each edge is turned by the part t of the rotation around it while its length and shear change evenly, and the
-    vertices are put where the edges fit best, in the sense of least squares [1]_.
+    vertices are put where the edges fit best, in the sense of least squares [1]_.  Vertices at a seam that the surface
+    was cut open at are one point in between.
 
     Parameters
     ----------
@@ -65,6 +67,18 @@ def in_between(
     ----------
     .. [1] D. Xu, H. Zhang, Q. Wang, H. Bao, "Poisson shape interpolation", Graphical Models 68, 2006.
     """
+    if np.shape(positions) == mesh.vertices.shape:
+        parts = WeldedParts.of(mesh)
+        if parts.seams:
+            welded = parts.mean_over(np.ones(mesh.vertex_count, bool)) @ positions
+            return _in_between(parts.closed, welded, fractions)[:, parts.welded]
+    return _in_between(mesh, positions, fractions)
+
+
+def _in_between(
+    mesh: TriangleMesh, positions: NDArray[np.float64], fractions: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Interpolate; see `in_between`."""
     frames = surface_frames(mesh, positions, radius=_RADIUS)
     tails, heads, weights = _edges(mesh)
     count, n = len(tails), mesh.vertex_count

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from scipy.sparse import diags_array
 from ..dense.components.similarity_field import Surroundings
 from ..geometry.laplacian import laplace_beltrami
 from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.connectivity.welded_parts import WeldedParts
 from ..mesh.surface_points import SurfacePoints
 from ..registration.elastic import ElasticSurface
 from ..runtime.blas_threads import on_one_thread
@@ -81,7 +82,8 @@ def wrap_steps(
     The source is an elastic surface, at rest in the size of the target, that the map draws onto the target with a
     growing force.  A vertex is not drawn if the way to the target and back leads elsewhere, if the map has no
     confidence in it, or if a triangle there is turned over: such places deform as rigidly as possible with their
-    surroundings.
+    surroundings.  Vertices at a seam that the source was cut open at, as for UVs, are one point before, and stay one:
+    of the places that the map has for it, the one in which it has most confidence counts.
 
     Parameters
     ----------
@@ -111,12 +113,18 @@ def wrap_steps(
         raise MatchError("The maps belong to other meshes than those to be wrapped. Match them again.")
     wanted = source_to_target.positions if registered is None else registered
     held = _held(source, source_to_target, target_to_source)
+    confidence, points = source_to_target.confidence, source_to_target.points
+    parts = WeldedParts.of(source)
+    if parts.seams:
+        best = parts.best_of(held + confidence)
+        wanted, held, confidence, points = wanted[best], held[best], confidence[best], _chosen(points, best)
+        source = parts.closed
     if not held[source.triangles].all(axis=1).any():
         raise MatchError(
             "The map does not hold the source anywhere on the target: the two are too different. Match them again."
         )
     yield Progress(0.0, "Placing parts that the target lacks")
-    start = _start(source, target, source_to_target, wanted, held)
+    start = _start(source, target, points, wanted, held)
     unit = float(np.sqrt(target.area))
     growth = unit / float(np.sqrt(source.area))
     laplace = laplace_beltrami(source)
@@ -126,7 +134,7 @@ def wrap_steps(
     positions, goal = start / unit, start / unit
     folded = np.zeros(source.triangle_count, bool)
     for number, weight in enumerate(_WEIGHTS):
-        drawn = weight * mass * np.where(held, source_to_target.confidence.clip(min=_LEAST_CONFIDENCE), _LOOSE)
+        drawn = weight * mass * np.where(held, confidence.clip(min=_LEAST_CONFIDENCE), _LOOSE)
         factor = symmetric_factor(elastic.stiffness + diags_array(drawn))
         for solve in range(_SOLVES):
             yield Progress((number + solve / _SOLVES) / len(_WEIGHTS), "Laying the surface onto the other")
@@ -140,7 +148,7 @@ def wrap_steps(
         held = held.copy()
         held[source.triangles[folded]] = False
     share = float(source.triangle_areas[folded].sum() / source.area)
-    return WrappedSurface(positions * unit, held, share)
+    return WrappedSurface((positions * unit)[parts.welded], held[parts.welded], share)
 
 
 def kept_in_place(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -177,7 +185,7 @@ def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> NDArray[
 def _start(
     source: TriangleMesh,
     target: TriangleMesh,
-    there: SurfaceMap,
+    points: SurfacePoints,
     wanted: NDArray[np.float64],
     held: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
@@ -185,14 +193,7 @@ def _start(
     if held.all():
         return wanted
     part, vertices, _ = source.submesh(held)
-    points = there.points
-    images = SurfacePoints(
-        points.triangles[vertices],
-        points.barycentric[vertices],
-        points.corners[vertices],
-        points.nearest_vertices[vertices],
-        wanted[vertices],
-    )
+    images = replace(_chosen(points, vertices), positions=wanted[vertices])
     surroundings = Surroundings(part, target, images)
     free = np.flatnonzero(~held)
     distances, _ = surroundings.nearest(source.vertices[free])
@@ -210,6 +211,17 @@ def _start(
     start = wanted.copy()
     start[free] = fitted(source.vertices[free])
     return start
+
+
+def _chosen(points: SurfacePoints, rows: NDArray[np.int64]) -> SurfacePoints:
+    """Return some of the points."""
+    return SurfacePoints(
+        points.triangles[rows],
+        points.barycentric[rows],
+        points.corners[rows],
+        points.nearest_vertices[rows],
+        points.positions[rows],
+    )
 
 
 def _folded(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -11,13 +11,12 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from ..triangle_mesh import TriangleMesh
 from .halfedges import group_half_edges
 from .vertex_welding import weld_boundaries
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from ..triangle_mesh import TriangleMesh
 
 __all__ = ["WeldedParts"]
 
@@ -66,6 +65,16 @@ class WeldedParts:
         """Number of welded vertices, w."""
         return len(self.labels)
 
+    @property
+    def seams(self) -> bool:
+        """Whether vertices were welded at all."""
+        return self.welded_count < len(self.welded)
+
+    @cached_property
+    def closed(self) -> TriangleMesh:
+        """The mesh of the welded vertices."""
+        return TriangleMesh(self.positions, self.triangles)
+
     @cached_property
     def edges(self) -> NDArray[np.int64]:
         """Each edge between welded vertices once, smaller index first, (e, 2)."""
@@ -102,6 +111,11 @@ class WeldedParts:
     def small(self) -> NDArray[np.bool_]:
         """Say of each part whether it is small beside the whole, (p,): an eye, a button, a tooth; not a trouser leg."""
         return self.sizes <= _SMALL * np.sqrt(self.mesh.area)
+
+    def best_of(self, values: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return, for each welded vertex, that of the vertices it is made of which has the largest value (n,): (w,)."""
+        order = np.lexsort((-values, self.welded))
+        return order[np.searchsorted(self.welded[order], np.arange(self.welded_count))]
 
     def mean_over(self, chosen: NDArray[np.bool_]) -> csr_array:
         """Return the matrix (w, n) that averages values over the chosen vertices (n,) that each welded one is made of.

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.connectivity.welded_parts import WeldedParts
 from ...runtime.blas_threads import on_one_thread
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress
@@ -53,6 +54,7 @@ def carry_offsets_steps(
     At each vertex of the source an offset is turned as the surface is there, so that a smile follows a turned head.
     Turned offsets are interpolated inside the triangles of the source.  Where the map cannot be trusted at all, they
     are continued from the surroundings on the target: harmonically, in the manner of a soap film.
+    Vertices at a seam that the target was cut open at, as for UVs, are one point and move alike.
 
     Parameters
     ----------
@@ -89,10 +91,14 @@ def carry_offsets_steps(
     yield Progress(0.0, "Finding regions without confidence")
     fill = _Filling(target, target_to_source.confidence >= _LEAST_CONFIDENCE)
     factors = _factors(frames, scaling)
+    parts = WeldedParts.of(target)
+    means = parts.mean_over(np.ones(target.vertex_count, bool))
     carried = np.zeros((len(array), target.vertex_count, 3))
     for number, key in enumerate(array):
         moved = target_to_source.transfer(factors[:, None] * frames.turned(key))
         moved = fill(moved)
+        if parts.seams:
+            moved = (means @ moved)[parts.welded]
         lengths = np.linalg.norm(moved, axis=1)
         least = threshold * float((factors * np.linalg.norm(key, axis=1)).max(initial=0.0))
         carried[number] = np.where((lengths > least)[:, None], moved, 0.0)

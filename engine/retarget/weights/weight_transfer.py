@@ -79,6 +79,8 @@ def carry_weights_steps(
 ) -> Steps[CarriedWeights]:
     """Carry weights across a map.
 
+    Vertices at a seam that the target was cut open at, as for UVs, are one point and get the same weights.
+
     Parameters
     ----------
     weights : (n, g) csr_array of float
@@ -106,14 +108,16 @@ def carry_weights_steps(
     yield Progress(0.0, "Carrying weights")
     result = carried(weights, target_to_source)
     torn = np.zeros(len(target_to_source), bool)
+    parts = WeldedParts.of(target)
     if fill:
         yield Progress(0.2, "Looking for torn vertices")
-        parts = WeldedParts.of(target)
         result = with_rigid_parts(result, parts, weights, WeldedParts.of(source), target_to_source)
         bones = result if telling is None else csr_array(result[:, telling])
         torn = torn_vertices(bones, target_to_source, parts, source)
         yield Progress(0.5, "Filling in weights")
         result = filled(result, ~torn, parts)
+    if parts.seams:
+        result = csr_array((parts.mean_over(np.ones(len(torn), bool)) @ result)[parts.welded])
     return CarriedWeights(result, torn)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from engine import MeshError, TriangleMesh
 from engine.retarget.morphing import in_between
-from tests.shapes import creature, icosphere, rotation
+from tests.shapes import creature, cut_open, icosphere, rotation
 
 THREE = np.array([0.0, 0.5, 1.0])
 
@@ -17,6 +17,15 @@ def test_the_ends_are_met():
     first, _, last = in_between(TriangleMesh(rest, triangles), bent, THREE)
     np.testing.assert_allclose(first, rest, atol=1e-5)
     np.testing.assert_allclose(last, bent, atol=1e-5)
+
+
+def test_what_was_cut_open_at_seams_stays_whole():
+    rest, triangles, _ = creature(0.0, 9)
+    bent = creature(1.0, 9)[0]
+    vertices, cut, home = cut_open(rest, triangles, rest[triangles].mean(axis=1)[:, 1] > 0)
+    between = in_between(TriangleMesh(vertices, cut), bent[home], THREE)
+    np.testing.assert_array_equal(between, between[:, home])
+    np.testing.assert_allclose(between, in_between(TriangleMesh(rest, triangles), bent, THREE)[:, home], atol=1e-6)
 
 
 def test_a_turn_goes_around():

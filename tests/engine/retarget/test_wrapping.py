@@ -6,7 +6,7 @@ import pytest
 
 from engine import ClosestPoints, MatchError, SurfaceMap, TriangleMesh, run
 from engine.retarget.wrapping import kept_in_place, wrap_steps
-from tests.shapes import creature, icosphere, irregular, rotation
+from tests.shapes import creature, cut_open, icosphere, irregular, rotation
 
 TURN = rotation([1.0, 2.0, -1.0], 2.0)
 
@@ -50,6 +50,28 @@ def test_a_registration_that_is_given_is_followed(bodies):
     wrapped = run(wrap_steps(source, target, there, back, registered))
     gaps = np.linalg.norm(wrapped.positions - registered, axis=1) / np.sqrt(target.area)
     assert gaps.mean() < 0.005
+
+
+def test_what_was_cut_open_at_seams_stays_whole(bodies):
+    source, target, there, back = bodies
+    centres = source.vertices[source.triangles].mean(axis=1)
+    vertices, triangles, home = cut_open(source.vertices, source.triangles, centres[:, 1] > 0)
+    cut = TriangleMesh(vertices, triangles)
+    copies = np.arange(source.vertex_count, len(home))
+    assert len(copies) > 50
+    # The map leads the copies elsewhere than what they are copies of: to the middle of the triangle.
+    barycentric, confidence = there.barycentric[home], there.confidence[home]
+    barycentric[copies] = 1 / 3
+    confidence[copies] *= 0.9
+    there_cut = SurfaceMap.from_barycentric(target, there.triangles[home], barycentric, confidence)
+    found, weights = near(cut, back.positions)
+    back_cut = SurfaceMap.from_barycentric(cut, found, weights, back.confidence)
+    wrapped = run(wrap_steps(cut, target, there_cut, back_cut))
+    np.testing.assert_array_equal(wrapped.positions, wrapped.positions[home])
+    np.testing.assert_array_equal(wrapped.held, wrapped.held[home])
+    whole = run(wrap_steps(source, target, there, back))
+    away = np.linalg.norm(wrapped.positions - whole.positions[home], axis=1) / np.sqrt(target.area)
+    assert away.max() < 0.005
 
 
 def test_folds_of_a_map_are_opened():

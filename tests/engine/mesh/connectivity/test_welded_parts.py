@@ -43,3 +43,15 @@ def test_means_over_chosen_vertices():
     mean = parts.mean_over(chosen)
     assert set(np.flatnonzero(mean.sum(axis=1))) == set(parts.welded[[0, 4]])
     np.testing.assert_allclose(parts.mean_over(~chosen | chosen) @ np.ones(triangles.size), 1)
+
+
+def test_the_best_copy_and_the_closed_mesh():
+    vertices, triangles = icosphere(3)
+    parts = WeldedParts.of(TriangleMesh(vertices[triangles.ravel()], np.arange(triangles.size).reshape(-1, 3)))
+    assert parts.seams
+    assert parts.closed.is_closed
+    assert not WeldedParts.of(parts.closed).seams
+    values = np.random.default_rng(0).uniform(size=triangles.size)
+    best = parts.best_of(values)
+    np.testing.assert_array_equal(parts.welded[best], np.arange(parts.welded_count))
+    assert (values <= values[best][parts.welded]).all()

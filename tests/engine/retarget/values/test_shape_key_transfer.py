@@ -7,7 +7,7 @@ import pytest
 from engine import ClosestPoints, MatchError, SurfaceMap, TriangleMesh, run
 from engine.retarget.values.deformation_gradients import LocalFrames, surface_frames
 from engine.retarget.values.shape_key_transfer import carry_offsets_steps
-from tests.shapes import creature, icosphere, rotation
+from tests.shapes import creature, cut_open, icosphere, rotation
 
 TURN = rotation([1.0, 2.0, -1.0], 2.0)
 
@@ -31,6 +31,19 @@ def test_the_identity_carries_everything_as_it_is(mesh, offsets):
         carry_offsets_steps(offsets, unturned(mesh.vertex_count), mesh, SurfaceMap.identity(mesh), threshold=0)
     )
     np.testing.assert_allclose(carried, offsets)
+
+
+def test_what_was_cut_open_at_seams_moves_alike(mesh, offsets):
+    vertices, triangles, home = cut_open(mesh.vertices, mesh.triangles, mesh.triangle_normals[:, 2] > 0)
+    copies = np.arange(mesh.vertex_count, len(home))
+    found, barycentric = SurfaceMap.identity(mesh).triangles[home], SurfaceMap.identity(mesh).barycentric[home]
+    barycentric[copies] = 1 / 3
+    back = SurfaceMap.from_barycentric(mesh, found, barycentric)
+    target = TriangleMesh(vertices, triangles)
+    carried = run(carry_offsets_steps(offsets, unturned(mesh.vertex_count), target, back, threshold=0))
+    np.testing.assert_array_equal(carried, carried[:, home])
+    apart = np.setdiff1d(np.arange(mesh.vertex_count), home[copies])
+    np.testing.assert_allclose(carried[:, apart], offsets[:, apart])
 
 
 @pytest.mark.parametrize(

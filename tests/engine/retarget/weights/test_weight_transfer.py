@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from engine import TriangleMesh, run
+from engine import SurfaceMap, TriangleMesh, run
 from engine.retarget.weights.skin_weights import carried, row_differences, row_sums
 from engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
 from tests.engine.retarget.weights.test_weight_rejection import broken
-from tests.shapes import creature
+from tests.shapes import creature, cut_open
 from tests.skeletons import creature_weights
 
 
@@ -39,6 +39,21 @@ def test_torn_vertices_are_filled_in_and_told():
     both = csr_array(np.concatenate([np.ones((mesh.vertex_count, 1)), mask.toarray()], axis=1))
     told = run(carry_weights_steps(both, mesh, mesh, surface_map, telling=np.array([True, False])))
     assert not told.torn.any()
+
+
+@pytest.mark.parametrize("fill", [False, True])
+def test_what_was_cut_open_at_seams_gets_the_same_weights(fill):
+    vertices, triangles, rest = creature(0.0, 9)
+    mesh, weights = TriangleMesh(vertices, triangles), creature_weights(rest)
+    vertices, triangles, home = cut_open(vertices, triangles, mesh.vertices[triangles].mean(axis=1)[:, 0] > 0.1)
+    barycentric = SurfaceMap.identity(mesh).barycentric[home]
+    barycentric[mesh.vertex_count :] = 1 / 3
+    back = SurfaceMap.from_barycentric(mesh, SurfaceMap.identity(mesh).triangles[home], barycentric)
+    target = TriangleMesh(vertices, triangles)
+    got = run(carry_weights_steps(weights, mesh, target, back, fill=fill)).weights
+    assert row_differences(carried(weights, back), carried(weights, back)[home]).max() > 0.01
+    assert row_differences(got, got[home]).max() == 0
+    np.testing.assert_allclose(row_sums(got), 1)
 
 
 def test_new_weights_replace_what_was_there_and_sum_to_one():
