@@ -18,7 +18,7 @@ from ..properties.panel_state import state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.summary import remember
-from ..scene.pair import find_pair
+from ..scene.pair import find_pair, left_out_note, selected_targets
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -54,6 +54,8 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     doing = "Matching"
     cancelled = "The match was cancelled. Nothing was written"
 
+    _left_out = ""  # which parts of the source's own character, as a sentence
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object Mode, when no other match is running and there are two meshes."""
@@ -76,6 +78,8 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         """Read both objects."""
         state = state_of(context)
         source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
+        parts = [] if self.target or state.target else selected_targets(context, source)[1]
+        self._left_out = left_out_note(source, parts) if parts else ""
         job = MatchJob(context, source, target, job_options(self))
         # So that Adjust Last Operation repeats the match of the same two, whatever is selected by then.
         self.source, self.target = source.name, target.name
@@ -88,6 +92,8 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
             state_of(context).summary, outcome.stored, (outcome.source, outcome.target), self.prefix, outcome.seconds
         )
         refresh(cast("bpy.types.Scene", context.scene))
+        if self._left_out:
+            self.report({"INFO"}, translated(self._left_out))
         for note in outcome.stored.notes:
             self.report({"WARNING"}, translated(note))
         points, seconds = len(outcome.result.source_points), outcome.seconds

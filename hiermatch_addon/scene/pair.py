@@ -10,11 +10,21 @@ import numpy as np
 
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
+from ..common.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["check_object", "check_pair", "check_writable", "find_pair", "named_object", "selected_meshes"]
+__all__ = [
+    "check_object",
+    "check_pair",
+    "check_writable",
+    "find_pair",
+    "left_out_note",
+    "named_object",
+    "selected_meshes",
+    "selected_targets",
+]
 
 
 def find_pair(
@@ -23,6 +33,8 @@ def find_pair(
     picked: tuple[bpy.types.Object | None, bpy.types.Object | None] = (None, None),
 ) -> tuple[bpy.types.Object, bpy.types.Object]:
     """Find source and target: by name, else as picked, else as selected (the active object is the source).
+
+    What is only selected is no target if the source's rig moves it.
 
     Raises
     ------
@@ -36,7 +48,7 @@ def find_pair(
     if source is None:
         source = _only(selected_meshes(context, without=target), "Source")
     if target is None:
-        target = _only(selected_meshes(context, without=source), "Target")
+        target = _only(selected_targets(context, source)[0], "Target")
     return source, target
 
 
@@ -57,6 +69,51 @@ def named_object(name: str) -> bpy.types.Object:
 def selected_meshes(context: bpy.types.Context, without: bpy.types.Object | None = None) -> list[bpy.types.Object]:
     """Return the selected mesh objects except for one."""
     return [obj for obj in view_layer_of(context).objects.selected if obj.type == "MESH" and obj != without]
+
+
+def selected_targets(
+    context: bpy.types.Context, source: bpy.types.Object
+) -> tuple[list[bpy.types.Object], list[bpy.types.Object]]:
+    """Return the selected meshes that may be targets, and those that are parts of the source's own character.
+
+    The latter hang on the armature that moves the source, as clothes, hair and eyes do.
+
+    Raises
+    ------
+    ObjectError
+        If there are parts only.
+    """
+    targets: list[bpy.types.Object] = []
+    parts: list[bpy.types.Object] = []
+    rig = _armatures(source)
+    for obj in selected_meshes(context, without=source):
+        (targets if rig.isdisjoint(_armatures(obj)) else parts).append(obj)
+    if parts and not targets:
+        raise ObjectError(
+            f'All that is selected beside "{source.name}" is moved by the same rig: {_names(parts)}. Select a mesh of '
+            "another character, or pick the part as the Target in the panel if it is meant."
+        )
+    return targets, parts
+
+
+def left_out_note(source: bpy.types.Object, parts: Sequence[bpy.types.Object]) -> str:
+    """Say that selected parts of the source's own character were left out."""
+    return f'What the rig of "{source.name}" moves as well was left alone: {_names(parts)}.'
+
+
+def _names(objects: Sequence[bpy.types.Object]) -> str:
+    return listed(sorted(obj.name for obj in objects))
+
+
+def _armatures(obj: bpy.types.Object) -> set[bpy.types.Object]:
+    """Return the armatures that move an object, by modifiers or as what it hangs on, and those that move the latter."""
+    found: set[bpy.types.Object] = set()
+    link: bpy.types.Object | None = obj
+    while link is not None:
+        armatures = [getattr(modifier, "object", None) for modifier in link.modifiers if modifier.type == "ARMATURE"]
+        found.update(armature for armature in (link, *armatures) if armature and armature.type == "ARMATURE")
+        link = link.parent
+    return found
 
 
 def _only(candidates: Sequence[bpy.types.Object], role: str) -> bpy.types.Object:

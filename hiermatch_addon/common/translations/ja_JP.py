@@ -964,6 +964,16 @@ MESSAGES: Final[dict[str, str]] = {
     "Which mesh is the Source is open: pick it in the panel, or make it the active object.": (
         "どのメッシュがソースなのかが決まりません。パネルで選ぶか、アクティブオブジェクトにしてください。"
     ),
+    (
+        'All that is selected beside "{0}" is moved by the same rig: {1}. Select a mesh of another character, or pick '
+        "the part as the Target in the panel if it is meant."
+    ): (
+        "「{0}」のほかに選択されているものは、すべて同じリグで動いています：{1}。別のキャラクターのメッシュを選択するか、"
+        "その部分を対象にするならパネルでターゲットに選んでください。"
+    ),
+    'What the rig of "{0}" moves as well was left alone: {1}.': (
+        "「{0}」と同じリグで動くものは変更していません：{1}。"
+    ),
     "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source.": (
         "どのメッシュがターゲットなのかが決まりません。パネルで選ぶか、ソースのほかに一つ以上選択してください。"
     ),

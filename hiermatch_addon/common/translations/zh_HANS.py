@@ -793,6 +793,13 @@ MESSAGES: Final[dict[str, str]] = {
     "Which mesh is the Source is open: pick it in the panel, or make it the active object.": (
         "无法确定哪个网格是源：请在面板中选取，或将其设为活动物体。"
     ),
+    (
+        'All that is selected beside "{0}" is moved by the same rig: {1}. Select a mesh of another character, or pick '
+        "the part as the Target in the panel if it is meant."
+    ): (
+        "除“{0}”外，所选的全部由同一绑定驱动：{1}。请选择另一个角色的网格；如果确实要用该部件，请在面板中将其选为目标。"
+    ),
+    'What the rig of "{0}" moves as well was left alone: {1}.': "与“{0}”由同一绑定驱动的部件未作更改：{1}。",
     "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source.": (
         "无法确定哪个网格是目标。请在面板中选取，或在源之外再选择一个或多个。"
     ),

@@ -20,7 +20,7 @@ from ...properties.freshness import refresh
 from ...properties.panel_state import state_of
 from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import remember
-from ...scene.pair import named_object, selected_meshes
+from ...scene.pair import left_out_note, named_object, selected_targets
 from ...transfers.retarget_properties import remember_transfer
 
 if TYPE_CHECKING:
@@ -83,6 +83,8 @@ class TransferOperator(JobOperator):
     panel = "HIERMATCH_PT_retarget"
     optional = False
 
+    _left_out = ""  # which parts of the source's own character, as a sentence
+
     def _transfers(self) -> list[Transfer]:
         """Make the transfers for one target, of the operator's options."""
         raise NotImplementedError
@@ -129,6 +131,8 @@ class TransferOperator(JobOperator):
 
     def _report(self, carried: list[Carried]) -> None:
         """Say what was done for each target, and what is to be known."""
+        if self._left_out:
+            self.report({"INFO"}, translated(self._left_out))
         for one in carried:
             for report in one.reports:
                 for note in report.notes:
@@ -156,7 +160,8 @@ class TransferOperator(JobOperator):
         if source is None:
             raise ObjectError("Which mesh is the Source is open: pick it in the panel, or make it the active object.")
         if not targets:
-            targets = selected_meshes(context, without=source)
+            targets, parts = selected_targets(context, source)
+            self._left_out = left_out_note(source, parts) if parts else ""
         if not targets:
             raise ObjectError(
                 "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source."

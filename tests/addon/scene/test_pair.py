@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
-from hiermatch.hiermatch_addon.scene.pair import check_pair, find_pair
+from hiermatch.hiermatch_addon.scene.pair import check_pair, find_pair, selected_targets
 
 from tests.addon.scenes import add_blob, add_pair
 
@@ -80,6 +80,48 @@ class TestFind:
         other = add_blob("Other")
         select(*pair, other, active=other)
         with pytest.raises(ObjectError, match="Target: 2 other meshes are selected"):
+            find_pair(bpy.context)
+
+
+def add_armature():
+    armature = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.context.collection.objects.link(armature)
+    return armature
+
+
+def bind(obj, armature, how):
+    """Let an armature move a mesh with a modifier, as its parent, or as the parent of its parent."""
+    if how == "modifier":
+        obj.modifiers.new("Armature", "ARMATURE").object = armature
+        return
+    obj.parent = armature
+    if how == "ancestor":
+        obj.parent = bpy.data.objects.new("Between", None)
+        obj.parent.parent = armature
+
+
+class TestPartsOfTheSource:
+    @pytest.mark.parametrize("mine", ["modifier", "parent"])
+    @pytest.mark.parametrize("its", ["modifier", "parent", "ancestor"])
+    def test_are_no_targets_by_selection(self, pair, mine, its):
+        source, target = pair
+        coat, armature = add_blob("Coat"), add_armature()
+        bind(source, armature, mine)
+        bind(coat, armature, its)
+        bind(target, add_armature(), "modifier")  # another character's
+        select(source, target, coat, active=source)
+        assert selected_targets(bpy.context, source) == ([target], [coat])
+        assert find_pair(bpy.context) == pair
+
+    def test_are_if_named_or_picked(self, pair):
+        source, target = pair
+        armature = add_armature()
+        for obj in pair:
+            bind(obj, armature, "modifier")
+        select(source, target, active=source)
+        assert find_pair(bpy.context, ("", "Target")) == pair
+        assert find_pair(bpy.context, picked=(None, target)) == pair
+        with pytest.raises(ObjectError, match='beside "Source" is moved by the same rig: "Target"'):
             find_pair(bpy.context)
 
 

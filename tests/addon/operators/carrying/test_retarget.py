@@ -7,6 +7,7 @@ import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.jobs.job import job_options
 from hiermatch.hiermatch_addon.jobs.transfer_job import TransferJob, TransferOptions
+from hiermatch.hiermatch_addon.operators.carrying import transfer_operator
 from hiermatch.hiermatch_addon.scene.armatures import find_armature
 from hiermatch.hiermatch_addon.scene.deform_layer import read_weights
 from hiermatch.hiermatch_addon.storage.stored_map import find_maps
@@ -14,7 +15,7 @@ from hiermatch.hiermatch_addon.transfers.options.weights import WeightSettings
 from hiermatch.hiermatch_addon.transfers.weights import WeightTransfer
 
 from tests.addon.rigs import add_rigged, add_rigged_pair, add_target
-from tests.addon.scenes import DENSE, snapshot
+from tests.addon.scenes import DENSE, mesh_snapshot, snapshot
 
 
 def quick():
@@ -198,6 +199,26 @@ def test_the_selection_says_what_is_meant(pair):
     bpy.context.view_layer.objects.active = source
     assert bpy.ops.hiermatch.transfer_weights() == {"FINISHED"}
     assert "spine" in target.vertex_groups
+
+
+def test_parts_of_the_source_that_are_selected_as_well_are_left_alone(pair, monkeypatch):
+    source, target = pair
+    coat = source.copy()
+    coat.name, coat.data = "Coat", source.data.copy()
+    bpy.context.collection.objects.link(coat)
+    for obj in (*pair, coat):
+        obj.select_set(state=True)
+    bpy.context.view_layer.objects.active = source
+    before, said = mesh_snapshot(coat), []
+    monkeypatch.setattr(transfer_operator, "translated", lambda text: said.append(text) or text)
+    target.vertex_groups.clear()
+    assert bpy.ops.hiermatch.transfer_weights() == {"FINISHED"}
+    assert "spine" in target.vertex_groups
+    assert mesh_snapshot(coat) == before
+    assert 'What the rig of "Source" moves as well was left alone: "Coat".' in said
+    target.select_set(state=False)
+    with pytest.raises(RuntimeError, match="moved by the same rig"):
+        bpy.ops.hiermatch.transfer_weights()
 
 
 def test_without_a_target_it_says_so(pair):
