@@ -115,7 +115,9 @@ class JobOperator(_Operator):
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Do one slice of work at each of the timer's events."""
-        if event.type == "ESC" or progress_of(context).cancel:
+        # Whoever began later, such as a grab or a menu, takes the press of Esc, but its release gets here all the same.
+        escaped = event.type == "ESC" and event.value == "PRESS" and not event.is_repeat
+        if escaped or progress_of(context).cancel:
             self.cancel(context)
             self.report({"INFO"}, translated(self.cancelled))
             return {"CANCELLED"}

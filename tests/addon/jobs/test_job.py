@@ -166,8 +166,8 @@ class Modal:
     def report(self, kind, text):
         self.reports.append((*kind, text))
 
-    def send(self, kind):
-        return self.modal(bpy.context, SimpleNamespace(type=kind))
+    def send(self, kind, value="PRESS", *, repeat=False):
+        return self.modal(bpy.context, SimpleNamespace(type=kind, value=value, is_repeat=repeat))
 
 
 @pytest.fixture
@@ -199,6 +199,13 @@ def test_it_shows_how_far_it_is(operator):
 def test_other_events_pass(operator, event):
     assert operator.send(event) == {"PASS_THROUGH"}
     operator.send("ESC")
+
+
+@pytest.mark.parametrize(("value", "repeat"), [("RELEASE", False), ("CLICK", False), ("PRESS", True)])
+def test_what_is_left_of_an_escape_that_something_else_took_passes(operator, value, repeat):
+    """A grab or a menu that lies in front takes the press only."""
+    assert operator.send("ESC", value, repeat=repeat) == {"PASS_THROUGH"}
+    assert operator.send("ESC") == {"CANCELLED"}
 
 
 @pytest.mark.parametrize("way", ["escape", "button"])
