@@ -142,15 +142,18 @@ class WrapTransfer:
 
 
 def _duplicate(context: bpy.types.Context, obj: bpy.types.Object, name: str) -> bpy.types.Object:
-    """Copy a mesh object without what moves it, its shape keys, and what matches wrote."""
+    """Copy a mesh object with the rig it is bound to, but without its shape keys and what matches wrote.
+
+    Other modifiers, constraints and animation are not taken over.
+    """
     matrix = obj.matrix_world.copy()
     copy, mesh = obj.copy(), mesh_of(obj).copy()
     copy.name, mesh.name = name, name
     copy.data = mesh
     copy.animation_data_clear()
-    copy.modifiers.clear()
+    for modifier in [modifier for modifier in copy.modifiers if modifier.type != "ARMATURE"]:
+        copy.modifiers.remove(modifier)
     copy.constraints.clear()
-    copy.parent = None
     copy.matrix_world = matrix
     if mesh.shape_keys is not None:
         copy.shape_key_clear()

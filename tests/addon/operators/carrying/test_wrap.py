@@ -72,6 +72,28 @@ def test_the_target_can_be_laid_onto_the_source_as_a_new_object(pair):
     assert gaps(shown(made), source).max() < 0.5
 
 
+def test_a_new_object_is_bound_as_the_one_it_was_made_from(pair):
+    source = pair[0]
+    armature = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.context.collection.objects.link(armature)
+    armature.location = (0.5, 1, 0)
+    bpy.context.view_layer.update()
+    source.parent, source.matrix_parent_inverse = armature, armature.matrix_world.inverted()
+    modifier = source.modifiers.new("Skin", "ARMATURE")
+    modifier.object, modifier.use_deform_preserve_volume = armature, True
+    source.modifiers.new("Smooth", "SMOOTH")
+    source.vertex_groups.new(name="Bone")
+    bpy.context.view_layer.update()
+    assert wrap(wrap_result="OBJECT") == {"FINISHED"}
+    made = bpy.data.objects["Source to Target"]
+    bpy.context.view_layer.update()
+    assert made.parent == armature
+    np.testing.assert_allclose(np.array(made.matrix_world), np.array(source.matrix_world), atol=1e-6)
+    (kept,) = made.modifiers
+    assert (kept.type, kept.object, kept.use_deform_preserve_volume) == ("ARMATURE", armature, True)
+    assert "Bone" in made.vertex_groups
+
+
 def test_the_own_place_is_kept(pair):
     source = pair[0]
     centre = shown(source).mean(axis=0)
