@@ -12,8 +12,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..runtime.errors import MeshError
+from .unit_vectors import unit_vectors
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["TriangleMesh"]
@@ -61,6 +64,15 @@ class TriangleMesh:
         """Leave out what is computed of it when that is asked for."""
         return {"vertices": self.vertices, "triangles": self.triangles}
 
+    @classmethod
+    def concatenated(cls, meshes: Sequence[TriangleMesh]) -> TriangleMesh:
+        """Put several meshes into one, as components of it in this order; a single one is returned as it is."""
+        if len(meshes) == 1:
+            return meshes[0]
+        firsts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes[:-1])])
+        triangles = [mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]
+        return cls(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+
     @property
     def vertex_count(self) -> int:
         """Number of vertices, n."""
@@ -90,7 +102,7 @@ class TriangleMesh:
     @cached_property
     def triangle_normals(self) -> NDArray[np.float64]:
         """Unit normal of each triangle, (m, 3); zero for a triangle without area."""
-        return _unit(self._area_vectors)
+        return unit_vectors(self._area_vectors)
 
     @cached_property
     def vertex_areas(self) -> NDArray[np.float64]:
@@ -100,7 +112,7 @@ class TriangleMesh:
     @cached_property
     def vertex_normals(self) -> NDArray[np.float64]:
         """Unit normal at each vertex, weighted by triangle area, (n, 3); zero at a vertex without a triangle."""
-        return _unit(np.stack([self.sum_at_vertices(component) for component in self._area_vectors.T], axis=1))
+        return unit_vectors(np.stack([self.sum_at_vertices(component) for component in self._area_vectors.T], axis=1))
 
     def sum_at_vertices(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum a value per triangle, (m,), over the triangles around each vertex, (n,)."""
@@ -183,12 +195,6 @@ class TriangleMesh:
         triangles = np.flatnonzero(keep[self.triangles].all(axis=1))
         renumber = np.cumsum(keep) - 1
         return TriangleMesh(self.vertices[vertices], renumber[self.triangles[triangles]]), vertices, triangles
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale vectors to length one, leaving zero vectors alone."""
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
 
 
 def _read_only(array: NDArray[Any]) -> NDArray[Any]:

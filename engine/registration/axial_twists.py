@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from ..geometry.orientation import tangent_gradient
 from ..geometry.procrustes import nearest_rotations
+from ..mesh.unit_vectors import unit_vectors
 from ..runtime.worker import search_threads
 from ..shapes.extremities import spread_extremities
 
@@ -354,7 +355,7 @@ def _radii(source: DeformableSurface, rings: list[_Ring]) -> NDArray[np.float64]
 def _axis(positions: NDArray[np.float64], rings: list[_Ring]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centres (k, 3) of rings, and unit vectors (k, 3) along the curve through them."""
     centres = np.array([ring.weights @ positions[ring.vertices] for ring in rings])
-    return centres, _unit(np.gradient(centres, axis=0))
+    return centres, unit_vectors(np.gradient(centres, axis=0))
 
 
 def _turned(vectors: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -379,7 +380,7 @@ def _rigid_misfits(
 def _twists(rotations: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Angles (k - 1,) about the axis by which each of the rotations (k, 3, 3) turns more than the one before."""
     between = Rotation.from_matrix(rotations[1:] @ rotations[:-1].transpose(0, 2, 1)).as_quat()
-    along = np.einsum("kd,kd->k", between[:, :3], _unit(axes[1:] + axes[:-1]))
+    along = np.einsum("kd,kd->k", between[:, :3], unit_vectors(axes[1:] + axes[:-1]))
     return _wrapped(2 * np.arctan2(along, between[:, 3]))
 
 
@@ -449,7 +450,7 @@ def _moved(
     """Turn a limb: each vertex by the angle, and about the axis, between those of the rings beside it, (v, 3)."""
     centre, axis = (_between(limb, values) for values in (centres, axes))
     angle = np.interp(limb.distances, [ring.distance for ring in limb.rings], angles)
-    turns = Rotation.from_rotvec(angle[:, None] * _unit(axis))
+    turns = Rotation.from_rotvec(angle[:, None] * unit_vectors(axis))
     moved: NDArray[np.float64] = centre + turns.apply(positions[limb.vertices] - centre)
     return moved
 
@@ -458,11 +459,6 @@ def _between(limb: _Limb, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Interpolate values (k, 3) at the rings for the vertices, (v, 3)."""
     at = [ring.distance for ring in limb.rings]
     return np.stack([np.interp(limb.distances, at, column) for column in values.T], axis=1)
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Vectors (k, 3) of unit length."""
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
 def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..mesh.connectivity.halfedges import triangle_slots
+from ..mesh.unit_vectors import unit_vectors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -208,11 +209,13 @@ def _borders(
     away = middles - vertices[tops]
     unit = along / np.where(lengths > 0, lengths, 1)[:, None]
     away -= np.einsum("kd,kd->k", away, unit)[:, None] * unit
-    outward = np.stack([np.bincount(tail, axis, k) + np.bincount(head, axis, k) for axis in _unit(away).T], axis=1)
+    outward = np.stack(
+        [np.bincount(tail, axis, k) + np.bincount(head, axis, k) for axis in unit_vectors(away).T], axis=1
+    )
     neighbours = _graph(tail, head, k)
     neighbours = neighbours + neighbours.T
     for _ in range(_SMOOTHED):
-        outward = _unit(outward)
+        outward = unit_vectors(outward)
         outward = outward + neighbours @ outward
     loops = connected_components(neighbours, directed=False)[1]
     enough = np.bincount(loops)[loops] >= _FEWEST
@@ -221,14 +224,9 @@ def _borders(
         return None, area
     loops, kept = np.unique(loops[enough], return_inverse=True)[1], np.flatnonzero(enough)
     neighbours = neighbours[kept][:, kept]
-    outward = _unit(outward[kept])
+    outward = unit_vectors(outward[kept])
     return _Borders(border[kept], pieces[border[kept]], loops, around[kept], outward, neighbours, pieces), area
 
 
 def _graph(tails: NDArray[np.int64], heads: NDArray[np.int64], count: int) -> coo_array:
     return coo_array((np.ones(len(tails)), (tails, heads)), shape=(count, count)).tocsr()
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..mesh.unit_vectors import unit_vectors
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -56,17 +58,12 @@ def small_holes(
     fans = np.cross(b - middle, a - middle)
     lids: NDArray[Any] = np.stack([np.bincount(loops.labels, axis, loops.count) for axis in fans.T], axis=1)
     corners = vertices[triangles[loops.half_edges // 3]]
-    beside = _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    beside = unit_vectors(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     lengths = np.linalg.norm(b - a, axis=1)
-    cosines = np.einsum("bd,bd->b", beside, _unit(lids)[loops.labels])
+    cosines = np.einsum("bd,bd->b", beside, unit_vectors(lids)[loops.labels])
     in_sheet = np.bincount(loops.labels, lengths * (cosines - _SHEET), loops.count) > 0
     long_enough = np.bincount(loops.labels, minlength=loops.count) > 2
     return long_enough & (loops.areas <= np.where(in_sheet, _LARGEST_HOLE, _LARGEST_END) * area)
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
 
 
 def fill_holes(

@@ -221,13 +221,6 @@ def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> NDArray[np
     return lying
 
 
-def _together(meshes: list[TriangleMesh]) -> TriangleMesh:
-    """Put meshes into one."""
-    firsts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes[:-1])])
-    triangles = [mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]
-    return TriangleMesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
-
-
 @dataclass(frozen=True, eq=False)
 class _Body:
     """The pieces of a body, turned to look outward.
@@ -253,7 +246,7 @@ class _Body:
     @classmethod
     def of(cls, pieces: list[SurfacePart]) -> _Body:
         """Turn pieces outward."""
-        together = _together([piece.mesh for piece in pieces])
+        together = TriangleMesh.concatenated([piece.mesh for piece in pieces])
         groups = group_half_edges(together.triangles, together.vertex_count)
         twins = pair_half_edges(together.vertices, together.triangles, groups)
         components = triangle_components(twins)

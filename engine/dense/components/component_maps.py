@@ -150,8 +150,8 @@ class _Mapped:
         self, x_pieces: Sequence[SurfacePart], y_pieces: Sequence[SurfacePart], images: Mapping[int, _Image]
     ) -> None:
         self._partners = [y_pieces[image.partner] for image in images.values()]
-        here = _joined([x_pieces[number].mesh for number in images])
-        self._there = _joined([partner.mesh for partner in self._partners])
+        here = TriangleMesh.concatenated([x_pieces[number].mesh for number in images])
+        self._there = TriangleMesh.concatenated([partner.mesh for partner in self._partners])
         counts = [partner.mesh.triangle_count for partner in self._partners]
         self._firsts = np.concatenate([[0], np.cumsum(counts)])
         found = [image.points for image in images.values()]
@@ -187,15 +187,6 @@ class _Mapped:
             inside = found.triangles[its] - self._firsts[number]
             triangles[its], barycentric[its] = self._partners[number].to_original(inside, found.barycentric[its])
         return triangles, barycentric
-
-
-def _joined(meshes: list[TriangleMesh]) -> TriangleMesh:
-    """Put meshes into one."""
-    if len(meshes) == 1:
-        return meshes[0]
-    firsts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes[:-1])])
-    triangles = [mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]
-    return TriangleMesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
 
 
 class _PartMaps:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...mesh.unit_vectors import unit_vectors
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -92,7 +94,7 @@ class Surroundings:
     """
 
     def __init__(self, mesh: TriangleMesh, other: TriangleMesh, images: SurfacePoints) -> None:
-        image_normals = _unit(images.interpolate(other.vertex_normals))
+        image_normals = unit_vectors(images.interpolate(other.vertex_normals))
         self._levels = [
             _places(
                 float(np.sqrt(mesh.area / mesh.vertex_count)),
@@ -214,8 +216,3 @@ def _neighbours_together(points: NDArray[np.float64]) -> NDArray[np.int64]:
     side = max(float((points.max(axis=0) - low).max()), np.finfo(float).tiny)
     cells = ((points - low) / side * 63).astype(np.int64)
     return np.argsort((cells[:, 0] * 64 + cells[:, 1]) * 64 + cells[:, 2], kind="stable")
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)

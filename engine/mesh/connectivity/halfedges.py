@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
+from ..unit_vectors import unit_vectors
 from .triangle_components import triangle_components
 
 if TYPE_CHECKING:
@@ -153,9 +154,9 @@ def _crowded_pairs(
     tail, head, apex = (triangle_slots(triangles, half_edges, shift) for shift in range(3))
     forward = tail < head
     start, end = vertices[np.minimum(tail, head)], vertices[np.maximum(tail, head)]
-    along = _unit(end - start)
+    along = unit_vectors(end - start)
     side = vertices[apex] - start
-    side = _unit(side - np.einsum("kd,kd->k", side, along)[:, None] * along)
+    side = unit_vectors(side - np.einsum("kd,kd->k", side, along)[:, None] * along)
 
     first, second = [], []
     for offset in range(1, int(np.bincount(group).max())):
@@ -193,8 +194,3 @@ def _counting_order(keys: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     k = len(keys)
     rows = csr_array((np.ones(k, np.int8), keys.astype(np.int32), np.arange(k + 1, dtype=np.int32)), shape=(k, count))
     return rows.tocsc().indices.astype(np.int64)
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...geometry.procrustes import nearest_rotations
+from ...mesh.unit_vectors import unit_vectors
 from ...runtime.errors import RigError
 from .joint_carriers import carriers_of, moved_areas, nearest_on_bones
 
@@ -157,7 +158,7 @@ def root_direction(rig: FittedRig, source: TriangleMesh, root: int) -> NDArray[n
     middle = source.vertex_areas @ source.vertices / source.area
     away = rig.skeleton.heads[root] - middle
     outside = np.linalg.norm(away) > _LEAST_REACH * np.linalg.norm(np.ptp(source.vertices, axis=0))
-    return _unit(away[None])[0] if outside else np.zeros(3)
+    return unit_vectors(away[None])[0] if outside else np.zeros(3)
 
 
 def _rooted(
@@ -214,15 +215,15 @@ def _swung(
     rotations: NDArray[np.float64], before: NDArray[np.float64], after: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Turn rotations (b, 3, 3) by the least angle so that they take vectors (b, 3) to the direction of others."""
-    start = _unit(np.einsum("bij,bj->bi", rotations, before))
-    return _least_turns(start, _unit(after)) @ rotations
+    start = unit_vectors(np.einsum("bij,bj->bi", rotations, before))
+    return _least_turns(start, unit_vectors(after)) @ rotations
 
 
 def _least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
     """Find the rotations by the least angle from unit vectors (b, 3) to others, (b, 3, 3)."""
     # Two reflections: first the start to its negative, then that to the end; the other way round near half a turn.
     cosine = (start * end).sum(axis=1)
-    middle = _unit(start + end)
+    middle = unit_vectors(start + end)
     opposite = cosine < -1 + 1e-9
     if opposite.any():
         least = np.abs(start[opposite]).argmin(axis=1)
@@ -234,15 +235,10 @@ def _least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArra
 
 def _across(vectors: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Take what of the vectors (b, 3) lies across the axes, to length one; any direction across if nothing does."""
-    axes = _unit(axes)
+    axes = unit_vectors(axes)
     flat = vectors - (vectors * axes).sum(axis=1, keepdims=True) * axes
     lost = np.linalg.norm(flat, axis=1) <= 1e-6 * np.maximum(np.linalg.norm(vectors, axis=1), np.finfo(float).tiny)
     if lost.any():
         other = np.eye(3)[np.abs(axes[lost]).argmin(axis=1)]
         flat[lost] = other - (other * axes[lost]).sum(axis=1, keepdims=True) * axes[lost]
-    return _unit(flat)
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale vectors (b, 3) to length one; zero stays zero."""
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(float).tiny)
+    return unit_vectors(flat)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...mesh.unit_vectors import unit_vectors
 from ...runtime.errors import MatchError, MeshError
 from .charts import cut_into_sheets
 
@@ -25,6 +26,9 @@ _SAME = 1e-3
 
 _SAME_DIRECTION = 0.02
 """Unit vectors that differ by less are the same: one degree."""
+
+_CANCELLED = 1e-6
+"""Length up to which a sum of unit vectors counts as none: they cancelled out."""
 
 
 def carry_corner_values(values: ArrayLike, source: Polygons, places: FacePlaces) -> NDArray[Any]:
@@ -129,9 +133,9 @@ def carry_normals(
     vertices = places.polygons.corner_vertices
     smooth = places.map.transfer(places.image.vertex_normals)
     turned = np.einsum("nij,nj->ni", rotations, smooth)
-    last = _shortest_rotations(_unit(turned), target.vertex_normals)
+    last = _shortest_rotations(unit_vectors(turned, _CANCELLED), target.vertex_normals)
     whole = last @ rotations
-    result = _unit(np.einsum("lij,lj->li", whole[vertices], carried))
+    result = unit_vectors(np.einsum("lij,lj->li", whole[vertices], carried), _CANCELLED)
     # Where normals cancel out there is none; the target's own is as good as any.
     return np.where(result.any(axis=1, keepdims=True), result, target.vertex_normals[vertices])
 
@@ -155,9 +159,3 @@ def _shortest_rotations(start: NDArray[np.float64], end: NDArray[np.float64]) ->
     factor = np.where(proper, 1 / np.where(proper, 1 + cosine, 1), 0)
     turn = np.eye(3) + cross + factor[:, None, None] * (cross @ cross)
     return np.where(proper[:, None, None], turn, np.eye(3))
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale vectors (n, 3) to length one; those that nearly cancelled out become zero."""
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 1e-6)

@@ -185,3 +185,15 @@ def test_invariants_under_motion_and_scale():
     assert np.allclose(moved.vertex_areas, 1e6 * mesh.vertex_areas)
     assert np.allclose(moved.vertex_normals, mesh.vertex_normals @ turn.T)
     assert moved.area == pytest.approx(1e6 * mesh.area)
+
+
+def test_meshes_are_put_into_one_in_order():
+    meshes = [TriangleMesh(*icosphere(2)), TriangleMesh(*icosphere(3, 2.0)), TriangleMesh(*icosphere(1))]
+    whole = TriangleMesh.concatenated(meshes)
+    assert whole.area == pytest.approx(sum(mesh.area for mesh in meshes))
+    firsts = np.cumsum([0] + [mesh.vertex_count for mesh in meshes])
+    for mesh, first, last in zip(meshes, firsts, firsts[1:], strict=False):
+        np.testing.assert_array_equal(whole.vertices[first:last], mesh.vertices)
+        inside = ((whole.triangles >= first) & (whole.triangles < last)).all(axis=1)
+        np.testing.assert_array_equal(whole.triangles[inside] - first, mesh.triangles)
+    assert TriangleMesh.concatenated(meshes[:1]) is meshes[0]
