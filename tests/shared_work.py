@@ -59,7 +59,7 @@ def failing_elsewhere(home, item):
     """Work in one process alone."""
     yield from squared(0, 0)
     if os.getpid() != home:
-        raise OSError
+        raise OSError("Not here")
     return item
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import deque
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -169,6 +170,13 @@ class _Sharing(Generic[Common, Item, Result]):
     def _take(self, number: int, task: Task) -> None:
         if not task.done:  # then here
             self._waiting.appendleft(number)
+            if task.value is not None:
+                warnings.warn(
+                    "Part of the work failed in a helper and is done again here. This is a bug of HierMatch, please "
+                    f"report it:\n{task.value}",
+                    RuntimeWarning,
+                    stacklevel=1,
+                )
         elif isinstance(task.value, HierMatchError):
             self._fail(number, task.value)
         else:

@@ -63,7 +63,8 @@ class Task:
     done : bool
         Whether it was carried out.
     value : object
-        The result then, or the error if the input is at fault.
+        The result then, or the error if the input is at fault.  If it was not carried out, the traceback that says why,
+        or None if the helper is gone.
     """
 
     def __init__(self) -> None:

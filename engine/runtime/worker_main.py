@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import traceback
 from typing import Any
 
 from .blas_threads import one_thread
@@ -27,8 +28,8 @@ def serve(idle: float = _IDLE) -> None:
 
     An order is a message with two lists of numbers, what to forget and what comes new; one message for each of the
     latter; and one with a function, what all items have in common, and an item.  The reply to it says whether it was
-    carried out, and with what result or error.  The first message of all names the package that is called ``engine``
-    here; when all is ready, that is said by `READY`.
+    carried out, and with what result or error; if not, it brings the traceback.  The first message of all names the
+    package that is called ``engine`` here; when all is ready, that is said by `READY`.
     """
     orders, replies = 0, os.dup(1)
     os.dup2(2, 1)  # what is printed is no reply
@@ -56,5 +57,5 @@ def _reply(package: str, known: dict[int, Any], gone: list[int], new: dict[int, 
             return pack((True, run(work(common, item))))
     except HierMatchError as error:
         return pack((True, error))
-    except Exception:  # noqa: BLE001 - what fails here is done again where it can be seen
-        return pack((False, None))
+    except Exception:  # noqa: BLE001 - what fails here is done again, and said, where it can be seen
+        return pack((False, traceback.format_exc()))

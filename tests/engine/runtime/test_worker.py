@@ -141,9 +141,17 @@ def test_after_an_error_nothing_more_is_begun():
     assert begun == [0, 5]
 
 
-def test_what_fails_elsewhere_is_done_here(helper):
-    assert run(shared_steps(shared_work.failing_elsewhere, os.getpid(), range(4))) == [0, 1, 2, 3]
+def test_what_fails_elsewhere_is_done_here_and_said(helper):
+    with pytest.warns(RuntimeWarning, match=r"(?s)failed in a helper.*in failing_elsewhere.*OSError: Not here") as said:
+        assert run(shared_steps(shared_work.failing_elsewhere, os.getpid(), range(4))) == [0, 1, 2, 3]
+    assert {Path(warning.filename).name for warning in said} == {"parallel_map.py"}
     assert present_helpers() == [helper]
+
+
+@pytest.mark.usefixtures("helper")
+def test_what_fails_elsewhere_fails_in_tests():
+    with pytest.raises(RuntimeWarning, match="failing_elsewhere"):
+        run(shared_steps(shared_work.failing_elsewhere, os.getpid(), range(4)))
 
 
 @pytest.mark.usefixtures("helper")
