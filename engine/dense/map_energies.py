@@ -30,18 +30,20 @@ def spectral_terms(x: MapDomain, y: MapDomain, maps: FunctionalMaps) -> dict[str
     dict of float
         ``bijectivity``, :math:`\|C_X C_Y - I\|^2 / k`; ``orthogonality``, the mean over both directions of
         :math:`\|C^T C - I\|^2 / k`, zero for maps that keep areas; ``commutator``, that of
-        :math:`\|C \Lambda - \Lambda' C\|^2 / \|\Lambda\|^2`, zero for maps that keep distances.
+        :math:`\|C \Lambda - \Lambda' C\|^2 / \|\Lambda\|^2`, zero for maps that keep distances, and for those of
+        constants alone.
     """
     size = len(maps.onto_x)
     unit = np.eye(size)
     x_values, y_values = x.values[:size], y.values[:size]
     gaps = np.square(x_values[:, None] - y_values)  # (k of X, k of Y)
     commutator = (np.square(maps.onto_x) * gaps).sum() + (np.square(maps.onto_y) * gaps.T).sum()
+    scale = np.square(x_values).sum() + np.square(y_values).sum()
     orthogonality = sum(np.square(c.T @ c - unit).sum() for c in maps)
     return {
         "bijectivity": float(np.square(maps.onto_x @ maps.onto_y - unit).sum() / size),
         "orthogonality": float(orthogonality / (2 * size)),
-        "commutator": float(commutator / (np.square(x_values).sum() + np.square(y_values).sum())),
+        "commutator": float(commutator / scale) if scale > 0 else 0.0,  # of constants alone
     }
 
 

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -116,3 +118,8 @@ def test_both_directions_count_alike(body, bent):
     assert distance_term(body, bent, points) == pytest.approx(distance_term(bent, body, back))
     assert rigidity_term(body, bent, points, 40) == pytest.approx(rigidity_term(bent, body, back, 40))
     assert curvature_terms(body, bent, points) == pytest.approx(curvature_terms(bent, body, back))
+
+
+def test_maps_of_constants_alone_have_no_defect():
+    constants = SimpleNamespace(values=np.zeros(1))
+    assert set(spectral_terms(constants, constants, FunctionalMaps(np.eye(1), np.eye(1))).values()) == {0.0}
