@@ -72,6 +72,10 @@ class DenseMatch:
     target_to_source: SurfaceMap
     quality: MatchQuality
 
+    def __repr__(self) -> str:
+        sizes = f"{len(self.source_to_target)} and {len(self.target_to_source)} vertices"
+        return f"<DenseMatch: {sizes}, confidence {self.quality.confidence:.2f}>"
+
 
 def densify(
     source: TriangleMesh | Shape,

@@ -44,6 +44,10 @@ class CoarseMatch:
     proven: bool
     nodes: int
 
+    def __repr__(self) -> str:
+        proven = "proven" if self.proven else "not proven"
+        return f"<CoarseMatch: {len(self.source_vertices)} points, cost {self.cost:.3g}, {proven}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Level:
@@ -65,3 +69,6 @@ class Level:
     iterations: int
     distortion: float
     target_points: SurfacePoints
+
+    def __repr__(self) -> str:
+        return f"<Level: {self.points} points, distortion {self.distortion:.3g}>"

@@ -79,3 +79,7 @@ class MatchResult:
     source_to_target: SurfaceMap | None = None
     target_to_source: SurfaceMap | None = None
     quality: MatchQuality | None = None
+
+    def __repr__(self) -> str:
+        dense = "" if self.quality is None else f", dense with confidence {self.quality.confidence:.2f}"
+        return f"<MatchResult: {len(self.source_points)} points, distortion {self.distortion:.3g}{dense}>"

@@ -104,6 +104,9 @@ class RetrievedMatch:
     target_points: SurfacePoints
     score: float
 
+    def __repr__(self) -> str:
+        return f"<RetrievedMatch: shape {self.shape}, {len(self.source_points)} points, score {self.score:.3g}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Retrieval:
@@ -128,6 +131,9 @@ class Retrieval:
     scores: NDArray[np.float64]
     bounds: NDArray[np.float64]
     matches: tuple[RetrievedMatch, ...]
+
+    def __repr__(self) -> str:
+        return f"<Retrieval: {len(self.order)} shapes, {len(self.matches)} of them matched>"
 
     @property
     def by_bound_only(self) -> NDArray[np.bool_]:

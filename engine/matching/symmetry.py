@@ -90,6 +90,10 @@ class SymmetryResult:
     proven: bool
     notes: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        kind = "a reflection" if self.reverses_orientation else "a turn"
+        return f"<SymmetryResult: {kind}, {len(self.source_points)} points, asymmetry {self.asymmetry:.3g}>"
+
     @property
     def reverses_orientation(self) -> bool:
         """Whether the map is a reflection."""

@@ -69,6 +69,9 @@ class FoundPoints:
     def __len__(self) -> int:
         return len(self.triangles)
 
+    def __repr__(self) -> str:
+        return f"<FoundPoints: {len(self)} points>"
+
     def nearest_vertices(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Tell which corner of its triangle each is nearest to, of the surface's (m, 3): vertices (k,)."""
         corners: NDArray[np.int64] = triangles[self.triangles, self.barycentric.argmax(axis=1)]

@@ -64,6 +64,9 @@ class Polygons:
         if self.triangle_corners.size and self.triangle_corners.max() >= corners:
             raise MeshError(f"A triangle has a corner beyond the {corners} of the faces.")
 
+    def __repr__(self) -> str:
+        return f"<Polygons: {self.face_count} faces, {self.corner_count} corners>"
+
     @property
     def face_count(self) -> int:
         """Number of faces, f."""

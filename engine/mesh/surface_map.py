@@ -101,6 +101,9 @@ class SurfaceMap:
     def __len__(self) -> int:
         return len(self.points)
 
+    def __repr__(self) -> str:
+        return f"<SurfaceMap: {len(self)} vertices to a mesh of {self.image_vertex_count}>"
+
     @property
     def triangles(self) -> NDArray[np.int64]:
         """Triangle of the image in which the point of each vertex lies, (n,)."""

@@ -45,6 +45,9 @@ class SurfacePoints:
     def __len__(self) -> int:
         return len(self.triangles)
 
+    def __repr__(self) -> str:
+        return f"<SurfacePoints: {len(self)} points>"
+
     @classmethod
     def from_barycentric(
         cls, mesh: TriangleMesh, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]

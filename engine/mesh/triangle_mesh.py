@@ -60,6 +60,9 @@ class TriangleMesh:
                 "Check its scale and whether its vertices all lie on one line or in one point."
             )
 
+    def __repr__(self) -> str:
+        return f"<TriangleMesh: {self.vertex_count} vertices, {self.triangle_count} triangles>"
+
     def __getstate__(self) -> dict[str, Any]:
         """Leave out what is computed of it when that is asked for."""
         return {"vertices": self.vertices, "triangles": self.triangles}

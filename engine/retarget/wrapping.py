@@ -68,6 +68,9 @@ class WrappedSurface:
     held: NDArray[np.bool_]
     folded: float
 
+    def __repr__(self) -> str:
+        return f"<WrappedSurface: {len(self.positions)} vertices, {self.folded:.1%} folded>"
+
 
 @on_one_thread
 def wrap_steps(

@@ -88,6 +88,10 @@ class Shape:
     ) -> None:
         self._start(run(prepared_steps(mesh, name, proxy_vertices, excluded)))
 
+    def __repr__(self) -> str:
+        own, matched = self.original, self.mesh
+        return f"<Shape: {own.vertex_count} vertices, {matched.vertex_count} to match>"
+
     @classmethod
     def steps(
         cls,

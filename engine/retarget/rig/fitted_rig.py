@@ -55,6 +55,9 @@ class FittedRig:
     source_to_target: SurfaceMap
     target_to_source: SurfaceMap
 
+    def __repr__(self) -> str:
+        return f"<FittedRig: {len(self.scales)} bones, {len(self.posed)} vertices>"
+
     @property
     def heads(self) -> NDArray[np.float64]:
         """Where the heads of the bones lie in the target, (b, 3)."""

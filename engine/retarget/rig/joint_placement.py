@@ -54,6 +54,9 @@ class PlacedJoints:
     normals: NDArray[np.float64]
     rotations: NDArray[np.float64]
 
+    def __repr__(self) -> str:
+        return f"<PlacedJoints: {len(self.heads)} bones>"
+
 
 def place_joints(
     rig: FittedRig, source: TriangleMesh, normals: NDArray[np.float64], frames: NDArray[np.float64] | None = None

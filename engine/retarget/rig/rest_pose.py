@@ -51,6 +51,9 @@ class RestPose:
     heads: NDArray[np.float64]
     turns: NDArray[np.float64]
 
+    def __repr__(self) -> str:
+        return f"<RestPose: {len(self.heads)} bones>"
+
 
 def bend_angles(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> NDArray[np.float64]:
     """Find by what angle the large bones of a body are bent against those above, in addition to the source.

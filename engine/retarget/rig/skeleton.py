@@ -59,6 +59,9 @@ class Skeleton:
     def __len__(self) -> int:
         return len(self.parents)
 
+    def __repr__(self) -> str:
+        return f"<Skeleton: {len(self.heads)} bones>"
+
     @cached_property
     def order(self) -> NDArray[np.int64]:
         """All bones, parents before their children, (b,)."""

@@ -54,6 +54,9 @@ class LocalFrames:
     def __len__(self) -> int:
         return len(self.scales)
 
+    def __repr__(self) -> str:
+        return f"<LocalFrames: {len(self)} vertices, {self.overall:.3g} times as large>"
+
     def turned(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Turn vectors (..., n, 3), one for each vertex, without a change of length."""
         return np.einsum("nij,...nj->...ni", self.rotations, vectors)

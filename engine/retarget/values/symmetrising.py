@@ -51,6 +51,9 @@ class Symmetriser:
     own: NDArray[np.float64]
     frames: LocalFrames
 
+    def __repr__(self) -> str:
+        return f"<Symmetriser: {len(self.own)} vertices>"
+
     @classmethod
     def of(cls, mesh: TriangleMesh, mirror: SurfaceMap, hints: NDArray[np.float64]) -> Symmetriser:
         """Tell the sides apart.

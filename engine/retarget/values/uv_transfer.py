@@ -70,6 +70,9 @@ class CarriedUVs:
     lost: int
     untrusted: int
 
+    def __repr__(self) -> str:
+        return f"<CarriedUVs: {len(self.uvs)} corners, {self.lost} of {self.island_count} islands lost>"
+
 
 @on_one_thread
 def carry_uvs_steps(

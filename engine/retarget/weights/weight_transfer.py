@@ -44,6 +44,9 @@ class CarriedWeights:
     weights: csr_array
     torn: NDArray[np.bool_]
 
+    def __repr__(self) -> str:
+        return f"<CarriedWeights: {self.weights.shape[0]} vertices, {self.weights.shape[1]} groups>"
+
 
 @dataclass(frozen=True, eq=False)
 class Columns:
