@@ -83,17 +83,17 @@ def test_each_level_is_a_matching_that_is_no_worse_than_what_it_began_with(seed)
 
 
 def test_where_distances_cannot_tell_the_other_term_decides():
-    # Points in the plane z = 0 and their mirror images have the same distances.
+    # Points and their mirror images have the same distances, also from the first point, which is its own.
     rng = np.random.default_rng(2)
-    half = rng.normal(size=(8, 3)) * [1, 1, 0] + [4, 0, 0]
-    places = np.concatenate([half, half * [-1, 1, 1]])
-    pair, mirror = PointPair(places, places, MatchSettings()), np.roll(np.arange(16), 8)
-    for truth in (np.arange(16), mirror):
-        term = np.ones((16, 16))
-        term[np.arange(16), truth] = 0
-        # With too little to begin with for the distances: a single point, in the middle of the other half.
-        found = run(refine_steps(pair, truth[:1], [16], 50 * term))[0]
-        np.testing.assert_array_equal(found.assignment, truth)
+    half = rng.normal([4, 0, 0], size=(8, 3))
+    places = np.concatenate([[[0.0, 0, 0]], half, half * [-1, 1, 1]])
+    pair = PointPair(places, places, MatchSettings())
+    for truth in (np.arange(17), np.concatenate([[0], np.roll(np.arange(1, 17), 8)])):
+        term = np.ones((17, 17))
+        term[np.arange(17), truth] = 0
+        found = run(refine_steps(pair, np.array([0]), [9, 17], 50 * term))
+        for level in found:
+            np.testing.assert_array_equal(level.assignment, truth[: len(level.assignment)])
 
 
 def test_progress_names_the_points_of_each_level():
