@@ -67,8 +67,11 @@ def test_a_whole_surface_lacks_nothing(ball):
 
 def test_gaps_that_meet_no_other_are_left_to_others(ball):
     vertices, triangles = ball
-    far = [0, int(np.linalg.norm(vertices[triangles[:, 0]] + vertices[triangles[0, 0]], axis=1).argmin())]
-    assert len(found_gaps(vertices, np.delete(triangles, far, axis=0))[0]) == 0
+    pair = sharing_a_vertex(triangles, 200, 2)
+    lone = int((vertices[triangles].mean(axis=1) @ vertices[200]).argmin())
+    assert len(found_gaps(vertices, np.delete(triangles, lone, axis=0))[0]) == 0
+    faces, _ = found_gaps(vertices, np.delete(triangles, [*pair, lone], axis=0))
+    assert in_order(faces) == in_order(triangles[pair])
 
 
 def test_of_gaps_that_meet_only_those_of_one_face_are_found(ball):

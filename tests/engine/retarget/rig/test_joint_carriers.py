@@ -86,6 +86,14 @@ def test_joints_of_a_chain_are_carried_by_both_bones(carriers):
         np.testing.assert_allclose(carriers.of_places[place], np.eye(len(BONES))[bones].mean(axis=0))
 
 
+def test_a_joint_apart_from_the_bone_above_is_carried_by_it_too(tube):
+    bones = BONES | {"upper": (1, (0.05, 0, 2.2), (0, 0, 3))}
+    found = carriers_of(rig_of(tube, by_height(tube), bones), tube)
+    np.testing.assert_allclose(
+        found.of_places[place_of(found, UPPER)], np.eye(len(BONES))[[MIDDLE, UPPER]].mean(axis=0)
+    )
+
+
 def test_bones_that_move_vertices_turn_with_themselves(carriers):
     np.testing.assert_array_equal(carriers.of_turns[:3], np.eye(len(BONES))[:3])
 
