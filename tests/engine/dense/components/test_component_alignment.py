@@ -103,16 +103,14 @@ def test_another_meshing_of_the_same_part_fits_as_well():
 
 
 def test_the_two_sides_of_a_thin_part_are_told_apart():
+    # One that is bowed by several times its thickness, so that no rigid motion lays it onto the other.
     vertices, triangles = icosphere(10)
-    x, y, _ = vertices.T
-    plate = TriangleMesh(vertices * [0.3, 0.4, 0.006] * (1 + 0.3 * (x + y) * x)[:, None] + PLACE, triangles)
-    other = swung(plate, [0, 1, 0], 0.1)
-    partner = TriangleMesh(moved(other.vertices), triangles)
+    plate = TriangleMesh(vertices * [0.3, 0.4, 0.006] + PLACE, triangles)
+    bowed = plate.vertices + 0.06 * vertices[:, :1] ** 2 * [0, 0, 1]
+    partner = TriangleMesh(moved(bowed), triangles)
     found, _ = laid(plate, partner)
-    upper = np.sign(plate.vertices[:, 2])
-    flat = np.abs(plate.vertex_normals[:, 2]) > 0.9
-    assert flat.mean() > 0.5
-    lifted = (found - moved(other.vertices)) @ (TURN @ rotation([0, 1, 0], 0.1) @ [0, 0, 1]) / SCALE
-    # Those on the other side would be a whole thickness away.
-    assert (np.abs(lifted[flat]) < np.abs(plate.vertices[flat, 2])).mean() > 0.95
-    assert set(upper[flat]) == {-1, 1}
+    back = (found - SHIFT) @ TURN / SCALE
+    middle = 0.06 * ((back[:, 0] - PLACE[0]) / 0.3) ** 2
+    inner = np.abs(vertices[:, 2]) > 0.5
+    same = np.sign(back[inner, 2] - middle[inner]) == np.sign(vertices[inner, 2])
+    assert same.mean() > 0.95
