@@ -114,7 +114,7 @@ class Report:
             done = [part.done for part in one.reports if part.done]
             self.carried.append({"target": one.target, "done": done})
             for part in one.reports:
-                self.add_notes(part.notes)
+                self.add_notes((*part.notes, *part.remarks))
 
     def add_notes(self, notes: Sequence[str]) -> None:
         """Add what should be known, once."""

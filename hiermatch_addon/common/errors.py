@@ -5,8 +5,12 @@ from __future__ import annotations
 
 from ...engine import HierMatchError
 
-__all__ = ["ObjectError"]
+__all__ = ["NothingToCarryError", "ObjectError"]
 
 
 class ObjectError(HierMatchError):
     """An object that cannot be matched or written to as it stands; the message says why and what to do."""
+
+
+class NothingToCarryError(ObjectError):
+    """A source that has nothing of a kind: no reason to worry where many kinds are carried at once."""

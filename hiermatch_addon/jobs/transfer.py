@@ -46,10 +46,13 @@ class TransferReport:
         What was written, such as "53 vertex groups"; empty if nothing was.
     notes : tuple of str
         What was left out, or is to be known, and why: one sentence each.
+    remarks : tuple of str
+        The same, where it is no reason to worry.
     """
 
     done: str
     notes: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 class Transfer(Protocol):

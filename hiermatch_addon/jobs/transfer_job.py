@@ -11,7 +11,7 @@ import bpy
 
 from ...engine import HierMatchError, Progress, fit_rig_steps, within
 from ..common.access import mesh_of, view_layer_of
-from ..common.errors import ObjectError
+from ..common.errors import NothingToCarryError, ObjectError
 from ..scene.armatures import read_rig
 from ..scene.mesh_io import position_digest, read_mesh, topology
 from ..scene.pair import check_object, check_pair
@@ -124,7 +124,10 @@ class _Leg:
                 self.transfers.append(transfer)
         if errors and not (self._optional and self.transfers):
             raise errors[0][1]
-        self.left_out = [TransferReport("", (f"{label} left out: {error}",)) for label, error in errors]
+        for label, reason in errors:
+            said = (f"{label} left out: {reason}",)
+            absent = isinstance(reason, NothingToCarryError)
+            self.left_out.append(TransferReport("", remarks=said) if absent else TransferReport("", notes=said))
 
 
 def _carry_fresh_match(source: bpy.types.Object, target: bpy.types.Object, prefix: str) -> bool:

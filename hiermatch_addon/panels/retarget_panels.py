@@ -121,4 +121,6 @@ def _draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report:
         draw_text(box, context, line, "CHECKMARK")
     for line in report.notes.splitlines():
         draw_text(box, context, line, "ERROR")
+    for line in report.remarks.splitlines():
+        draw_text(box, context, line, "INFO")
     box.label(text=f"{report.seconds:.1f} s", icon="TIME")

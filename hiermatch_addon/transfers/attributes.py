@@ -9,7 +9,7 @@ import numpy as np
 
 from ...engine import Crossing, Progress, carry_face_values, carry_normals, carry_values_steps, surface_frames, within
 from ..common.access import mesh_of
-from ..common.errors import ObjectError
+from ..common.errors import NothingToCarryError
 from ..common.phrases import counted
 from ..jobs.transfer import TransferReport
 from ..scene.attribute_io import (
@@ -82,7 +82,7 @@ class AttributeTransfer:
             self._normals = _unit(read_corner_normals(mine) @ np.linalg.inv(_linear_part(context, source)))
             self._to_local = _linear_part(context, target)
         if not self._values and self._materials is None and self._normals is None and not self._notes:
-            raise ObjectError(
+            raise NothingToCarryError(
                 f'"{source.name}" has nothing of what is to be carried over: no such attributes, materials, marked '
                 "edges or custom normals. Choose other options, or another Source."
             )

@@ -29,6 +29,10 @@ class HIERMATCH_PG_report(bpy.types.PropertyGroup):
     notes: _props.StringProperty(
         name="Notes", description="What was left out, or should be known, and why: one sentence per line"
     )
+    remarks: _props.StringProperty(
+        name="Remarks",
+        description="What was left out, or should be known, but is no reason to worry: one sentence per line",
+    )
     seconds: _props.FloatProperty(name="Seconds", description="How long it took")
 
 
@@ -57,13 +61,16 @@ def copy_named(source: object, target: object, names: Iterable[str]) -> None:
         setattr(target, name, getattr(source, name))
 
 
-def remember_transfer(context: bpy.types.Context, carried: list[Carried]) -> None:
-    """Fill the report."""
+def remember_transfer(context: bpy.types.Context, carried: list[Carried], left_out: str = "") -> None:
+    """Fill the report; `left_out` says which selected meshes were no targets."""
     report: Any = retarget_of(context).report
     done = []
     for one in carried:
-        parts = [part.done for part in one.reports if part.done]
-        done.append(f'Carried to "{one.target}": {", ".join(parts) if parts else "nothing"}')
+        what = [part.done for part in one.reports if part.done]
+        done.append(f'Carried to "{one.target}": {", ".join(what) if what else "nothing"}')
     report.done = "\n".join(done)
-    report.notes = "\n".join(note for one in carried for part in one.reports for note in part.notes)
+    parts = [part for one in carried for part in one.reports]
+    report.notes = "\n".join(dict.fromkeys(note for part in parts for note in part.notes))
+    remarks = [*([left_out] if left_out else []), *(remark for part in parts for remark in part.remarks)]
+    report.remarks = "\n".join(dict.fromkeys(remarks))
     report.seconds = carried[-1].seconds if carried else 0.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...engine import Progress, is_posed, place_joints, rest_pose
 from ..common.access import view_layer_of
-from ..common.errors import ObjectError
+from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armature_copy import copy_armature, move_joints, repoint
@@ -57,7 +57,7 @@ class RigTransfer:
         check_writable(target)
         armature = find_armature(source)
         if armature is None:
-            raise ObjectError(
+            raise NothingToCarryError(
                 f'"{source.name}" has no armature, so there is no rig to fit. Give it an Armature modifier with its '
                 "armature, or pick another Source."
             )

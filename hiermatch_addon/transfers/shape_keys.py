@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from ...engine import bone_frames, carry_offsets_steps, surface_frames
-from ..common.errors import ObjectError
+from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armatures import find_armature
@@ -123,7 +123,9 @@ class ShapeKeyTransfer:
         """Names of the keys to carry, in the order of the source."""
         names = shape_key_names(source)
         if not names:
-            raise ObjectError(f'"{source.name}" has no shape keys beside the basis, so there are none to carry over.')
+            raise NothingToCarryError(
+                f'"{source.name}" has no shape keys beside the basis, so there are none to carry over.'
+            )
         if self._settings.choice == "ACTIVE":
             active = source.active_shape_key
             if active is None or active.name not in names:

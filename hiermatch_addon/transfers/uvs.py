@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ...engine import FacePlaces, Progress, carry_uvs_steps, within
 from ..common.access import mesh_of
-from ..common.errors import ObjectError
-from ..common.phrases import counted
+from ..common.errors import NothingToCarryError, ObjectError
+from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.attribute_io import (
     AttributeLayout,
@@ -96,7 +96,7 @@ class UVTransfer:
         mesh = mesh_of(target)
         for name, carried in self._carried.items():
             write_attribute(mesh, _layout(name), carried.uvs)
-            self._notes.extend(_remarks(name, carried, source, target))
+        self._notes.extend(_astray(self._carried, source, target))
         layers: Any = mesh.uv_layers
         if self._active in self._carried:
             layers.active_index = layers.find(self._active)
@@ -113,7 +113,9 @@ class UVTransfer:
         layers = mesh_of(source).uv_layers
         names = [layer.name for layer in layers]
         if not names:
-            raise ObjectError(f'"{source.name}" has no UV map to carry over. Unwrap it, or choose another Source.')
+            raise NothingToCarryError(
+                f'"{source.name}" has no UV map to carry over. Unwrap it, or choose another Source.'
+            )
         if self._settings.choice == "ACTIVE":
             return [layers.active.name if layers.active else names[0]]
         if self._settings.choice == "NAMED":
@@ -139,17 +141,21 @@ def _taken(target: bpy.types.Object, name: str) -> str:
     )
 
 
-def _remarks(name: str, carried: CarriedUVs, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
-    """Sentences on the islands that are not well placed."""
+def _astray(carried: dict[str, CarriedUVs], source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
+    """Sentences on the islands that are not well placed, one for all layers of each kind."""
     notes = []
-    if carried.lost:
+    lost = {name: layer for name, layer in carried.items() if layer.lost}
+    if lost:
+        islands = sum(layer.island_count for layer in lost.values())
         notes.append(
-            f'{carried.lost} of {carried.island_count} islands of "{name}" lie where "{target.name}" has no faces, '
-            f'such as the inside of a mouth that only "{source.name}" has.'
+            f"{sum(layer.lost for layer in lost.values())} of {islands} islands of {listed(list(lost))} lie where "
+            f'"{target.name}" has no faces, such as the inside of a mouth that only "{source.name}" has.'
         )
-    if carried.untrusted:
+    doubtful = {name: layer for name, layer in carried.items() if layer.untrusted}
+    if doubtful:
+        islands = sum(layer.island_count for layer in doubtful.values())
         notes.append(
-            f'{carried.untrusted} of {carried.island_count} islands of "{name}" lie where the match has no '
-            f'confidence. Check them on "{target.name}".'
+            f"{sum(layer.untrusted for layer in doubtful.values())} of {islands} islands of {listed(list(doubtful))} "
+            f'lie where the match has no confidence. Check them on "{target.name}".'
         )
     return notes

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from ..common.errors import ObjectError
+from ..common.errors import NothingToCarryError, ObjectError
 from ..scene.armatures import armature_of, find_armature
 from ..storage.written_names import written_names
 
@@ -34,7 +34,7 @@ def chosen_groups(source: bpy.types.Object, choice: str) -> list[str]:
     own = written_names(source)
     names = [group.name for group in source.vertex_groups if group.name not in own]
     if not names:
-        raise ObjectError(
+        raise NothingToCarryError(
             f'"{source.name}" has no vertex groups, so there are no weights to carry over. Choose a weighted mesh as '
             "the Source."
         )

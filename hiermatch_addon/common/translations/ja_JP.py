@@ -541,6 +541,10 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Done": "完了",
     "What was carried over to which object, one per line": "どのオブジェクトに何を転送したか。一行に一つです",
+    "Remarks": "情報",
+    "What was left out, or should be known, but is no reason to worry: one sentence per line": (
+        "気にする必要のない、除外されたものや知っておくべきこと。一行に一文"
+    ),
     "What was left out, or should be known, and why: one sentence per line": (
         "何が省かれたか、または知っておくべきことと、その理由。一行に一文です"
     ),
@@ -1785,11 +1789,11 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」には「{1}」という頂点グループか別の属性がすでにあるため、そのUVマップは除外しました。一方の名前を変"
         "えてください。"
     ),
-    ('{0} of {1} islands of "{2}" lie where "{3}" has no faces, such as the inside of a mouth that only "{4}" has.'): (
-        "「{2}」のアイランド{1}個のうち{0}個は、「{4}」にしかない口の中のように、「{3}」に面のない場所にあります。"
+    ('{0} of {1} islands of {2} lie where "{3}" has no faces, such as the inside of a mouth that only "{4}" has.'): (
+        "{2}のアイランド{1}個のうち{0}個は、「{4}」にしかない口の中のように、「{3}」に面のない場所にあります。"
     ),
-    '{0} of {1} islands of "{2}" lie where the match has no confidence. Check them on "{3}".': (
-        "「{2}」のアイランド{1}個のうち{0}個は、マッチングの信頼度がない場所にあります。「{3}」で確認してください。"
+    '{0} of {1} islands of {2} lie where the match has no confidence. Check them on "{3}".': (
+        "{2}のアイランド{1}個のうち{0}個は、マッチングの信頼度がない場所にあります。「{3}」で確認してください。"
     ),
     '{0} of "{1}" was left out: on "{2}" a match wrote what has that name.': (
         "「{1}」の{0}は除外しました。「{2}」ではマッチングが同じ名前のものを書き込んでいます。"

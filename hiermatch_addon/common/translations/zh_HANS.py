@@ -451,6 +451,10 @@ MESSAGES: Final[dict[str, str]] = {
     ): "为每个匹配点写入一个顶点组，包含离它比离其他点更近的所有顶点；同名的组就是同一区域",
     "Done": "完成",
     "What was carried over to which object, one per line": "向哪个物体传递了什么，每行一项",
+    "Remarks": "说明",
+    "What was left out, or should be known, but is no reason to worry: one sentence per line": (
+        "已排除或需要知道、但无需担心的内容：每行一句"
+    ),
     "What was left out, or should be known, and why: one sentence per line": (
         "省略了什么或应了解什么，以及原因：每行一句"
     ),
@@ -1418,11 +1422,11 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" already has a vertex group or another attribute called "{1}", so that UV map was left out. Rename one '
         "of them."
     ): ("“{0}”已有名为“{1}”的顶点组或其他属性，因此该 UV 贴图被排除。请重命名其中之一。"),
-    ('{0} of {1} islands of "{2}" lie where "{3}" has no faces, such as the inside of a mouth that only "{4}" has.'): (
-        "“{2}”的 {1} 个孤岛中有 {0} 个位于“{3}”没有面的地方，例如只有“{4}”才有的口腔内部。"
+    ('{0} of {1} islands of {2} lie where "{3}" has no faces, such as the inside of a mouth that only "{4}" has.'): (
+        "{2}的 {1} 个孤岛中有 {0} 个位于“{3}”没有面的地方，例如只有“{4}”才有的口腔内部。"
     ),
-    '{0} of {1} islands of "{2}" lie where the match has no confidence. Check them on "{3}".': (
-        "“{2}”的 {1} 个孤岛中有 {0} 个位于匹配没有置信度的地方。请在“{3}”上检查。"
+    '{0} of {1} islands of {2} lie where the match has no confidence. Check them on "{3}".': (
+        "{2}的 {1} 个孤岛中有 {0} 个位于匹配没有置信度的地方。请在“{3}”上检查。"
     ),
     '{0} of "{1}" was left out: on "{2}" a match wrote what has that name.': (
         "“{1}”的{0}已排除：“{2}”上同名的内容是由匹配写入的。"

@@ -125,7 +125,7 @@ class TransferOperator(JobOperator):
                 prefix = self.prefix or state_of(context).prefix
                 remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
         refresh(scene)
-        remember_transfer(context, carried)
+        remember_transfer(context, carried, self._left_out)
         self._report(carried)
         return {"FINISHED"}
 
@@ -133,10 +133,12 @@ class TransferOperator(JobOperator):
         """Say what was done for each target, and what is to be known."""
         if self._left_out:
             self.report({"INFO"}, translated(self._left_out))
+        reports = [report for one in carried for report in one.reports]
+        for note in dict.fromkeys(note for report in reports for note in report.notes):
+            self.report({"WARNING"}, translated(note))
+        for remark in dict.fromkeys(remark for report in reports for remark in report.remarks):
+            self.report({"INFO"}, translated(remark))
         for one in carried:
-            for report in one.reports:
-                for note in report.notes:
-                    self.report({"WARNING"}, translated(note))
             done = [report.done for report in one.reports if report.done]
             said = ", ".join(done) if done else "nothing"
             self.report({"INFO"}, translated(f'Carried to "{one.target}" in {one.seconds:.1f} s: {said}'))

@@ -25,7 +25,7 @@ ADDON = [path for path in sorted((ROOT / "hiermatch_addon").rglob("*.py")) if pa
 INTERFACE = [path for path in ADDON if path.parent.name != "command_line"]
 ENGINE = sorted((ROOT / "engine").rglob("*.py"))
 NAMES = {"HierMatch"}
-SENTENCES = {"ObjectError", "report", "Progress", "translated", "poll_message_set"}
+SENTENCES = {"NothingToCarryError", "ObjectError", "report", "Progress", "translated", "poll_message_set"}
 
 
 def literals(node):

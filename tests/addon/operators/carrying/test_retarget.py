@@ -139,9 +139,10 @@ def test_kinds_that_the_source_lacks_are_noted(pair):
     for layer in list(source.data.uv_layers):
         source.data.uv_layers.remove(layer)
     assert bpy.ops.hiermatch.retarget(source=source.name, target=target.name) == {"FINISHED"}
-    notes = bpy.context.scene.hiermatch_retarget.report.notes
-    assert "Shape Keys left out" in notes
-    assert "UV Maps left out" in notes
+    report = bpy.context.scene.hiermatch_retarget.report
+    assert "left out" not in report.notes
+    assert "Shape Keys left out" in report.remarks
+    assert "UV Maps left out" in report.remarks
     assert "vertex groups" in bpy.context.scene.hiermatch_retarget.report.done
 
 
@@ -216,6 +217,7 @@ def test_parts_of_the_source_that_are_selected_as_well_are_left_alone(pair, monk
     assert "spine" in target.vertex_groups
     assert mesh_snapshot(coat) == before
     assert 'What the rig of "Source" moves as well was left alone: "Coat".' in said
+    assert bpy.context.scene.hiermatch_retarget.report.remarks in said
     target.select_set(state=False)
     with pytest.raises(RuntimeError, match="moved by the same rig"):
         bpy.ops.hiermatch.transfer_weights()

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
 from hiermatch.hiermatch_addon.scene.attribute_io import read_attribute, read_polygons, read_seams
+from hiermatch.hiermatch_addon.transfers import uvs
 
 from tests.addon.scenes import mesh_snapshot
 
@@ -58,8 +61,8 @@ def test_the_layer_arrives_without_smeared_faces(pair):
     at_pole = np.array([len(polygon.vertices) == 3 for polygon in target.data.polygons])
     assert sizes[~at_pole].max() < 1.5
     assert sizes[at_pole].max() < 4
-    uvs = read_attribute(target.data, "UVMap")
-    assert np.ptp(uvs, axis=0).min() > 0.9
+    found = read_attribute(target.data, "UVMap")
+    assert np.ptp(found, axis=0).min() > 0.9
     seams = read_seams(target.data)
     assert 10 < seams.sum() < 80
 
@@ -96,6 +99,20 @@ def test_a_vertex_group_that_is_carried_as_well_takes_the_name(pair):
     notes = bpy.context.scene.hiermatch_retarget.report.notes
     assert 'called "Mask", so that UV map' in notes
     assert 'called "Fur", so that attribute' in notes
+
+
+def test_layers_with_the_same_trouble_are_told_of_in_one_sentence(pair, monkeypatch):
+    def steps(*arguments):
+        return replace((yield from real(*arguments)), island_count=5, lost=2, untrusted=1)
+
+    real = uvs.carry_uvs_steps
+    monkeypatch.setattr(uvs, "carry_uvs_steps", steps)
+    for name in ("Second", "Third", "Fourth"):
+        pair[0].data.uv_layers.new(name=name)
+    carry()
+    lost, doubtful = bpy.context.scene.hiermatch_retarget.report.notes.splitlines()
+    assert lost.startswith('8 of 20 islands of "UVMap", "Second", "Third" and 1 more lie where "Target" has no faces')
+    assert doubtful.startswith('4 of 20 islands of "UVMap", "Second", "Third" and 1 more lie where the match has no')
 
 
 def test_some_layers_only(pair):
