@@ -66,6 +66,7 @@ def pinned(
     lengths = np.linalg.norm(missing, axis=1) * np.sqrt(source.area / target.area)
     reach = np.maximum(_REACH * lengths, _LEAST_REACH * np.sqrt(source.area))
     reach = np.minimum(reach, distances_to_others(source.vertices[vertices]))
+    reach = np.maximum(reach, np.finfo(float).tiny)  # two landmarks may lie at one place, such as on closed lips
     steps = np.zeros((source.vertex_count, 3))
     for vertex, radius, step in zip(vertices, reach, missing, strict=True):
         near, distances = vicinity(source, int(vertex), float(radius))

@@ -14,14 +14,14 @@ ADDON = sorted((ROOT / "hiermatch_addon").rglob("*.py"))
 BLENDER = {"bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "bpy_extras", "blf", "idprop", "aud", "freestyle"}
 OURS = {"engine", "hiermatch_addon", "hiermatch"}
 STANDARD = {"__future__", "collections", "contextlib", "copy", "dataclasses", "functools", "heapq", "itertools", "math"}
-ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time"}
+ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time", "warnings"}
 # What starts another process, sends it values and ends it, without any thread, also of libraries.
 PROCESSES = {
     ROOT / "engine" / "runtime" / f"{name}.py"
     for name in ("worker", "worker_main", "pipes", "messages", "blas_threads")
 }
 PROCESSES_MAY = {"atexit", "ctypes", "io", "msvcrt", "os", "pathlib", "pickle", "select", "subprocess", "sys"}
-PROCESSES_MAY |= {"weakref"}
+PROCESSES_MAY |= {"traceback", "weakref"}
 
 
 def imported(path):

@@ -88,3 +88,15 @@ def test_the_size_of_the_target_does_not_matter(scale, ball):
     large = TriangleMesh(scale * ball.vertices, ball.triangles)
     found = pinned(ball, large, itself(large), vertices, partners, search=ClosestPoints(large))
     np.testing.assert_allclose(found.positions / scale, moved(ball, vertices, partners).positions, atol=1e-6)
+
+
+def test_two_landmarks_at_one_place_each_arrive(sheet):
+    """As at the corner of a closed mouth: the lips are two vertices at one place."""
+    lips = [at(sheet, 0.4, 0.5, 0), at(sheet, 0.6, 0.5, 0)]
+    vertices = sheet.vertices.copy()
+    vertices[lips] = vertices[lips].mean(axis=0)
+    closed = TriangleMesh(vertices, sheet.triangles)
+    partners = [at(sheet, 0.45, 0.55, 0), at(sheet, 0.55, 0.45, 0)]
+    found = pinned(closed, sheet, itself(sheet), np.array(lips), np.array(partners), search=ClosestPoints(sheet))
+    np.testing.assert_allclose(found.positions[lips], sheet.vertices[partners], atol=1e-12)
+    assert np.isfinite(found.positions).all()
