@@ -92,6 +92,9 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     settings, landmarks, clock = task.settings, task.landmarks, task.clock
     x, y = yield from within(evened_steps(x, y), 0.0, 0.0)
     clock.lap("preparation")
+    fewest = min(shape.mesh.vertex_count for shape in (x, y))
+    if settings.dense and settings.coarse_points <= fewest < settings.points:
+        settings = replace(settings, points=fewest)  # a dense map has every vertex, however many points there are
     for shape, name in ((x, "source"), (y, "target")):
         if shape.mesh.vertex_count < settings.points:
             raise MatchError(

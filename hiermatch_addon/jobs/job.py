@@ -198,7 +198,7 @@ class MatchJob(SteppedJob):
         depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
         check_pair(view_layer_of(context), source, target)
         for obj in (source, target):
-            _check_points(obj, options.settings.points)
+            _check_points(obj, options.settings)
         self._uids = (source.session_uid, target.session_uid)
         self._names = (source.name, target.name)
         self._meshes = (
@@ -336,10 +336,10 @@ class MatchJob(SteppedJob):
         return objects
 
 
-def _check_points(obj: bpy.types.Object, points: int) -> None:
-    """Make sure that there are vertices enough."""
-    count = len(mesh_of(obj).vertices)
-    if points > count:
+def _check_points(obj: bpy.types.Object, settings: MatchSettings) -> None:
+    """Make sure that there are vertices enough: a dense match takes fewer points by itself, where these are not."""
+    count, points = len(mesh_of(obj).vertices), settings.points
+    if (settings.coarse_points if settings.dense else points) > count:
         raise ObjectError(
             f'"{obj.name}" has {count} vertices, too few for {points} Points. Set Points to {count} or fewer, '
             "or subdivide the mesh."

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whole matches of meshes that are broken as real ones are: a small error against the truth, or an error in words."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -327,3 +329,14 @@ def test_what_is_no_surface_is_refused_in_words(broken, error, words, bodies):
     with pytest.raises(error, match=words) as raised:
         match(TriangleMesh(*broken()), target, QUICK)
     assert isinstance(raised.value, HierMatchError)
+
+
+def test_a_mesh_with_fewer_vertices_than_points_is_matched_with_all_of_them():
+    small = TriangleMesh(*icosphere(2))
+    assert MatchSettings().coarse_points <= small.vertex_count < MatchSettings().points
+    turned = TriangleMesh(small.vertices @ rotation([1, 2, 3], 0.4).T, small.triangles)
+    result = match(small, turned, replace(QUICK, points=64))
+    assert len(result.source_points.positions) == small.vertex_count
+    assert_valid(result.source_to_target, small, turned)
+    with pytest.raises(MatchError, match="Use fewer points"):
+        match(small, turned, replace(QUICK, points=64, dense=False))
