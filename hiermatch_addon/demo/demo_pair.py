@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 import bmesh
 import bpy
 import numpy as np
-from mathutils import Euler, Matrix
+from mathutils import Euler, Matrix, Vector
 from mathutils.bvhtree import BVHTree
 from mathutils.interpolate import poly_3d_calc
 
@@ -46,6 +46,9 @@ _Y_UP = Matrix.Rotation(np.radians(-90), 4, "X")
 # How the cats stand: place beside the 3D cursor, and heading about Z in degrees.
 _SOURCE_PLACE, _SOURCE_HEADING = (-0.95, -1.05, 0.0), -8.0
 _TARGET_PLACE, _TARGET_HEADING = (0.95, 0.85, 0.0), -36.0
+
+# How far the cats stand from what would be in their way.
+_ASIDE = 0.3
 
 # How often the faces of both are evened out.
 _RELAXATIONS = 5
@@ -101,15 +104,32 @@ def add_demo_pair(
         target_posed = _posed(scene, armature, WALKING, target_rest, rest)
         source = _finished(SOURCE_NAME, source_rest, source_posed.vertices, Matrix())
         place = _standing_at(_SOURCE_PLACE, _SOURCE_HEADING)
-        source.matrix_world = Matrix.Translation(cast("bpy.types.Scene", context.scene).cursor.location) @ place
+        other_place = _standing_at(_TARGET_PLACE, _TARGET_HEADING)
+        cats = (place, source_posed.vertices), (other_place, _TARGET_SIZE * target_posed.vertices)
+        points = np.concatenate([vertices @ np.array(to.to_3x3()).T + to.translation for to, vertices in cats])
+        origin = _clear_place(context, points.min(axis=0), points.max(axis=0))
+        source.matrix_world = origin @ place
         if rigged:
             rig_cat(context, source, armature, rest.weights_at(source_rest.vertices), source_posed.lift)
     target = _finished(TARGET_NAME, target_rest, target_posed.vertices, Matrix.Scale(_TARGET_UNIT, 4) @ _Y_UP)
-    cursor = Matrix.Translation(cast("bpy.types.Scene", context.scene).cursor.location)
     unit = Matrix.Scale(_TARGET_SIZE / _TARGET_UNIT, 4) @ _Y_UP.inverted()
-    target.matrix_world = cursor @ _standing_at(_TARGET_PLACE, _TARGET_HEADING) @ unit
+    target.matrix_world = origin @ other_place @ unit
     _show(context, source, target)
     return source, target
+
+
+def _clear_place(context: bpy.types.Context, low: NDArray[np.float64], high: NDArray[np.float64]) -> Matrix:
+    """Find where a box (3,) to (3,) about the 3D cursor touches no visible object: there, or along the X axis."""
+    origin = np.array(cast("bpy.types.Scene", context.scene).cursor.location, np.float64)
+    boxes = []
+    for thing in context.visible_objects:
+        corners = np.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box])
+        if np.ptp(corners, axis=0).any():  # cameras, lights and empties have no size
+            boxes.append((corners.min(axis=0), corners.max(axis=0)))
+    for least, most in sorted(boxes, key=lambda box: float(box[0][0])):
+        if (least < origin + high).all() and (most > origin + low).all():
+            origin[0] = most[0] - low[0] + _ASIDE
+    return Matrix.Translation(Vector(origin.tolist()))
 
 
 def _show(context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:

@@ -58,4 +58,15 @@ class HIERMATCH_OT_add_demo_pair(bpy.types.Operator):
             target_vertices=self.target_vertices,
             rigged=self.rigged,
         )
+        _frame_selected(context)
         return {"FINISHED"}
+
+
+def _frame_selected(context: bpy.types.Context) -> None:
+    """Turn the 3D viewport that the operator was called from, if any, to what is selected."""
+    if bpy.app.background or context.area is None or context.area.type != "VIEW_3D":
+        return
+    region = next((region for region in context.area.regions if region.type == "WINDOW"), None)
+    if region is not None:
+        with context.temp_override(area=context.area, region=region):
+            bpy.ops.view3d.view_selected()

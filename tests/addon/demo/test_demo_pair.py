@@ -12,6 +12,7 @@ from hiermatch.engine import TriangleMesh
 from hiermatch.engine.geometry.geodesics import GeodesicSolver
 from hiermatch.hiermatch_addon.demo import demo_pair, demo_truth
 from hiermatch.hiermatch_addon.scene.mesh_io import add_vertex_group, read_mesh
+from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 SMALL = {"source_vertices": 1500, "target_vertices": 1000}
@@ -311,3 +312,21 @@ def test_not_in_edit_mode():
     bpy.ops.object.mode_set(mode="EDIT")
     with pytest.raises(RuntimeError, match="Object Mode"):
         bpy.ops.hiermatch.add_demo_pair(**SMALL)
+
+
+def test_the_cats_stand_beside_what_is_there():
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    bpy.ops.object.light_add(location=(2.5, 0, 0))  # which is in nobody's way
+    cube, light = bpy.data.objects["Cube"], bpy.context.object
+    boxes = []
+    for thing in (cube, *demo_pair.add_demo_pair(bpy.context, **SMALL), *demo_pair.add_demo_pair(bpy.context, **SMALL)):
+        bpy.context.view_layer.update()
+        corners = np.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box])
+        boxes.append((corners.min(axis=0), corners.max(axis=0)))
+    cube, *pairs = boxes
+    first, second = pairs[:2], pairs[2:]
+    for one, others in ((cube, pairs), (first[0], second), (first[1], second)):
+        for other in others:
+            assert (one[0] >= other[1]).any() or (other[0] >= one[1]).any()
+    assert light.name in bpy.context.scene.objects
+    assert first[0][0][0] < 4
