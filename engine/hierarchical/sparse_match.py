@@ -230,15 +230,15 @@ def _one_settled_steps(answer: Answer) -> Steps[Answer]:
     wanted = pair.source_distances[: len(answer.points), : len(answer.points)]
     stress = Stress(wanted, _holding(pair, len(answer.points)) if pair.landmarks else None)
     settled = yield from settle_steps(pair.target_metric, answer.points, stress)
-    moved = replace(answer, points=settled.points, distances=settled.distances, linear=_linear(pair, settled.points))
-    if moved.distortion >= answer.distortion:
+    better = replace(answer, points=settled.points, distances=settled.distances, linear=_linear(pair, settled.points))
+    if better.distortion >= answer.distortion:
         return answer
     last = replace(
         answer.levels[-1],
-        distortion=moved.distortion,
+        distortion=better.distortion,
         target_points=pair.target.surface.on_original(settled.points),
     )
-    return replace(moved, levels=(*answer.levels[:-1], last))
+    return replace(better, levels=(*answer.levels[:-1], last))
 
 
 def _holding(pair: Pair, count: int) -> NDArray[np.float64]:
