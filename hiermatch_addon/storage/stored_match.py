@@ -8,7 +8,7 @@ that no renaming, saving or undoing changes.  The dense maps are kept beside it,
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -101,6 +101,10 @@ class Quality:
         By how much the best competing answer is worse; None if there was none.
     sentence : str
         The same for a person to read.
+    source_coverage, pieces_alone : float
+        As the engine measured them; files of before do not know them.
+    likeness : float or None
+        How credible the map is as a whole, where that was measured.
     """
 
     orientation: float
@@ -110,19 +114,16 @@ class Quality:
     margin: float | None
     confidence: float
     sentence: str
+    source_coverage: float = 1.0
+    likeness: float | None = None
+    pieces_alone: float = 0.0
 
     @classmethod
     def of(cls, quality: MatchQuality) -> Quality:
-        """Take what is stored of the engine's verdict."""
-        return cls(
-            float(quality.orientation),
-            float(quality.distortion),
-            float(quality.coverage),
-            float(quality.disagreement),
-            None if quality.margin is None else float(quality.margin),
-            float(quality.confidence),
-            quality.sentence,
-        )
+        """Take the engine's verdict, with numbers that files can hold."""
+        known = {field.name: getattr(quality, field.name) for field in fields(cls)}
+        plain: dict[str, Any] = {n: v if v is None or isinstance(v, str) else float(v) for n, v in known.items()}
+        return cls(**plain)
 
     def to_plain(self) -> dict[str, Any]:
         """Return what is known."""

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import bpy
 import numpy as np
 import pytest
-from hiermatch.engine import SurfacePoints, TriangleMesh
+from hiermatch.engine import MatchQuality, SurfacePoints, TriangleMesh
 from hiermatch.hiermatch_addon.scene.mesh_io import topology
 from hiermatch.hiermatch_addon.storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 
@@ -128,3 +128,11 @@ class TestTopology:
         triangles.from_pydata(corners, [], [(0, 1, 2), (3, 1, 4, 5)])  # the same corners in another rhythm
         meshes = (turned, loose, add_blob("Finer", 22, 14).data, quads, triangles)
         assert len({before, *map(topology, meshes)}) == 6
+
+
+def test_all_of_the_engines_verdict_is_kept():
+    assert [field.name for field in fields(Quality)] == [field.name for field in fields(MatchQuality)]
+    verdict = MatchQuality(
+        0.9, 0.1, 0.8, 0.01, None, 0.7, "Good.", source_coverage=0.6, likeness=12.5, pieces_alone=0.2
+    )
+    assert vars(Quality.from_plain(Quality.of(verdict).to_plain())) == vars(verdict)
