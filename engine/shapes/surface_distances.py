@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 
 from ..geometry.squared_differences import squared_differences
 from ..mesh.surface_points import SurfacePoints
+from ..runtime.blas_threads import on_one_thread
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run
 
@@ -184,6 +185,7 @@ class SurfaceDistances:
         return block
 
 
+@on_one_thread
 def to_all_vertices_steps(metric: SurfaceDistances, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
     """Measure the distances from points to every vertex of the whole surface.
 

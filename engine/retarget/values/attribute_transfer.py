@@ -54,6 +54,9 @@ class Crossing:
     source_to_target: SurfaceMap
     target_to_source: SurfaceMap
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}>"
+
     @cached_property
     def places(self) -> FacePlaces:
         """Where the faces of the target lie on the source."""
@@ -74,6 +77,9 @@ class CarriedValues:
 
     values: NDArray[Any]
     lost: int = 0
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self.values.shape}, {self.lost} lost>"
 
 
 @on_one_thread

@@ -69,6 +69,9 @@ class Columns:
     shared: NDArray[np.bool_]
     yielding: bool = False
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}>"
+
 
 @on_one_thread
 def carry_weights_steps(
