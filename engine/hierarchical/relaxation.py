@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse import csr_array
 
+from ..runtime.small_products import product
 from .quasi_newton import minimize_lbfgs
 
 if TYPE_CHECKING:
@@ -74,9 +75,9 @@ class RelaxedMatching:
         rows = self._mixing
         rows.data[:] = mixture.ravel()
         mass: NDArray[Any] = np.bincount(column.ravel(), mixture.ravel(), len(used))
-        cross = np.take_along_axis(self.problem.source_distances @ (rows @ self._target), column, axis=1)
+        cross = np.take_along_axis(product(self.problem.source_distances, rows @ self._target), column, axis=1)
         row_sums = mixture.sum(axis=1)
-        interaction = (source_squared @ row_sums)[:, None] - 2 * cross + (target_squared @ mass)[column]
+        interaction = product(source_squared, row_sums)[:, None] - 2 * cross + product(target_squared, mass)[column]
         value = np.vdot(self._linear, mixture) + weight * np.vdot(interaction, mixture)
         return float(value), self._linear + 2 * weight * interaction
 
@@ -167,7 +168,7 @@ def descend(problem: MatchingProblem, assignment: NDArray[np.int64], max_sweeps:
         for i in range(len(current)):
             # The square expanded, so that a point costs one matrix-vector product; the point's distance to itself is
             # zero wherever it goes, so it is taken out.
-            misfit = squares - np.square(to_matched[:, i]) - 2 * to_matched @ source[i] + source[i] @ source[i]
+            misfit = squares - np.square(to_matched[:, i]) - 2 * product(to_matched, source[i]) + source[i] @ source[i]
             cost = linear[i] + 2 * problem.quadratic_weight * misfit
             here = cost[current[i]]
             cost[~free] = np.inf
