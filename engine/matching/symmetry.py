@@ -281,7 +281,7 @@ def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
     images, image_rows = shape.samples[nearest], shape.sample_rows[nearest].astype(np.float64)
     for _ in range(_ROUNDS):
         before = images
-        images = _images_at_vertices(shape, rows, image_rows, nearest)
+        images = _images_at_vertices(shape, rows, image_rows)
         if np.array_equal(images, before):
             break
         image_rows = _rows_from(shape, images)
@@ -309,21 +309,19 @@ def _rows_from(shape: Shape, vertices: NDArray[np.int64]) -> NDArray[np.float64]
     return np.concatenate([block for _, block in shape.solver.distances_in_blocks(vertices)]) / shape.scale
 
 
-def _images_at_vertices(
-    shape: Shape, rows: NDArray[np.float64], image_rows: NDArray[np.float64], nearest: NDArray[np.int64]
-) -> NDArray[np.int64]:
+def _images_at_vertices(shape: Shape, rows: NDArray[np.float64], image_rows: NDArray[np.float64]) -> NDArray[np.int64]:
     """Find the vertex near each point's image that keeps its distances to all points and images best, (k,).
 
     `rows` and `image_rows` (k, n) are the distances from the points, which are the first samples, and from their
-    images; `nearest` (k,) are the samples that the images are near to.
+    images.
     """
     points = shape.samples[: len(rows)]
     # The map takes points to images and images back to points: both kinds of distances have to be kept.
     here = np.concatenate([rows[:, points], image_rows[:, points]])
     reach = float(shape.sample_rows.min(axis=0).max())  # no vertex is farther than this from the samples
     found = np.empty(len(points), np.int64)
-    for i, image in enumerate(nearest):
-        near = np.flatnonzero(shape.sample_rows[image] <= reach)
+    for i, row in enumerate(image_rows):
+        near = np.flatnonzero(row <= reach)
         there = np.concatenate([image_rows[:, near], rows[:, near]])
         found[i] = near[np.square(there - here[:, i : i + 1]).sum(axis=0).argmin()]
     return found

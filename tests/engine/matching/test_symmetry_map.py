@@ -4,8 +4,7 @@
 import numpy as np
 import pytest
 
-from engine import MatchSettings, TriangleMesh
-from engine.matching import symmetry_map
+from engine import MatchSettings, TriangleMesh, symmetry_map
 from engine.matching.symmetry_map import symmetry_map_steps
 from engine.runtime.progress import run
 from tests.bodies import mirrored_body
