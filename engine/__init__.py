@@ -36,14 +36,16 @@ from .retarget.weights.skin_weights import carried as carry_weights
 from .retarget.weights.skin_weights import row_sums
 from .retarget.weights.weight_transfer import CarriedWeights, Columns, carry_weights_steps, put_in
 from .retarget.wrapping import WrappedSurface, kept_in_place, wrap_steps
+from .runtime.background import Background, called_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .runtime.progress import Progress, Steps, run, within
 from .runtime.worker import close_helpers, use_processes
 from .shapes.shape import Shape
-from .shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
+from .shapes.surface_distances import distances_to_vertices_steps
 
 __all__ = [
     "SETUPS",
+    "Background",
     "CarriedUVs",
     "CarriedValues",
     "CarriedWeights",
@@ -77,7 +79,6 @@ __all__ = [
     "Shape",
     "Skeleton",
     "Steps",
-    "SurfaceDistances",
     "SurfaceMap",
     "SurfacePoints",
     "Symmetriser",
@@ -85,6 +86,7 @@ __all__ = [
     "TriangleMesh",
     "WrappedSurface",
     "bone_frames",
+    "called_steps",
     "carry_face_values",
     "carry_normals",
     "carry_offsets_steps",
@@ -95,6 +97,7 @@ __all__ = [
     "close_helpers",
     "densify",
     "densify_steps",
+    "distances_to_vertices_steps",
     "distortion_after",
     "find_symmetry",
     "find_symmetry_steps",
@@ -119,7 +122,6 @@ __all__ = [
     "surface_frames",
     "symmetry_map",
     "symmetry_map_steps",
-    "to_all_vertices_steps",
     "use_processes",
     "within",
     "wrap_steps",

@@ -4,7 +4,9 @@
 import os
 import sys
 import time
+import warnings
 
+from engine.runtime.background import can_go_beside
 from engine.runtime.errors import MatchError
 from engine.runtime.progress import Progress
 from engine.runtime.worker import search_threads
@@ -77,3 +79,37 @@ def long_elsewhere(home, item):
     if os.getpid() != home:
         time.sleep(10_000)
     return item
+
+
+@can_go_beside
+def told_slowly_steps(count, *, fails=None):
+    """Tell each of some steps, and whether it is done beside; fail in the middle if that is wanted."""
+    for number in range(count):
+        time.sleep(0.06)
+        yield Progress(number / count, f"Step {number}")
+    if fails is not None:
+        raise fails
+    warnings.warn("This was noticed.", RuntimeWarning, stacklevel=1)
+    return os.getpid()
+
+
+@can_go_beside
+def endless_steps():
+    """Do not come to an end."""
+    while True:
+        time.sleep(0.01)
+        yield Progress(0.5, "Going on")
+
+
+@can_go_beside
+def ended_steps():
+    """End the process."""
+    yield Progress(0.5, "Ending")
+    os._exit(1)
+
+
+@can_go_beside
+def echoed_steps(value):
+    """Return what is given."""
+    yield Progress(0.5, "Echoing")
+    return value

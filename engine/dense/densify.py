@@ -15,7 +15,7 @@ from ..registration.fine_registration import Polish, finer_surfaces_steps
 from ..registration.landmark_snapping import pinned
 from ..registration.prolongation import lift_steps
 from ..registration.registration import POLISH
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, run, within
 from ..runtime.worker import call_helpers
@@ -89,7 +89,7 @@ def densify(
     return run(densify_steps(source, target, source_points, target_points, maps=maps))
 
 
-@on_one_thread
+@can_go_beside
 def densify_steps(
     source: TriangleMesh | Shape,
     target: TriangleMesh | Shape,

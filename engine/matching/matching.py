@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..hierarchical.settings import MatchSettings
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, run, within
@@ -89,7 +89,7 @@ def match(
     return run(match_steps(source, target, settings, landmarks=landmarks, excluded=excluded))
 
 
-@on_one_thread
+@can_go_beside
 def match_steps(
     source: TriangleMesh | Shape,
     target: TriangleMesh | Shape,

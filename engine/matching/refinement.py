@@ -15,7 +15,7 @@ from ..mesh.surface_points import SurfacePoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..registration.registration import FINE, Stage, register_steps, restarted_steps
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import run, within
 from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
@@ -60,7 +60,7 @@ def refine_map(
     return run(steps)
 
 
-@on_one_thread
+@can_go_beside
 def refine_map_steps(
     source: TriangleMesh,
     target: TriangleMesh,

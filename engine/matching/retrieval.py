@@ -16,7 +16,7 @@ from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
 from ..runtime.progress import Progress, Steps, run, within
 from ..shapes.shape import Shape
@@ -184,7 +184,7 @@ def retrieve(
     return run(retrieve_steps(query, shapes, settings))
 
 
-@on_one_thread
+@can_go_beside
 def retrieve_steps(
     query: TriangleMesh | Shape,
     shapes: Sequence[TriangleMesh | Shape],

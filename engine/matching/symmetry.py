@@ -16,7 +16,7 @@ from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..mesh.surface_points import SurfacePoints
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, run, within
 from ..shapes.shape import Shape
@@ -144,7 +144,7 @@ def find_symmetry(surface: TriangleMesh | Shape, settings: MatchSettings | None 
     return run(find_symmetry_steps(surface, settings))
 
 
-@on_one_thread
+@can_go_beside
 def find_symmetry_steps(
     surface: TriangleMesh | Shape, settings: MatchSettings | None = None, alternatives: int = 3
 ) -> Steps[SymmetryResult]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..dense.densify import densify_steps
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.progress import run, within
 from ..shapes.shape import Shape
 from .symmetry import find_symmetry_steps
@@ -47,7 +47,7 @@ def symmetry_map(mesh: TriangleMesh, settings: MatchSettings | None = None) -> D
     return run(symmetry_map_steps(mesh, settings))
 
 
-@on_one_thread
+@can_go_beside
 def symmetry_map_steps(mesh: TriangleMesh, settings: MatchSettings | None = None) -> Steps[DenseMatch]:
     """Map every vertex to its mirror image in short steps; see `symmetry_map`."""
     shape = yield from within(Shape.steps(mesh), 0.0, 0.05)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -48,6 +48,8 @@ class TriangleMesh:
 
     vertices: NDArray[np.float64]
     triangles: NDArray[np.int64]
+    is_sent_once: ClassVar[bool] = True
+    """See `parallel_map.shared_steps`."""
 
     def __post_init__(self) -> None:
         vertices = _as_vertices(self.vertices)

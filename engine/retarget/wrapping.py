@@ -15,7 +15,7 @@ from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.welded_parts import WeldedParts
 from ..mesh.surface_points import SurfacePoints
 from ..registration.elastic import ElasticSurface
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress
 from .values.deformation_gradients import surface_frames
@@ -72,7 +72,7 @@ class WrappedSurface:
         return f"<WrappedSurface: {len(self.positions)} vertices, {self.folded:.1%} folded>"
 
 
-@on_one_thread
+@can_go_beside
 def wrap_steps(
     source: TriangleMesh,
     target: TriangleMesh,

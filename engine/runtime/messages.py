@@ -26,13 +26,17 @@ class SentObjects:
         self._count = 0
         self._new: list[tuple[int, bytes]] = []
 
-    def messages(self, order: object) -> list[bytes]:
+    def messages(self, order: object, *, is_followed: bool = False) -> list[bytes]:
         """Pack an order, and what of it has not been sent yet; see `worker_main.serve`."""
         gone = self._sent - set(self._numbers.values())
         packed = self._packed(order)
         new, self._new = self._new, []
         self._sent = self._sent - gone | {number for number, _ in new}
-        return [pack((list(gone), [number for number, _ in new])), *(message for _, message in new), packed]
+        return [
+            pack((list(gone), [number for number, _ in new], is_followed)),
+            *(message for _, message in new),
+            packed,
+        ]
 
     def __contains__(self, value: object) -> bool:
         return value in self._numbers

@@ -6,8 +6,12 @@ from __future__ import annotations
 import os
 import select
 import time
+from typing import TYPE_CHECKING
 
-__all__ = ["has_more", "receive", "send"]
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["Inbox", "can_take", "has_more", "receive", "send", "sent_in_parts"]
 
 _LENGTH = 8
 """Bytes that say how long a message is."""
@@ -27,10 +31,17 @@ def send(pipe: int, message: bytes) -> None:
     OSError
         If the other side is gone.
     """
+    for _ in sent_in_parts(pipe, message):
+        pass
+
+
+def sent_in_parts(pipe: int, message: bytes) -> Iterator[None]:
+    """Write a message, and yield after each megabyte; see `send`."""
     for part in len(message).to_bytes(_LENGTH, "little"), message:
         view = memoryview(part)
         while view:
             view = view[os.write(pipe, view[:_MOST_AT_ONCE]) :]
+            yield
 
 
 def receive(pipe: int) -> bytes:
@@ -53,6 +64,56 @@ def _read(pipe: int, length: int) -> bytes:
         parts.append(part)
         missing -= len(part)
     return b"".join(parts)
+
+
+class Inbox:
+    """Messages that come through a pipe, read as far as they have come.
+
+    Parameters
+    ----------
+    pipe : int
+        The pipe to read.
+    patience : float
+        Seconds that are waited at most for the rest of a message of which a part has come.
+    """
+
+    def __init__(self, pipe: int, patience: float) -> None:
+        self._pipe, self._patience = pipe, patience
+        self._parts: list[bytes] = []
+        self._missing, self._is_text = _LENGTH, False
+
+    def message(self, seconds: float = 0.0) -> bytes | None:
+        """Wait for so long at most until a message begins, and read it; None if it has not come, or not all of it.
+
+        Raises
+        ------
+        EOFError
+            If the other side is gone.
+        """
+        end = time.monotonic() + (self._patience if self._parts or self._is_text else seconds)
+        while has_more(self._pipe, max(end - time.monotonic(), 0.0)):
+            if not (self._parts or self._is_text):
+                end = time.monotonic() + self._patience
+            part = os.read(self._pipe, min(self._missing, _MOST_AT_ONCE))
+            if not part:
+                raise EOFError
+            self._parts.append(part)
+            self._missing -= len(part)
+            if self._missing == 0 and (message := self._taken()) is not None:
+                return message
+        return None
+
+    def _taken(self) -> bytes | None:
+        """Take what was read: the length of a message, or the message."""
+        read, self._parts = b"".join(self._parts), []
+        self._is_text = not self._is_text
+        self._missing = int.from_bytes(read, "little") if self._is_text else _LENGTH
+        return None if self._is_text else read
+
+
+def can_take(pipe: int) -> bool:
+    """Say whether a short message can be written without waiting, as far as the system knows."""
+    return os.name == "nt" or bool(select.select([], [pipe], [], 0)[1])
 
 
 def has_more(pipe: int, seconds: float = 0.0) -> bool:

@@ -21,21 +21,38 @@ import numpy as np
 import scipy
 
 from .messages import PACKAGE, SentObjects, unpack
-from .pipes import has_more, receive, send
+from .pipes import Inbox, has_more, send, sent_in_parts
+from .progress import Progress
 from .worker_main import READY
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from .progress import Steps
 
-__all__ = ["Helper", "Task", "call_helpers", "close_helpers", "present_helpers", "search_threads", "use_processes"]
+__all__ = [
+    "Helper",
+    "Task",
+    "call_background",
+    "call_helpers",
+    "close_helpers",
+    "present_helpers",
+    "search_threads",
+    "use_processes",
+]
 
 _VARIABLE = "HIERMATCH_PROCESSES"
 """Environment variable that says how many processes may be at work, this one counted."""
 
 _MOST = 2
 """Processes by default, if there are as many cores: most work can be parted in two, and not in more."""
+
+_IDLE, _LONG_IDLE = 60.0, 600.0
+"""Seconds after which a process that nothing is asked of ends: one that does parts of a computation, and one that does
+whole ones, as a person asks for them."""
+
+_PATIENCE, _SHORT_PATIENCE = 60.0, 0.02
+"""Seconds that are waited at most for the rest of a reply: by one who needs it to go on, and by one who does not."""
 
 _AT_ONCE = 4096
 """Bytes that are read at a time of what an interpreter says before it is ready."""
@@ -48,7 +65,7 @@ _NAME = "engine"
 
 _BEGIN = (
     f"import sys, types; package = sys.modules['{_NAME}'] = types.ModuleType('{_NAME}'); "
-    f"package.__path__ = sys.argv[1:]; from {_NAME}.runtime.worker_main import serve; serve()"
+    f"package.__path__ = sys.argv[1:]; from {_NAME}.runtime.worker_main import serve; serve({{idle}})"
 )
 """What a helper runs.  To import all of the package would take it several times as long: modules wait until used."""
 
@@ -64,16 +81,25 @@ class Task:
         Whether it was carried out.
     value : object
         The result then, or the error if the input is at fault.  If it was not carried out, the traceback that says why,
-        or None if the helper is gone.
+        or None if the helper is gone.  The result of an order that is followed comes in a pair with a list of warnings.
+    progress : Progress
+        How far it is, if it is followed.
     """
 
     def __init__(self) -> None:
         self.is_over = self.done = False
         self.value: Any = None
+        self.progress = Progress(0.0, "Starting")
 
 
 class Helper:
     """A process that carries out one order at a time.
+
+    Parameters
+    ----------
+    processes : int, optional
+        How many processes may be at work on its orders, itself counted.  Only a process that does whole computations
+        has some of its own; whoever asks for those is not kept waiting by the reading of long replies.
 
     Raises
     ------
@@ -81,21 +107,22 @@ class Helper:
         If it cannot be started.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, processes: int = 1) -> None:
         hidden = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # Windows would open a console
         self._process = subprocess.Popen(  # noqa: S603 - this interpreter
-            [sys.executable, "-c", _BEGIN, str(_ROOT)],
+            [sys.executable, "-c", _BEGIN.format(idle=_IDLE if processes == 1 else _LONG_IDLE), str(_ROOT)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             bufsize=0,
-            env=_environment(),
+            env=_environment(processes),
             creationflags=hidden,
             start_new_session=os.name != "nt",  # an interrupt from the keyboard is not meant for it
         )
         if self._process.stdin is None or self._process.stdout is None:
             raise OSError
         self._orders, self._replies = self._process.stdin.fileno(), self._process.stdout.fileno()
+        self._inbox = Inbox(self._replies, _PATIENCE if processes == 1 else _SHORT_PATIENCE)
         self._sent = SentObjects()
         self._task: Task | None = None
         self._begun, self._heard = False, b""
@@ -130,28 +157,44 @@ class Helper:
     def start(self, work: Callable[[Any, Any], Steps[Any]], common: object, item: object) -> Task:
         """Begin with an item, without waiting; only if `is_ready`."""
         task = self._task = Task()
-        messages = self._sent.messages((work, common, item))
+        for _ in self._sent_in_parts((work, common, item)):
+            pass
+        return task
+
+    def start_followed(self, task: Task, work: Callable[[Any, Any], Steps[Any]], item: object) -> Iterator[None]:
+        """Begin with a task that is followed, and yield while the order is sent; only if `is_ready`."""
+        self._task = task
+        yield from self._sent_in_parts((work, None, item), is_followed=True)
+
+    def _sent_in_parts(self, order: object, *, is_followed: bool = False) -> Iterator[None]:
+        """Send an order; if the helper is gone, the task is over."""
+        messages = self._sent.messages(order, is_followed=is_followed)
         try:
             for message in messages:
-                send(self._orders, message)
-        except OSError:  # it is gone
+                yield from sent_in_parts(self._orders, message)
+        except OSError:
             self.end()
-        return task
 
     def look(self, seconds: float = 0.0) -> None:
         """Wait for so long at most until there is a reply, and take it."""
         if self._begun and self._task is None:
             return
         try:
-            if not has_more(self._replies, seconds):
-                return
             if self._task is not None:
-                self._task.done, self._task.value = unpack(receive(self._replies), _NAME)
-                self._task.is_over, self._task = True, None
-            else:
+                message = self._inbox.message(seconds)
+                if message is not None:
+                    self._take(self._task, *unpack(message, _NAME))
+            elif has_more(self._replies, seconds):
                 self._listen()
         except (OSError, EOFError):  # it is gone
             self.end()
+
+    def _take(self, task: Task, done: bool | None, value: Any) -> None:  # noqa: ANN401, FBT001 - as they are sent
+        """Take a reply: how far it is, or what came of it."""
+        if done is None:
+            task.progress = value
+        else:
+            task.done, task.value, task.is_over, self._task = done, value, True, None
 
     def _listen(self) -> None:
         """Hear whether it is ready, whatever it says before: an interpreter may greet its users."""
@@ -174,12 +217,13 @@ class Helper:
         self._begun = True
 
 
-def _environment() -> dict[str, str]:
+def _environment(processes: int) -> dict[str, str]:
     """Tell a helper where the engine is, and what that needs, and not to look for it in the working directory."""
     packages = [_ROOT, *(Path(str(file)).resolve().parent for file in (np.__file__, scipy.__file__))]
     paths = [str(package.parent) for package in packages] + [os.environ.get("PYTHONPATH", "")]
     found = os.pathsep.join(path for path in paths if path)
-    return os.environ | {_VARIABLE: "1", "PYTHONPATH": found, "PYTHONSAFEPATH": "1"}
+    said = {_VARIABLE: str(processes)} if processes == 1 or processes != _defaults()[0] else {}
+    return os.environ | said | {"PYTHONPATH": found, "PYTHONSAFEPATH": "1"}
 
 
 class _Crew:
@@ -189,6 +233,7 @@ class _Crew:
         self.process = os.getpid()
         self.most, self.cores = _defaults()
         self.helpers: list[Helper] = []
+        self.background: Helper | None = None
 
     def present(self) -> list[Helper]:
         """Return the helpers that are not over."""
@@ -238,6 +283,8 @@ def use_processes(count: int | None = None) -> None:
     crew.most, crew.cores = _defaults() if count is None else (max(count, 1), max(count, 1))
     for helper in crew.present()[crew.most - 1 :]:
         helper.end()
+    if crew.background is not None and crew.most == 1:
+        crew.background.end()
 
 
 def search_threads() -> int:
@@ -254,17 +301,40 @@ def call_helpers() -> None:
     """Start helpers, as many as are allowed, without waiting for them: they are ready soon."""
     crew = _own_crew()
     missing = crew.most - 1 - len(crew.present())
-    # Where the interpreter is part of another program, that would be started.
-    if missing > 0 and Path(sys.executable or "").stem.lower().startswith("python"):
+    if missing > 0 and _can_start():
         with suppress(OSError):
             crew.helpers += [Helper() for _ in range(missing)]
 
 
-def close_helpers() -> None:
-    """End all helpers; they are started again when they are called."""
+def call_background() -> Helper | None:
+    """Start the process that does whole computations, if it does not wait for one already, without waiting for it.
+
+    Returns
+    -------
+    Helper or None
+        None if it is at work, cannot be started, or one process alone may be at work.
+    """
     crew = _own_crew()
-    for helper in crew.present():
+    if crew.background is not None and crew.background.is_over:
+        crew.background.end()
+        crew.background = None
+    if crew.background is None and crew.most > 1 and _can_start():
+        with suppress(OSError):
+            crew.background = Helper(crew.most)
+    return None if crew.background is None or crew.background.is_busy or crew.background.is_over else crew.background
+
+
+def _can_start() -> bool:
+    """Say whether there is an interpreter to start: where it is part of another program, that would be started."""
+    return Path(sys.executable or "").stem.lower().startswith("python")
+
+
+def close_helpers() -> None:
+    """End all other processes; they are started again when they are called."""
+    crew = _own_crew()
+    for helper in [*crew.present(), *([crew.background] if crew.background is not None else [])]:
         helper.end()
+    crew.background = None
 
 
 def present_helpers() -> list[Helper]:

@@ -5,14 +5,19 @@ from __future__ import annotations
 
 import os
 import pickle
+import time
 import traceback
-from typing import Any
+import warnings
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .blas_threads import one_thread
 from .errors import HierMatchError
 from .messages import pack, unpack
-from .pipes import has_more, receive, send
+from .pipes import can_take, has_more, receive, send
 from .progress import run
+
+if TYPE_CHECKING:
+    from .progress import Steps
 
 __all__ = ["READY", "serve"]
 
@@ -23,13 +28,21 @@ _IDLE = 60.0
 """Seconds after which a helper that nothing is asked of ends: it holds some hundred megabytes."""
 
 
+_TOLD = 0.05
+"""Least time in seconds between two messages that say how far the work is."""
+
+Result = TypeVar("Result")
+
+
 def serve(idle: float = _IDLE) -> None:
     """Carry out one order after the other until the other side is gone, or wants nothing for long.
 
-    An order is a message with two lists of numbers, what to forget and what comes new; one message for each of the
-    latter; and one with a function, what all items have in common, and an item.  The reply to it says whether it was
-    carried out, and with what result or error; if not, it brings the traceback.  The first message of all names the
-    package that is called ``engine`` here; when all is ready, that is said by `READY`.
+    An order is a message with two lists of numbers, what to forget and what comes new, and whether it is followed: then
+    its progress is told on the way.  There follow one message for each that is new, and one with a function, what all
+    items have in common, and an item.  A reply is a pair: None and the progress on the way; True and the result, or
+    the error if the input is at fault; False and the traceback if it could not be carried out.  With the result of what
+    is followed come the warnings.  The first message of all names the package that is called ``engine`` here; when all
+    is ready, that is said by `READY`.
     """
     orders, replies = 0, os.dup(1)
     os.dup2(2, 1)  # what is printed is no reply
@@ -38,23 +51,54 @@ def serve(idle: float = _IDLE) -> None:
         os.write(replies, READY)
         known: dict[int, Any] = {}
         while has_more(orders, idle):
-            gone, new = pickle.loads(receive(orders))  # noqa: S301 - of the process that started this one
+            gone, new, is_followed = pickle.loads(receive(orders))  # noqa: S301 - of the process that started this one
             messages = [receive(orders) for _ in range(len(new) + 1)]
-            send(replies, _reply(package, known, gone, dict(zip(new, messages, strict=False)), messages[-1]))
+            for number in gone:
+                known.pop(number, None)
+            fresh = dict(zip(new, messages, strict=False))
+            send(replies, _reply(package, known, fresh, messages[-1], _Work(orders, replies if is_followed else None)))
     except (EOFError, OSError):
         return
 
 
-def _reply(package: str, known: dict[int, Any], gone: list[int], new: dict[int, bytes], order: bytes) -> bytes:
+class _Work:
+    """The work on an order: it ends with the process that gave it, which may be told how far it is."""
+
+    def __init__(self, orders: int, told: int | None) -> None:
+        self._orders, self._told, self._last = orders, told, 0.0
+
+    def result(self, steps: Steps[Result]) -> Result | tuple[Result, list[str]]:
+        """Do it; with what was warned of if it is followed."""
+        if self._told is None:
+            return run(self._watched_steps(steps))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("default")
+            result = run(self._watched_steps(steps))
+        return result, [str(warning.message) for warning in said]
+
+    def _watched_steps(self, steps: Steps[Result]) -> Steps[Result]:
+        """Look at each step whether the result is still wanted."""
+        while True:
+            try:
+                progress = next(steps)
+            except StopIteration as stop:
+                return stop.value
+            if has_more(self._orders):  # no order comes before a reply: the other side is gone
+                raise SystemExit
+            if self._told is not None and time.monotonic() - self._last >= _TOLD and can_take(self._told):
+                send(self._told, pack((None, progress)))
+                self._last = time.monotonic()
+            yield progress
+
+
+def _reply(package: str, known: dict[int, Any], new: dict[int, bytes], order: bytes, doing: _Work) -> bytes:
     """Carry out one order."""
     try:
-        for number in gone:
-            known.pop(number, None)
         for number, message in new.items():
             known[number] = unpack(message, package, known)
         work, common, item = unpack(order, package, known)
         with one_thread():
-            return pack((True, run(work(common, item))))
+            return pack((True, doing.result(work(common, item))))
     except HierMatchError as error:
         return pack((True, error))
     except Exception:  # noqa: BLE001 - what fails here is done again, and said, where it can be seen

@@ -10,21 +10,22 @@ from scipy.sparse import csr_array
 
 from ..geometry.squared_differences import squared_differences
 from ..mesh.surface_points import SurfacePoints
-from ..runtime.blas_threads import on_one_thread
+from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import shared_steps
-from ..runtime.progress import Progress, Steps, run
+from ..runtime.progress import Progress, Steps, run, within
+from .shape import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..geometry.geodesics import GeodesicSolver
     from ..mesh.triangle_mesh import TriangleMesh
-    from .shape import Shape
 
 __all__ = [
     "EmbeddedDistances",
     "PointDistances",
     "SurfaceDistances",
+    "distances_to_vertices_steps",
     "measured_steps",
     "squared_offsets",
     "symmetric_roots",
@@ -185,7 +186,27 @@ class SurfaceDistances:
         return block
 
 
-@on_one_thread
+@can_go_beside
+def distances_to_vertices_steps(mesh: TriangleMesh, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
+    """Measure the distances from points of a mesh to all its vertices, as a match does.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The mesh, as it is: it is cleaned here.
+    points : SurfacePoints
+        Places (k,) on it.
+
+    Returns
+    -------
+    (k, n) array of float
+        In units of the mesh; ``inf`` on other parts of the surface.
+    """
+    shape = yield from within(Shape.steps(mesh), 0.0, 0.2)
+    own = points if shape.surface.is_whole else shape.surface.on_mesh(points)
+    return (yield from within(to_all_vertices_steps(SurfaceDistances(shape), own), 0.2, 1.0))
+
+
 def to_all_vertices_steps(metric: SurfaceDistances, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
     """Measure the distances from points to every vertex of the whole surface.
 

@@ -7,7 +7,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ...engine import Shape, SurfaceDistances, densify_steps, to_all_vertices_steps, within
+from ...engine import densify_steps, distances_to_vertices_steps, within
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..scene.mesh_io import read_mesh
@@ -21,10 +21,8 @@ from .rewriting_job import RewritingJob
 
 if TYPE_CHECKING:
     import bpy
-    import numpy as np
-    from numpy.typing import NDArray
 
-    from ...engine import Steps, SurfacePoints, TriangleMesh
+    from ...engine import Steps
     from ..storage.contents import Content
     from ..storage.halves import Half
 
@@ -105,8 +103,8 @@ class FlipJob(RewritingJob):
         stored, (source, target) = self._stored, self._meshes
         answer = restored(stored, self._meshes)
         if stored.written.match_colors or stored.written.distortion:
-            from_source = yield from within(_distances_steps(source, answer.source_points), 0.0, 0.5)
-            from_target = yield from within(_distances_steps(target, answer.target_points), 0.5, 1.0)
+            from_source = yield from within(distances_to_vertices_steps(source, answer.source_points), 0.0, 0.5)
+            from_target = yield from within(distances_to_vertices_steps(target, answer.target_points), 0.5, 1.0)
             answer = replace(answer, source_distances=from_source, target_distances=from_target)
         return (yield from contents_steps(answer, self.prefix, stored.written, left_out=stored.left_out))
 
@@ -118,10 +116,3 @@ def _check_topology(half: Half) -> None:
             f'"{half.obj.name}" has other vertices or faces than when it was matched, so the stored match does not '
             "fit it any more. Match again."
         )
-
-
-def _distances_steps(mesh: TriangleMesh, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
-    """Measure the distances from points to all vertices of a mesh, as a match does."""
-    shape = yield from within(Shape.steps(mesh), 0.0, 0.2)
-    own = points if shape.surface.is_whole else shape.surface.on_mesh(points)
-    return (yield from within(to_all_vertices_steps(SurfaceDistances(shape), own), 0.2, 1.0))

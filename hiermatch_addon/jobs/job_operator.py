@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Long work as an operator: in slices with a timer in the window, without a pause in scripts."""
+"""Long work as an operator: beside Blender or in slices with a timer in the window, without a pause in scripts."""
 
 from __future__ import annotations
 
@@ -42,6 +42,9 @@ class Job(Protocol):
     """Work that goes on step by step and writes nothing until it is finished."""
 
     progress: Progress
+
+    def work_beside(self) -> None:
+        """Let the engine compute in another process, where there can be one."""
 
     def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
         """Work for about so long, but for one step at least; return whether everything is computed."""
@@ -100,9 +103,10 @@ class JobOperator(_Operator):
             manager.progress_end()
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[OperatorReturnItems]:
-        """Do the job in slices, while the window stays alive."""
+        """Do the job beside Blender, or in slices, while the window stays alive."""
         try:
             self._job = self._start(context)
+            self._job.work_beside()
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}

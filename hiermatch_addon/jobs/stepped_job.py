@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
-from ...engine import Progress
+from ...engine import Background, Progress
 
 if TYPE_CHECKING:
     import bpy
@@ -19,6 +20,8 @@ __all__ = ["SteppedJob"]
 
 class SteppedJob(ABC):
     """What jobs have in common: a generator that is driven for some time again and again.
+
+    What the engine computes in it is computed here, or in another process (`work_beside`).
 
     A job holds no references to Blender's data, but looks its objects up again in `_check`.
 
@@ -32,9 +35,16 @@ class SteppedJob(ABC):
         self.progress = Progress(0.0, "Starting")
         self._steps: Steps[Any] = self._all_steps()
         self._done = False
+        self._background: Background | None = None
+
+    def work_beside(self) -> None:
+        """Let the engine compute in a process beside Blender, where there can be one: call it before `advance`."""
+        self._background = Background()
 
     def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
         """Work for about so long, but for one step at least; return whether everything is computed.
+
+        While all that is to be done is to wait for another process, this returns at once.
 
         Raises
         ------
@@ -43,13 +53,14 @@ class SteppedJob(ABC):
         """
         self._check(view_layer)
         end = time.perf_counter() + seconds
-        while not self._done:
-            try:
-                self.progress = next(self._steps)
-            except StopIteration:
-                self._done = True
-            if time.perf_counter() >= end:
-                break
+        with nullcontext() if self._background is None else self._background.used():
+            while not self._done:
+                try:
+                    self.progress = next(self._steps)
+                except StopIteration:
+                    self._done = True
+                if time.perf_counter() >= end or (self._background is not None and self._background.is_waiting):
+                    break
         return self._done
 
     def close(self) -> None:

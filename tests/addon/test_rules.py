@@ -18,9 +18,21 @@ ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time",
 # What starts another process, sends it values and ends it, without any thread, also of libraries.
 PROCESSES = {
     ROOT / "engine" / "runtime" / f"{name}.py"
-    for name in ("worker", "worker_main", "pipes", "messages", "blas_threads")
+    for name in ("background", "worker", "worker_main", "pipes", "messages", "blas_threads")
 }
-PROCESSES_MAY = {"atexit", "ctypes", "io", "msvcrt", "os", "pathlib", "pickle", "select", "subprocess", "sys"}
+PROCESSES_MAY = {
+    "atexit",
+    "contextvars",
+    "ctypes",
+    "io",
+    "msvcrt",
+    "os",
+    "pathlib",
+    "pickle",
+    "select",
+    "subprocess",
+    "sys",
+}
 PROCESSES_MAY |= {"traceback", "weakref"}
 
 

@@ -16,7 +16,7 @@ from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import SurfacePoints
 from ...repair.clean_surface import StandIn
 from ...repair.cleaning import clean
-from ...runtime.blas_threads import on_one_thread
+from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, run, within
 from ...shapes.enclosing_surface import joined_steps, separate_limbs
@@ -74,7 +74,7 @@ def fit_rig(
     return run(fit_rig_steps(source, target, *maps, weights=weights, skeleton=skeleton, refine=refine))
 
 
-@on_one_thread
+@can_go_beside
 def fit_rig_steps(
     source: TriangleMesh,
     target: TriangleMesh,

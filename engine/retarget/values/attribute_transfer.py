@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ...runtime.blas_threads import on_one_thread
+from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from .corner_transfer import carry_corner_values, carry_point_marks, carry_point_values
 from .edge_tracing import nearest_edge_values, trace_edges_steps
@@ -82,7 +82,7 @@ class CarriedValues:
         return f"<{type(self).__name__}: {self.values.shape}, {self.lost} lost>"
 
 
-@on_one_thread
+@can_go_beside
 def carry_values_steps(
     values: NDArray[Any], domain: Domain, crossing: Crossing, *, blended: bool = True, marks: bool = False
 ) -> Steps[CarriedValues]:

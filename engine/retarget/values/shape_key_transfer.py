@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
-from ...runtime.blas_threads import on_one_thread
+from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress
 
@@ -39,7 +39,7 @@ _LEAST_CONFIDENCE = 0.02
 _TINY = np.finfo(float).tiny
 
 
-@on_one_thread
+@can_go_beside
 def carry_offsets_steps(
     offsets: ArrayLike,
     frames: LocalFrames,

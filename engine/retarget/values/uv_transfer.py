@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...runtime.blas_threads import on_one_thread
+from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress
 from .charts import cut_into_sheets
@@ -74,7 +74,7 @@ class CarriedUVs:
         return f"<CarriedUVs: {len(self.uvs)} corners, {self.lost} of {self.island_count} islands lost>"
 
 
-@on_one_thread
+@can_go_beside
 def carry_uvs_steps(
     uvs: ArrayLike, source: Polygons, places: FacePlaces, areas: NDArray[np.float64]
 ) -> Steps[CarriedUVs]:

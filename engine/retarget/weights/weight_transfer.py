@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, hstack
 
 from ...mesh.connectivity.welded_parts import WeldedParts
-from ...runtime.blas_threads import on_one_thread
+from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress
 from .rigid_parts import with_rigid_parts
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
@@ -73,7 +73,7 @@ class Columns:
         return f"<{type(self).__name__}>"
 
 
-@on_one_thread
+@can_go_beside
 def carry_weights_steps(
     weights: csr_array,
     source: TriangleMesh,

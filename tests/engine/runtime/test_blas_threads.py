@@ -6,6 +6,7 @@ from engine import MatchSettings, Progress, TriangleMesh, run
 from engine.matching.refinement import refine_map_steps
 from engine.retarget.values.attribute_transfer import carry_values_steps
 from engine.runtime import blas_threads
+from engine.runtime.background import can_go_beside
 from engine.runtime.blas_threads import on_one_thread, one_thread, thread_counts
 from tests.shapes import icosphere
 
@@ -101,8 +102,8 @@ def test_steps_that_fail_or_are_closed_leave_all_threads(two_threads):
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.__name__)
-def test_every_entry_has_one_thread_in_its_steps(entry):
-    assert entry.__code__ is on_one_thread(seen_steps).__code__
+def test_every_entry_has_one_thread_in_its_steps_and_can_go_beside(entry):
+    assert entry.__code__ is can_go_beside(seen_steps).__code__
     assert entry.__wrapped__
 
 
