@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..geometry.best_distinct import best_distinct
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..runtime.progress import Steps, within
@@ -216,12 +217,8 @@ def _rolled_back_steps(follow: Follower, candidates: list[Candidate]) -> Steps[l
 
 def _contenders(follow: Follower, candidates: list[Candidate]) -> list[Candidate]:
     """Take the best candidate, and other maps that are nearly as credible."""
-    contenders: list[Candidate] = []
-    for candidate in candidates:
-        close = not contenders or candidate.score < contenders[0].score + _CONTESTED
-        if close and len(contenders) < _MOST_CANDIDATES and all(_distinct(follow, candidate, c) for c in contenders):
-            contenders.append(candidate)
-    return contenders
+    close = [candidate for candidate in candidates if candidate.score <= candidates[0].score + _CONTESTED]
+    return best_distinct(close, lambda candidate, other: _distinct(follow, candidate, other), _MOST_CANDIDATES)
 
 
 def _contest_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[CloseFit]]:

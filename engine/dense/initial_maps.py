@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
+from ..geometry.best_distinct import best_distinct
 from ..runtime.parallel_map import beside_steps, shared_steps
 from ..runtime.progress import Progress, Steps, within
 from ..shapes.extremities import spread_extremities
@@ -17,7 +18,7 @@ from .lifted_matchings import LiftedMatchings
 from .map_energies import map_orientation, spectral_terms
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
@@ -153,7 +154,7 @@ def rough_maps_steps(
     fitting = [lead for found in done.found or () for lead in found[1]]
     chosen = _candidates(y, usual, _VARIANTS)
     more = _candidates(y, fitting, _FITTING_VARIANTS)
-    chosen += [lead for lead in more if all(_move(y, lead, other) > _OTHER for other in chosen)]
+    chosen += [lead for lead in more if all(y.apart(lead.points, other.points) > _OTHER for other in chosen)]
     for sign in signs:
         # Bodies with many limbs are rare: the bar has come to its end before.
         chosen += yield from within(_many_limbs_steps(x, y, sign), 1.0, 1.0)
@@ -277,12 +278,9 @@ def distinct_leads(
     """
     kept: list[MapLead] = []
     for sign, count in most.items():
-        group: list[MapLead] = []
-        for lead in _of_orientation(leads, sign):
-            hopeless = len(group) == count or (group and lead.score > group[0].score + worse)
-            if not hopeless and all(_move(y, lead, other) > apart for other in group):
-                group.append(lead)
-        kept += group
+        ranked = _of_orientation(leads, sign)
+        hopeful = [lead for lead in ranked if lead.score <= ranked[0].score + worse]
+        kept += best_distinct(hopeful, _differing(y, apart), count)
     return sorted(kept, key=lambda lead: lead.score)
 
 
@@ -290,15 +288,12 @@ def _candidates(y: MapDomain, leads: list[MapLead], most: Mapping[int, tuple[int
     """Choose the most credible groups of like maps, and of each the best few that differ a little."""
     chosen: list[MapLead] = []
     for sign, variants in most.items():
-        groups: list[list[MapLead]] = []
-        for lead in _of_orientation(leads, sign):
-            place = next((i for i, group in enumerate(groups) if _move(y, lead, group[0]) <= _CLUSTER), None)
-            if place is None:
-                if len(groups) < len(variants):
-                    groups.append([lead])
-            elif len(groups[place]) < variants[place] and all(_move(y, lead, o) > _VARIANT for o in groups[place]):
-                groups[place].append(lead)
-        chosen += [lead for group in groups for lead in group]
+        left = _of_orientation(leads, sign)
+        unlike = _differing(y, _CLUSTER)
+        for best, count in zip(best_distinct(left, unlike, len(variants)), variants, strict=False):
+            group = [lead for lead in left if not unlike(lead, best)]
+            left = [lead for lead in left if unlike(lead, best)]
+            chosen += best_distinct(group, _differing(y, _VARIANT), count)
     return chosen
 
 
@@ -307,9 +302,9 @@ def _of_orientation(leads: list[MapLead], sign: int) -> list[MapLead]:
     return sorted((lead for lead in leads if (lead.orientation > 0) == (sign > 0)), key=lambda lead: lead.score)
 
 
-def _move(y: MapDomain, first: MapLead, second: MapLead) -> float:
-    """Mean distance in space between the images under two maps, in sqrt(area)."""
-    return float(np.linalg.norm(y.places[first.points.on_y] - y.places[second.points.on_y], axis=1).mean())
+def _differing(y: MapDomain, apart: float) -> Callable[[MapLead, MapLead], bool]:
+    """Make what tells maps apart that take places of X, in the mean, farther than that from each other."""
+    return lambda lead, other: y.apart(lead.points, other.points) > apart
 
 
 def _refined_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[MapLead]:

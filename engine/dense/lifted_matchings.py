@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import signed_areas
 from .functional_maps import PointMaps, nearest_both_ways
 
@@ -94,13 +95,11 @@ class LiftedMatchings:
             The best first.
         """
         misfits, landings = self._assessed(matchings, sign)
-        kept: list[int] = []
-        for number in np.argsort(misfits, kind="stable"):
-            if len(kept) == most:
-                break
-            if all(self._apart[landings[number], landings[other]].mean() > _APART for other in kept):
-                kept.append(int(number))
-        return matchings[kept]
+
+        def differ(number: int, other: int) -> bool:
+            return bool(self._apart[landings[number], landings[other]].mean() > _APART)
+
+        return matchings[best_distinct(np.argsort(misfits, kind="stable").tolist(), differ, most)]
 
     def improved(self, images: NDArray[np.int64], sign: int) -> NDArray[np.int64]:
         """Exchange two images of a matching, or one for another sample, as often as it fits better then.

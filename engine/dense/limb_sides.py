@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..geometry.best_distinct import best_distinct
 from ..runtime.parallel_map import shared_steps
 from ..shapes.extremities import limb_tips, mean_distances
 from ..shapes.surface_distances import measured_steps
@@ -120,11 +121,7 @@ def _told_apart(
     """Keep one tip of each limb: those that lie differently to the middle of the body than all before them."""
     sides = _from_mean(_sides(x.sample_distances[np.ix_(tips, middle)]), weights)
     clear = np.square(sides) @ weights > _TOLD_APART**2
-    kept: list[int] = []
-    for number in range(len(tips)):
-        if clear[number, kept].all():
-            kept.append(number)
-    return tips[kept]
+    return tips[best_distinct(range(len(tips)), lambda tip, other: bool(clear[tip, other]))]
 
 
 def _sides(distances: NDArray[np.float64]) -> NDArray[np.float64]:

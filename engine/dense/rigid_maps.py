@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from ..geometry.best_distinct import best_distinct
 from ..geometry.procrustes import nearest_rotations
 from .functional_maps import PointMaps
 
@@ -191,14 +192,9 @@ def rigid_maps(x: MapDomain, y: MapDomain) -> list[PointMaps]:
         for _ in range(rounds):
             motions = pair.nearer(pair.matches(motions, _PLACES))
     found = pair.matches(motions)
-    kept: list[PointMaps] = []
-    for number in found.order:
-        points = PointMaps(found.on_y[number], found.on_x[number])
-        if found.mean_lengths[number] > _RIGID or len(kept) == _MOST:
-            break
-        if all(np.linalg.norm(y.places[points.on_y] - y.places[o.on_y], axis=1).mean() > _DISTINCT for o in kept):
-            kept.append(points)
-    return kept
+    lengths = found.mean_lengths
+    rigid = [PointMaps(found.on_y[n], found.on_x[n]) for n in found.order if lengths[n] <= _RIGID]
+    return best_distinct(rigid, lambda points, other: y.apart(points, other) > _DISTINCT, _MOST)
 
 
 def _nearest(lengths: NDArray[np.float64]) -> NDArray[np.float64]:

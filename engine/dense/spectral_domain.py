@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..shapes.shape import Shape
+    from .functional_maps import PointMaps
 
 __all__ = ["MapDomain"]
 
@@ -111,6 +112,10 @@ class MapDomain:
         """Positions of the fine samples, (p, 3); their mean is the origin."""
         places = self.shape.mesh.vertices[self.vertices] / self.shape.scale
         return places - places.mean(axis=0)
+
+    def apart(self, first: PointMaps, second: PointMaps) -> float:
+        """Mean distance in space between the images of samples by two maps to this surface."""
+        return float(np.linalg.norm(self.places[first.on_y] - self.places[second.on_y], axis=1).mean())
 
     def nearest_samples(self, vertices: NDArray[np.int64]) -> NDArray[np.int64]:
         """Numbers of the fine samples nearest, in space, to vertices (k,), (k,)."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import orientation_agreement, signed_areas
 from ..geometry.squared_differences import squared_differences
 from ..runtime.progress import Progress, Steps, within
@@ -244,15 +245,12 @@ def _at(here: Progress, steps: Steps[Result]) -> Steps[Result]:
 
 def _best_distinct(leads: list[_Lead], most: int) -> list[_Lead]:
     """Keep the best few, leaving out those that have become the same as a better one."""
-    kept: list[_Lead] = []
-    for lead in sorted(leads, key=lambda lead: lead.cost):
-        target = lead.coarse.pair.target
-        moves = [target.sample_distances[lead.assignment, other.assignment] for other in kept]
-        if all((move > _DISTINCT / 2).mean() > _DISTINCT_SHARE for move in moves):
-            kept.append(lead)
-        if len(kept) == most:
-            break
-    return kept
+
+    def differ(lead: _Lead, other: _Lead) -> bool:
+        moves = lead.coarse.pair.target.sample_distances[lead.assignment, other.assignment]
+        return bool((moves > _DISTINCT / 2).mean() > _DISTINCT_SHARE)
+
+    return best_distinct(sorted(leads, key=lambda lead: lead.cost), differ, most)
 
 
 def assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:

@@ -16,6 +16,7 @@ from ..dense.dense_registration import EIGENPAIRS
 from ..dense.missing_parts import with_partner
 from ..dense.registered_hypotheses import Follower
 from ..dense.spectral_domain import MapDomain
+from ..geometry.best_distinct import best_distinct
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.deformable import DeformableSurface
@@ -172,13 +173,10 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     followed = shared_steps(_refined_steps, fitter, [*starting, everything])
     *refined, unchanged = yield from within(followed, 0.75, 1.0)
     least = min((fit.score for fit in unchanged), default=np.inf) - _BETTER
-    found: list[tuple[NDArray[np.bool_], float]] = []
-    for fit in sorted([*fits, *chain.from_iterable(refined)], key=lambda fit: fit.score):
-        if fit.score > least or (found and fit.score >= found[0][1] + _CONTESTED):
-            break
-        covered = fitter.covered(fit) | fitter.grown(fit)
-        if all(fitter.common_part(covered, piece) < _SAME for piece, _ in found):
-            found.append((covered, fit.score))
+    ranked = sorted([*fits, *chain.from_iterable(refined)], key=lambda fit: fit.score)
+    credible = [fit for fit in ranked if fit.score <= least and fit.score < ranked[0].score + _CONTESTED]
+    pieces = [(fitter.covered(fit) | fitter.grown(fit), fit.score) for fit in credible]
+    found = best_distinct(pieces, lambda piece, other: fitter.common_part(piece[0], other[0]) < _SAME)
     return [CoveredPart(coarse.surface.spread(c.astype(np.float64), 0.0) > 1 / 2, score) for c, score in found]
 
 
@@ -203,13 +201,13 @@ def best_and_rivals(scores: NDArray[np.float64], places: NDArray[np.float64], co
     """
     order = np.argsort(scores, kind="stable").tolist()
     chosen: list[int] = order[:count]
-    for way in order[count:]:
-        hopeful = scores[way] < scores[order[0]] + worse
-        if not hopeful or len(chosen) == count + _RIVALS:
-            break
-        if np.linalg.norm(places[chosen] - places[way], axis=2).mean(axis=1).min() > _OTHER:
-            chosen.append(way)
-    return chosen
+    hopeful = [way for way in order[count:] if scores[way] < scores[order[0]] + worse]
+    return chosen + best_distinct(
+        hopeful,
+        lambda way, other: bool(np.linalg.norm(places[way] - places[other], axis=1).mean() > _OTHER),
+        _RIVALS,
+        beside=chosen,
+    )
 
 
 def continued(

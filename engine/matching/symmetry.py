@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import orientation_agreement, signed_areas
 from ..geometry.squared_differences import squared_differences
 from ..hierarchical.descriptors import weighted_correlation
@@ -228,12 +229,13 @@ def _candidate_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[list[_C
             candidates.append(_assess(pair.source, matching, levels[-1].assignment, sign))
     distances = pair.source.sample_distances
     identity = np.arange(pair.source.sample_count)
-    kept: list[_Candidate] = []
-    for candidate in sorted(candidates, key=lambda candidate: candidate.score):
-        others = [identity, *(other.images for other in kept)]
-        if all((distances[candidate.images, other] > _FAR / 2).mean() > _MOVED_SHARE for other in others):
-            kept.append(candidate)
-    return kept or [min(candidates, key=lambda candidate: candidate.score)]
+
+    def moved(candidate: _Candidate, other: NDArray[np.int64]) -> bool:
+        return bool((distances[candidate.images, other] > _FAR / 2).mean() > _MOVED_SHARE)
+
+    ranked = sorted(candidates, key=lambda candidate: candidate.score)
+    moving = [candidate for candidate in ranked if moved(candidate, identity)]
+    return best_distinct(moving, lambda candidate, other: moved(candidate, other.images)) or ranked[:1]
 
 
 def _assess(shape: Shape, coarse: BoundedMatching, assignment: NDArray[np.int64], sign: int) -> _Candidate:

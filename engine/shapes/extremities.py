@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..geometry.best_distinct import best_distinct
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -65,9 +67,8 @@ def spread_extremities(shape: Shape, count: int, apart: float, *, filled: bool =
     distances = shape.sample_distances
     chosen: list[int] = []
     for places, least in ((limb_tips(shape), apart), (np.arange(len(distances) if filled else 0), _FILLED)):
-        for place in places:
-            if len(chosen) < count and (distances[place, chosen] > least).all():
-                chosen.append(int(place))
+        far = (distances > least).item
+        chosen += best_distinct(places.tolist(), far, count - len(chosen), beside=chosen)
     return np.array(chosen, np.int64)
 
 

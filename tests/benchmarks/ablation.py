@@ -130,6 +130,27 @@ def switched(*patches):
         yield
 
 
+def counting(mechanism, reached):
+    """What notes that a mechanism is used, in the place of any function of it."""
+
+    def of(own):
+        def used(*given, **options):
+            reached.add(mechanism)
+            return own(*given, **options)
+
+        return used
+
+    return of
+
+
+def measured_with_all(case):
+    """What is measured of a case with everything, and which mechanisms it uses at all."""
+    reached = set()
+    patches = [(path, counting(name, reached)) for name, own in MECHANISMS.items() for path, _ in own]
+    with switched(*patches):
+        return measured(case), reached
+
+
 def owner_of(path):
     """The module or class that an attribute belongs to, and its name."""
     where, _, name = path.rpartition(".")
@@ -248,10 +269,14 @@ def main():
     rows = []
     print(f"{'switched off':24s} {'kind':9s} pairs   error  without  new wrong  new right  changed  seconds  without")
     for kind, of_kind in chosen.items():
-        base = [measured(case) for case in of_kind]
+        base, reached = zip(*(measured_with_all(case) for case in of_kind), strict=True)
         for mechanism in options.mechanisms.split(","):
+            # What is never used changes nothing if it is switched off.
             with switched(*MECHANISMS[mechanism]):
-                other = [measured(case) for case in of_kind]
+                other = [
+                    measured(case) if mechanism in used else own
+                    for case, own, used in zip(of_kind, base, reached, strict=True)
+                ]
             rows += [(mechanism, kind, c.name, *b, *o) for c, b, o in zip(of_kind, base, other, strict=True)]
             print(_row(mechanism, kind, base, other), flush=True)
     if options.csv:
