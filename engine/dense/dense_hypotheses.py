@@ -12,6 +12,7 @@ import numpy as np
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run, within
+from .credibility import map_score
 from .functional_maps import (
     FunctionalMaps,
     PointMaps,
@@ -52,9 +53,6 @@ _SMOOTHED = 110  # eigenfunctions that patches are smoothed by before they are c
 _DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
 _RETURNED = {1: 4, -1: 2}  # most hypotheses that keep the orientation, and that mirror it
 _HOPELESS = 3.0  # excess of the score over the best of the same orientation
-# Rigidity is the strongest cue against half turns; in distances and spectra these are hardly worse than the truth.
-_WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
-_LEAST_TERM = 1e-6
 _ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
 _ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
 
@@ -354,8 +352,7 @@ def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Map
     terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
     terms["distances"] = distance_term(x, y, points)
     terms["rigidity"] = rigidity_term(x, y, points, _SMOOTHED)
-    score = sum(weight * np.log(max(terms[name], _LEAST_TERM)) for name, weight in _WEIGHTS.items())
-    return MapLead(points, float(score), map_orientation(x, y, points, maps)[0], terms, origin)
+    return MapLead(points, map_score(terms), map_orientation(x, y, points, maps)[0], terms, origin)
 
 
 def _between_all_vertices_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:

@@ -26,6 +26,7 @@ from ..shapes.shape import Shape
 from ..shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
 from .components.extended_maps import whole_maps_steps
 from .components.masked_maps import piece_of, with_pieces_only
+from .credibility import vertex_credibility
 from .dense_hypotheses import LandmarkStart
 from .dense_registration import EIGENPAIRS, registered_pair_steps
 from .functional_maps import nearest_both_ways
@@ -227,7 +228,8 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     doubts = _doubts(pair)
     quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness, doubt=doubts[0])
     yield Progress(0.85, "Mapping every vertex")
-    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, likeness=pair.likeness, doubts=doubts)
+    credibility = vertex_credibility(quality.orientation, pair.margin, pair.likeness)
+    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, credibility=credibility, doubts=doubts)
     whole = yield from within(steps, 0.85, 1.0)
     forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)
     alone = max(whole.there.alone, whole.back.alone)

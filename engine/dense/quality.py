@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import expit
 
 from ..mesh.connectivity.adjacency import neighbour_means
 from ..mesh.surface_map import SurfaceMap
+from .credibility import EVEN, is_clear_choice, is_less_alike, probability_chosen, probability_right
 from .missing_parts import round_trips, with_partner
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 __all__ = [
     "MatchQuality",
     "assess_maps",
-    "closeness",
     "map_confidence",
     "of_covered_part",
     "trip_confidence",
@@ -35,10 +34,6 @@ _TRUSTED_ROUND_TRIP = 0.02
 _TRUSTED_STRETCH = 1.0
 """Logarithm of the stretch of the surface around a point at which its confidence is halved."""
 
-_CLOSE, _CLOSE_SPREAD, _LEAST_CLOSENESS = 15.0, 1.4, 0.3
-"""Likeness of shapes of which half of what the maps agree on is as close to the truth as it seems, by how much more or
-less it changes, and what is left for shapes that are not alike at all.  Both maps may slide the same way."""
-
 _WHOLE = 0.995
 """Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths, and
 fingertips that another body has not are no more than this."""
@@ -48,16 +43,6 @@ _FEW = 0.02
 
 _ROUNDED = 0.98
 """Parts from which on tenths of a percent are said."""
-
-_PLAUSIBLE = 0.5
-"""Part of shapes so much alike that are matched rightly below which nothing should be trusted."""
-
-_CLEAR_MARGIN = 1.0
-"""Difference of scores to the next candidate from which on the choice between them was clear."""
-
-_LIKENESS, _LIKENESS_SPREAD = 13.5, 0.6
-"""Likeness of shapes that are matched wrongly as often as not, and by how much more or less it decides: cats, people
-and octopuses are matched to one another at 9 to 13, gorillas to men at 14 to 17, two persons at 20 to 30."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +95,7 @@ def map_confidence(
     there: SurfacePoints,
     back: SurfacePoints,
     *,
-    likeness: float | None = None,
+    credibility: float = 1.0,
     doubt: NDArray[np.float64] | float = 0.0,
 ) -> NDArray[np.float64]:
     """Judge each vertex's image by whether the way back leads home, and by how much the surface is stretched there.
@@ -121,8 +106,8 @@ def map_confidence(
         The surfaces.
     there, back : SurfacePoints
         A point of the target for each vertex of the source, and the other way round.
-    likeness : float, optional
-        How credible the map is as a whole: of shapes that differ, less can be told.
+    credibility : float
+        How credible the map is as a whole, see `vertex_credibility`.
     doubt : (n,) array of float, optional
         Distances, in sqrt(area), by which it is known otherwise that images may err: the longer of these and of the
         ways there and back count.
@@ -135,7 +120,7 @@ def map_confidence(
     """
     known = with_partner(source, target, there, back)
     trips = _trips(source, there, back, doubt)
-    return _confidence(source, target, there, known, trips) * closeness(likeness)
+    return _confidence(source, target, there, known, trips) * credibility
 
 
 def trip_confidence(distances: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -199,10 +184,7 @@ def assess_maps(
     trips = _trips(source, there, back, doubt)
     disagreement = float(np.average(trips, weights=source.vertex_areas))
     confidence = float(np.average(_confidence(source, target, there, known, trips), weights=source.vertex_areas))
-    confidence *= max(orientation, 0.0)
-    if margin is not None:
-        confidence *= 1 - 0.5 * float(np.exp(-margin / _CLEAR_MARGIN))
-    confidence *= _plausibility(likeness)
+    confidence *= max(orientation, 0.0) * probability_chosen(margin) * probability_right(likeness)
     numbers = orientation, distortion, coverage, disagreement, margin, confidence
     quality = MatchQuality(*numbers, "", source_coverage, likeness)
     return replace(quality, sentence=_sentence(quality))
@@ -233,18 +215,6 @@ def of_covered_part(quality: MatchQuality, share: float, *, of_source: bool) -> 
     return replace(more, sentence=_sentence(more))
 
 
-def closeness(likeness: float | None) -> float:
-    """Estimate the part of what both maps agree on that is as near to the truth as it seems, 0 to 1."""
-    if likeness is None:
-        return 1.0
-    return _LEAST_CLOSENESS + (1 - _LEAST_CLOSENESS) * float(expit((likeness - _CLOSE) / _CLOSE_SPREAD))
-
-
-def _plausibility(likeness: float | None) -> float:
-    """Estimate the part of shapes so much alike that are matched rightly as a whole, 0 to 1."""
-    return 1.0 if likeness is None else float(expit((likeness - _LIKENESS) / _LIKENESS_SPREAD))
-
-
 def _sentence(quality: MatchQuality) -> str:
     """Say the worst that is known."""
     return _doubt(quality) or _difference(quality)
@@ -252,12 +222,11 @@ def _sentence(quality: MatchQuality) -> str:
 
 def _doubt(quality: MatchQuality) -> str:
     """Say why the map as a whole may be wrong; nothing if there is no reason."""
-    margin = quality.margin
     if quality.orientation < 0.3:
         return "The map turns large parts of the surface over: do not trust it; try landmarks."
-    if _plausibility(quality.likeness) < _PLAUSIBLE:
+    if is_less_alike(quality.likeness, EVEN):
         return "The shapes have too little in common: leave out what only one of them has, or try landmarks."
-    if margin is not None and margin < _CLEAR_MARGIN:
+    if not is_clear_choice(quality.margin):
         return "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong."
     return ""
 

@@ -28,6 +28,7 @@ from ..registration.registration import (
 )
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
+from .credibility import likeness, registered_score
 from .dense_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
 from .functional_maps import PointMaps
 from .initial_maps import MapLead
@@ -48,9 +49,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Candidate", "CloseFit", "Follower"]
 
-_ELASTIC_WEIGHT = 4.0
-_GAP_WEIGHT = 4.0
-_LEAST_GAP = 1e-4  # in sqrt(area); surfaces that meet closer than that are all the same
 _SMOOTH = 40
 """Eigenfunctions that the source is placed by before it is registered."""
 
@@ -230,11 +228,10 @@ class Follower:
 
     def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
         """Say how credible a hypothesis is by the soft registration that it led to."""
-        elastic = _ELASTIC_WEIGHT * float(np.log(max(registration.cost, float(np.finfo(float).tiny))))
         score, terms = self._assessed(hypothesis, registration)
         # The rough map that it began with may be no isometry though the bodies are alike.
         isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))
-        return Candidate(hypothesis, registration, score, -(hypothesis.score + elastic), isometry)
+        return Candidate(hypothesis, registration, score, likeness(hypothesis.score, registration.cost), isometry)
 
     def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
         """Register several candidates closely, between the same domains; see `close_steps`."""
@@ -320,11 +317,8 @@ class Follower:
 
     def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:
         """Score what a hypothesis has led to; and the terms of the score, without the gaps that are left."""
-        # A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.  The
-        # true one may take more deforming than a wrong one where proportions differ, but the surfaces meet closer.
-        gaps = np.maximum(registration.gaps, _LEAST_GAP)
         lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
-        return lead.score + _GAP_WEIGHT * float(np.log(gaps).sum()), lead.terms
+        return registered_score(lead.score, registration.gaps), lead.terms
 
     def start(self, images: PointMaps) -> NDArray[np.float64]:
         """Place the source where a map between all vertices puts it, smoothly."""

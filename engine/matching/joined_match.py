@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..dense.credibility import EVEN, MUCH_ALIKE
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
 from ..shapes.enclosing_surface import separate_limbs, with_limbs_steps
@@ -34,11 +35,8 @@ _TOGETHER, _MORE = 0.955, 0.02
 _TORN = 0.2
 """Part of a body in pieces that are torn off from which on pieces were taken for others."""
 
-_ALL, _CLEAR = 0.99, 20.0
-"""Part of the main parts with a partner, and likeness, from which on these are whole bodies, whatever else there is."""
-
-_PLAUSIBLE = 13.5
-"""Likeness from which on bodies that were joined are matched rightly rather than not."""
+_ALL = 0.99
+"""Part of the main parts with a partner from which on these are whole bodies, if they are `MUCH_ALIKE`."""
 
 _FIRST, _JOINED = 0.4, 0.05
 """Parts of the work that are done when pieces are matched one by one, and that joining those of a body takes."""
@@ -161,13 +159,13 @@ def _likeness(result: MatchResult) -> float:
 
 def _is_plausible(result: MatchResult) -> bool:
     """Say whether bodies that were joined seem to be matched rightly."""
-    return _likeness(result) >= _PLAUSIBLE
+    return _likeness(result) >= EVEN
 
 
 def _is_clear(result: MatchResult) -> bool:
     """Say whether all of the main parts is alike: nothing is missing on them."""
     covered = 0.0 if result.quality is None else min(result.quality.coverage, result.quality.source_coverage)
-    return covered >= _ALL and _likeness(result) >= _CLEAR
+    return covered >= _ALL and _likeness(result) >= MUCH_ALIKE
 
 
 def _is_better(joined: MatchResult, pieces: MatchResult, together: float) -> bool:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dense.components.masked_maps import share_of, with_piece_only
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, is_less_alike
 from ..repair.clean_surface import StandIn
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
@@ -34,17 +35,6 @@ _MISSING = 0.95
 
 _COVERED = 0.98
 """Part of the part with a partner from which on a piece is large enough."""
-
-_PLAUSIBLE = 15.5
-"""Likeness below which a match is doubtful: with all of two surfaces, something may be missing; with a piece, it is not
-better than that."""
-
-_CLEAR = 25.0
-"""The same from which on no other piece is tried."""
-
-_FAILED, _SAVED = 12.5, 20.0
-"""Likeness below which closed surfaces are not matched rightly as they are, and from which on a piece of one is the
-reason why: of a body, some piece is always more like a ball than all of it."""
 
 _WHOLE = 0.985
 """Part of a surface from which on what is covered of it is all."""
@@ -91,14 +81,15 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
     if quality is None or there is None or back is None:
         return result
     parts = has_border(x), has_border(y)
-    if not any(parts) and not _is_below(quality.likeness, _FAILED):
+    if not any(parts) and not is_less_alike(quality.likeness, FAILED):
         return result
-    if not _is_below(quality.likeness, _PLAUSIBLE) and min(quality.coverage, quality.source_coverage) >= _MISSING:
+    if not is_less_alike(quality.likeness, CREDIBLE) and min(quality.coverage, quality.source_coverage) >= _MISSING:
         return result
     # What was cut off may have been closed; then nothing says which of them is the part.
     ways = [(x, y, (there, back))] if parts[1] or not any(parts) else []
     ways += [(y, x, (back, there))] if parts[0] or not any(parts) else []
-    least = _PLAUSIBLE if any(parts) else _SAVED
+    # Of a closed body, some piece is always more like a ball than all of it.
+    least = CREDIBLE if any(parts) else MUCH_ALIKE
     found = []
     for number, (whole, part, maps) in enumerate(ways):
         begin, end = (_FOUND * (number + i) / len(ways) for i in (0, 1))
@@ -122,7 +113,7 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
             if more is None:
                 break
             covered = covered | more
-        if result.quality is not None and not _is_below(result.quality.likeness, _CLEAR):
+        if result.quality is not None and not is_less_alike(result.quality.likeness, ALL_ALIKE):
             break
     return result
 
@@ -184,14 +175,9 @@ def _cut_steps(shape: Shape, covered: NDArray[np.bool_], name: str) -> Steps[Sha
     return (yield from within(with_limbs_steps(cut, name, np.arange(mesh.vertex_count)), 0.7, 1.0))
 
 
-def _is_below(likeness: float | None, least: float) -> bool:
-    """Say whether surfaces are less alike than that; with landmarks, that is not known."""
-    return likeness is not None and likeness < least
-
-
 def _is_better(other: MatchResult, result: MatchResult, least: float, *, of_source: bool) -> bool:
     """Say whether a match with less of a surface is more credible than that with more of it, and credible enough."""
-    if other.quality is not None and _is_below(other.quality.likeness, least):
+    if other.quality is not None and is_less_alike(other.quality.likeness, least):
         return False
     return _credibility(other, of_source=of_source) > _credibility(result, of_source=of_source)
 

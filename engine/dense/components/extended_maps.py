@@ -10,7 +10,7 @@ import numpy as np
 
 from ...runtime.progress import Progress, Steps, within
 from ..missing_parts import round_trips
-from ..quality import closeness, map_confidence, trip_confidence
+from ..quality import map_confidence, trip_confidence
 from .component_maps import follow_steps
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def whole_maps_steps(
     there: SurfacePoints,
     back: SurfacePoints,
     *,
-    likeness: float | None = None,
+    credibility: float = 1.0,
     doubts: tuple[NDArray[np.float64] | float, NDArray[np.float64] | float] = (0.0, 0.0),
 ) -> Steps[WholeMaps]:
     """Extend maps of the main parts to all vertices of the meshes.
@@ -69,7 +69,7 @@ def whole_maps_steps(
         The meshes.
     there, back : SurfacePoints
         For each vertex of ``x.mesh`` a point of ``y.mesh``, and the other way round.
-    likeness : float, optional
+    credibility : float
         How credible the maps are as a whole, see `map_confidence`.
     doubts : pair of arrays of float, optional
         How far the images of the vertices of ``x.mesh`` and of ``y.mesh`` may err, see `map_confidence`.
@@ -85,20 +85,19 @@ def whole_maps_steps(
     anyhow, or onto the wrong one: it is trusted as far as the way there and back leads home.  What follows its
     surroundings is trusted as far as these are, and as it is near to them.
     """
-    main_there = map_confidence(x.mesh, y.mesh, there, back, likeness=likeness, doubt=doubts[0])
+    main_there = map_confidence(x.mesh, y.mesh, there, back, credibility=credibility, doubt=doubts[0])
     yield Progress(0.1, "Mapping every vertex")
-    main_back = map_confidence(y.mesh, x.mesh, back, there, likeness=likeness, doubt=doubts[1])
+    main_back = map_confidence(y.mesh, x.mesh, back, there, credibility=credibility, doubt=doubts[1])
     yield Progress(0.2, "Mapping every vertex")
     forward = yield from within(follow_steps(x, y, there), 0.2, 0.6)
     yield Progress(0.6, "Mapping every vertex")
     backward = yield from within(follow_steps(y, x, back), 0.6, 1.0)
-    likely = closeness(likeness)
-    forth = _judged(x, forward, backward, main_there, likely)
-    return WholeMaps(forth, _judged(y, backward, forward, main_back, likely))
+    forth = _judged(x, forward, backward, main_there, credibility)
+    return WholeMaps(forth, _judged(y, backward, forward, main_back, credibility))
 
 
 def _judged(
-    x: CleanSurface, forward: FollowedMap, backward: FollowedMap, main: NDArray[np.float64], likely: float
+    x: CleanSurface, forward: FollowedMap, backward: FollowedMap, main: NDArray[np.float64], credibility: float
 ) -> WholeMap:
     """Say how far to trust a map of all vertices, by that of the main part, (k,), and by the way back."""
     confidence = forward.confidence * main[forward.surroundings]
@@ -106,7 +105,7 @@ def _judged(
     if len(x.pieces) > 1:
         laid = (x.vertex_parts > 0) & (forward.partners[x.vertex_parts] > 0)
         trips = round_trips(x.original, forward.points, backward.points) / np.sqrt(x.original.area)
-        confidence[laid] = likely * trip_confidence(trips[laid])
+        confidence[laid] = credibility * trip_confidence(trips[laid])
         known = main @ x.mesh.vertex_areas / x.mesh.area
         whole = confidence @ x.original.vertex_areas / x.original.area
         share = float(whole / known) if known > 0 else 1.0

@@ -86,10 +86,10 @@ def test_what_has_no_partner_is_trusted_as_what_it_lies_on_is(with_eyes):
     assert 0.05 < found.confidence[eyes].mean() < 0.95
 
 
-def test_of_unlike_bodies_less_is_known_of_their_pieces_too(with_eyes):
+def test_what_the_map_as_a_whole_is_worth_counts_for_pieces_too(with_eyes):
     same = itself(with_eyes.mesh)
-    alike, unlike = (
-        run(whole_maps_steps(with_eyes, with_eyes, same, same, likeness=likeness)).there for likeness in (40.0, 10.0)
+    sure, doubtful = (
+        run(whole_maps_steps(with_eyes, with_eyes, same, same, credibility=part)).there for part in (1.0, 0.4)
     )
-    eyes = with_eyes.vertex_parts > 0
-    assert unlike.confidence[eyes].mean() < 0.5 * alike.confidence[eyes].mean()
+    np.testing.assert_allclose(doubtful.confidence, 0.4 * sure.confidence)
+    assert doubtful.share == pytest.approx(sure.share)

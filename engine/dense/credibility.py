@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+r"""How credible maps are: the score that they are compared by, and the probabilities that every decision is made by.
+
+The score of a map between samples is a weighted sum of the logarithms of its terms :math:`t_k`, see `map_energies`,
+
+.. math:: s = \sum_k w_k \log t_k,
+
+and that of a registered map adds :math:`4 \sum \log g` for the gaps g that are left between the surfaces, from either
+side.  Smaller is more credible.  These scores compare maps of one pair of surfaces.  How much alike the surfaces are,
+whatever the other maps, says the *likeness* of the best one: by its score before it was registered, and by the energy E
+of the deformation that lays one surface onto the other,
+
+.. math:: \ell = -s - 4 \log E.
+
+From the likeness follows how probable it is that the map as a whole is right, by a logistic function that
+``python -m tests.benchmarks.calibration`` fits on pairs whose truth is known [1]_.
+
+References
+----------
+.. [1] J. Platt, "Probabilistic outputs for support vector machines and comparisons to regularized likelihood methods",
+   Advances in Large Margin Classifiers, 1999.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import expit, logit
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "ALL_ALIKE",
+    "CREDIBLE",
+    "EVEN",
+    "FAILED",
+    "MUCH_ALIKE",
+    "closeness",
+    "is_clear_choice",
+    "is_less_alike",
+    "likeness",
+    "map_score",
+    "probability_chosen",
+    "probability_right",
+    "registered_score",
+    "vertex_credibility",
+]
+
+_WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
+"""Of the logarithms of the terms of a map.  Rigidity is the strongest cue against half turns; in distances and spectra
+these are hardly worse than the truth."""
+
+_LEAST_TERM = 1e-6
+"""Terms that are smaller are all the same."""
+
+_GAP_WEIGHT, _LEAST_GAP = 4.0, 1e-4
+"""Weight of the logarithm of a gap between registered surfaces, and the gap, in sqrt(area), below which all are the
+same."""
+
+_ELASTIC_WEIGHT = 4.0
+"""Weight of the logarithm of the energy of a deformation."""
+
+_RIGHT, _RIGHT_SPREAD = 13.5, 0.6
+"""Likeness of surfaces that are matched wrongly as often as not, and by how much more or less it decides: cats, people
+and octopuses are matched to one another at 9 to 13, gorillas to men at 14 to 17, two persons at 20 to 30."""
+
+_CLOSE, _CLOSE_SPREAD, _LEAST_CLOSENESS = 15.0, 1.4, 0.3
+"""Likeness of surfaces of which half of what the maps agree on is as close to the truth as it seems, by how much more
+or less it changes, and what is left for surfaces that are not alike at all.  Both maps may slide the same way."""
+
+_EITHER, _CLEARER = 0.5, 1.0
+"""Probability that the better of two maps with the same score is right, and the difference of scores by which the rest
+falls to 1/e."""
+
+_CLEAR = 0.816
+"""Probability that the better of two maps is right from which on the choice was clear: scores that differ by one."""
+
+_LEAST_CREDIBILITY = 0.1
+"""What vertices of a map that is surely wrong are still trusted: none at all are those without a partner."""
+
+
+def _alike(probability: float) -> float:
+    """Likeness at which maps are right with a probability."""
+    return float(_RIGHT + _RIGHT_SPREAD * logit(probability))
+
+
+def _alike_closely(part: float) -> float:
+    """Likeness at which a part of what maps agree on is as near to the truth as it seems."""
+    return float(_CLOSE + _CLOSE_SPREAD * logit((part - _LEAST_CLOSENESS) / (1 - _LEAST_CLOSENESS)))
+
+
+FAILED = _alike(0.16)
+"""Likeness below which surfaces without a border are not matched rightly as they are: one in six is right."""
+
+EVEN = _alike(0.5)
+"""Likeness from which on a map is right rather than not."""
+
+CREDIBLE = _alike(0.965)
+"""Likeness below which a map is doubtful: from here on, one in thirty is wrong."""
+
+MUCH_ALIKE = _alike_closely(0.981)
+"""Likeness of surfaces that are whole bodies, whatever else there is: two in a hundred places are not where they seem
+to be."""
+
+ALL_ALIKE = _alike_closely(0.99945)
+"""Likeness of surfaces that are one body in two poses, by which nothing can be missing."""
+
+
+def map_score(terms: Mapping[str, float]) -> float:
+    """Score a map between samples by its terms: smaller is more credible."""
+    return float(sum(weight * np.log(max(terms[name], _LEAST_TERM)) for name, weight in _WEIGHTS.items()))
+
+
+def registered_score(score: float, gaps: NDArray[np.float64]) -> float:
+    """Score a registered map by the `map_score` of where it leads, and the gaps (2,), in sqrt(area), that are left.
+
+    A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.  The true
+    one may take more deforming than a wrong one where proportions differ, but the surfaces meet closer.
+    """
+    return score + _GAP_WEIGHT * float(np.log(np.maximum(gaps, _LEAST_GAP)).sum())
+
+
+def likeness(score: float, energy: float) -> float:
+    """How much alike surfaces are if a map is right, by its `map_score` and the energy of the deformation."""
+    return -(score + _ELASTIC_WEIGHT * float(np.log(max(energy, float(np.finfo(float).tiny)))))
+
+
+def is_less_alike(known: float | None, least: float) -> bool:
+    """Say whether surfaces are less alike than that; where landmarks are known, their likeness is not (None)."""
+    return known is not None and known < least
+
+
+def probability_right(known: float | None) -> float:
+    """Estimate how many maps of surfaces so much alike are right as a whole, 0 to 1."""
+    return 1.0 if known is None else float(expit((known - _RIGHT) / _RIGHT_SPREAD))
+
+
+def closeness(known: float | None) -> float:
+    """Estimate the part of what both maps agree on that is as near to the truth as it seems, 0 to 1."""
+    if known is None:
+        return 1.0
+    return _LEAST_CLOSENESS + (1 - _LEAST_CLOSENESS) * float(expit((known - _CLOSE) / _CLOSE_SPREAD))
+
+
+def probability_chosen(margin: float | None) -> float:
+    """Estimate how often the best of several maps is the right one, 0 to 1.
+
+    Parameters
+    ----------
+    margin : float or None
+        By how much the score of the second is larger; None if there was no other.
+    """
+    return 1.0 if margin is None else 1 - (1 - _EITHER) * float(np.exp(-margin / _CLEARER))
+
+
+def is_clear_choice(margin: float | None) -> bool:
+    """Say whether the choice of the best of several maps was clear, see `probability_chosen`."""
+    return probability_chosen(margin) >= _CLEAR
+
+
+def vertex_credibility(orientation: float, margin: float | None, known: float | None) -> float:
+    """Estimate the part of vertices, of those whose two images agree, that are where they seem to be, 0.1 to 1.
+
+    Parameters
+    ----------
+    orientation : float
+        Part of the area on which the map keeps left on the left, minus the part on which it mirrors.
+    margin : float or None
+        By how much the score of the second best map is larger.
+    known : float or None
+        The likeness.
+    """
+    whole = max(orientation, 0.0) * probability_chosen(margin) * probability_right(known)
+    return max(closeness(known) * whole, _LEAST_CREDIBILITY)

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import numpy as np
+import pytest
+
+from engine.dense.credibility import (
+    ALL_ALIKE,
+    CREDIBLE,
+    EVEN,
+    FAILED,
+    MUCH_ALIKE,
+    closeness,
+    is_clear_choice,
+    is_less_alike,
+    likeness,
+    map_score,
+    probability_chosen,
+    probability_right,
+    registered_score,
+    vertex_credibility,
+)
+
+TERMS = {"bijectivity": 0.2, "curvature": 0.5, "distances": 0.1, "rigidity": 0.05, "waves": 0.4}
+
+
+@pytest.mark.parametrize("term", TERMS)
+def test_a_map_with_a_smaller_term_is_more_credible(term):
+    assert map_score(TERMS | {term: TERMS[term] / 2}) < map_score(TERMS)
+
+
+def test_a_term_that_is_zero_is_as_good_as_a_tiny_one():
+    assert map_score(TERMS | {"rigidity": 0.0}) == map_score(TERMS | {"rigidity": 1e-9})
+
+
+def test_what_is_beside_the_terms_does_not_count():
+    assert map_score(TERMS | {"commutator": 7.0}) == map_score(TERMS)
+
+
+def test_gaps_that_are_halved_on_both_sides_are_worth_eight_doublings():
+    near, far = (registered_score(-20.0, np.array(gaps)) for gaps in ([0.001, 0.002], [0.002, 0.004]))
+    assert far - near == pytest.approx(8 * np.log(2))
+
+
+def test_surfaces_that_meet_are_all_the_same():
+    assert registered_score(-20.0, np.zeros(2)) == registered_score(-20.0, np.full(2, 1e-7))
+
+
+def test_what_deforms_less_is_more_alike():
+    assert likeness(-25.0, 0.5) - likeness(-25.0, 1.0) == pytest.approx(4 * np.log(2))
+    assert np.isfinite(likeness(-25.0, 0.0))
+
+
+def test_the_levels_of_decisions_are_probabilities():
+    assert [probability_right(level) for level in (FAILED, EVEN, CREDIBLE)] == pytest.approx([0.16, 0.5, 0.965])
+    assert [closeness(level) for level in (MUCH_ALIKE, ALL_ALIKE)] == pytest.approx([0.981, 0.99945])
+    assert FAILED < EVEN < CREDIBLE < MUCH_ALIKE < ALL_ALIKE
+
+
+def test_with_landmarks_nothing_is_doubted():
+    assert (probability_right(None), closeness(None), probability_chosen(None)) == (1, 1, 1)
+    assert not is_less_alike(None, ALL_ALIKE)
+    assert is_clear_choice(None)
+
+
+def test_of_two_maps_that_are_as_good_one_is_right():
+    assert probability_chosen(0.0) == 0.5
+    assert not is_clear_choice(0.0)
+    assert is_clear_choice(1.0)
+    assert not is_clear_choice(0.99)
+
+
+@pytest.mark.parametrize(
+    ("orientation", "margin", "known"), [(0.5, 20.0, 30.0), (1.0, 0.0, 30.0), (1.0, 20.0, EVEN), (0.7, 0.3, 16.0)]
+)
+def test_vertices_are_trusted_no_more_than_the_map_as_a_whole(orientation, margin, known):
+    whole = orientation * probability_chosen(margin) * probability_right(known)
+    assert vertex_credibility(orientation, margin, known) <= whole
+    assert vertex_credibility(1.0, None, None) == 1
+
+
+@pytest.mark.parametrize(("orientation", "known"), [(-1.0, 30.0), (0.0, 30.0), (1.0, -100.0)])
+def test_only_what_has_no_partner_is_not_trusted_at_all(orientation, known):
+    assert vertex_credibility(orientation, None, known) == 0.1
