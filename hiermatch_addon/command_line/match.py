@@ -13,6 +13,7 @@ from ..jobs.job import MatchJob, job_options
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
 from ..properties.summary import remember
+from ..scene.character import parts_of
 from ..storage import writing
 from ..storage.match_exchange import collect_match
 from ..storage.match_file import save_match
@@ -25,6 +26,8 @@ from .reports import Report, add_report_options, run_reported
 
 if TYPE_CHECKING:
     import argparse
+
+    from ..scene.character import Side
 
 __all__ = [
     "add_commands",
@@ -54,8 +57,8 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the two meshes."""
-    parser.add_argument("source", type=mesh_argument, metavar="SOURCE", help="FILE or FILE:OBJECT of the source.")
-    parser.add_argument("target", type=mesh_argument, metavar="TARGET", help="FILE or FILE:OBJECT of the target.")
+    parser.add_argument("source", type=mesh_argument, metavar="SOURCE", help="FILE or FILE:NAME of the source.")
+    parser.add_argument("target", type=mesh_argument, metavar="TARGET", help="FILE or FILE:NAME of the target.")
 
 
 def add_result_options(parser: argparse.ArgumentParser, what: str = "the target") -> None:
@@ -81,7 +84,7 @@ def warn_if_nothing_is_written(parsed: argparse.Namespace, console: Console) -> 
         console.say("Nothing will be written: name a file by --output, --map or --report.")
 
 
-def load_pair(parsed: argparse.Namespace, report: Report) -> tuple[bpy.types.Object, bpy.types.Object]:
+def load_pair(parsed: argparse.Namespace, report: Report) -> tuple[Side, Side]:
     """Load source and target."""
     (source, target), notes = load_meshes([parsed.source, parsed.target])
     report.add_object("source", parsed.source, source)
@@ -93,7 +96,7 @@ def load_pair(parsed: argparse.Namespace, report: Report) -> tuple[bpy.types.Obj
 def save_results(
     parsed: argparse.Namespace,
     report: Report,
-    pair: tuple[bpy.types.Object, bpy.types.Object],
+    pair: tuple[Side, Side],
     prefix: str,
     console: Console,
     *,
@@ -113,8 +116,9 @@ def save_results(
     for path in sorted(parsed.output, key=lambda output: output.suffix.lower() != ".blend"):
         console.progress(1.0, f"Writing {path}")
         if clean and path.suffix.lower() != ".blend":
-            for written in writing.prefixes(pair[1]):
-                writing.clear(pair[1], written)
+            for part in parts_of(pair[1]):
+                for written in writing.prefixes(part):
+                    writing.clear(part, written)
         save(path, pair[1])
         report.written.append(str(path.absolute()))
 

@@ -12,10 +12,13 @@ import bpy
 
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
+from ..scene.character import armatures_above, parts_of, side_of
 from .operator_errors import said_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from ..scene.character import Side
 
 __all__ = ["MeshArgument", "has_operator", "load_meshes", "mesh_argument"]
 
@@ -41,7 +44,7 @@ class MeshArgument:
     path : Path
         The file.
     name : str
-        The object in it; empty if there is only one mesh to choose.
+        The object in it, or a collection; empty if there is only one mesh or character to choose.
     """
 
     path: Path
@@ -67,15 +70,22 @@ def mesh_argument(text: str) -> MeshArgument:
     raise argparse.ArgumentTypeError(f'"{text}" names no file that ends with {", ".join(_KINDS)}')
 
 
-def load_meshes(arguments: Sequence[MeshArgument]) -> tuple[list[bpy.types.Object], list[str]]:
-    """Load meshes, of one or several files, into one scene.
+def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tuple[list[Side], list[str]]:
+    """Load meshes and characters, of one or several files, into one scene.
 
     The first .blend among the files is opened as a whole; all else is added to it.
 
+    Parameters
+    ----------
+    arguments : sequence of MeshArgument
+        Files, and what is meant in them: a mesh, an armature with all meshes that it moves, or a collection.
+    whole : bool
+        Whether a file of several meshes on one armature means all of them, if no name is given.
+
     Returns
     -------
-    objects : list of bpy.types.Object
-        For each argument its object.
+    sides : list of bpy.types.Object or Character
+        For each argument what it means.
     notes : list of str
         What should be known of the choice.
 
@@ -90,26 +100,44 @@ def load_meshes(arguments: Sequence[MeshArgument]) -> tuple[list[bpy.types.Objec
     opened = next((one.path for one in arguments if one.path.suffix.lower() == ".blend"), None)
     _start(opened)
     imported: dict[Path, list[bpy.types.Object]] = {}
-    found: list[bpy.types.Object] = []
+    found: list[Side] = []
     notes: list[str] = []
     for argument in arguments:
         path = argument.path
         if path == opened:
-            chosen = _choose(_scene_meshes(), argument)
+            chosen = _named(argument, view_layer_of(bpy.context).objects) or _choose(_scene_meshes(), argument)
         elif path.suffix.lower() == ".blend":
             chosen = _append(argument)
         else:
             if path not in imported:
                 imported[path] = _import(path)
-            chosen = _choose_largest(imported[path], argument, notes)
+            chosen = _chosen_of_import(imported[path], argument, notes, whole=whole)
         found.append(chosen)
     context = bpy.context
-    for obj in found:
+    for obj in (part for side in found for part in parts_of(side)):
         if obj.mode != "OBJECT":
             view_layer_of(context).objects.active = obj
             bpy.ops.object.mode_set(mode="OBJECT")
     view_layer_of(context).update()
     return found, notes
+
+
+def _named(argument: MeshArgument, objects: Iterable[bpy.types.Object]) -> Side | None:
+    """Return the character whose armature or collection is named; None if neither has that name.
+
+    The name of an import that was taken in the scene has got a number.
+    """
+    if not argument.name:
+        return None
+    view_layer_of(bpy.context).update()
+    armatures = [obj for obj in objects if obj.type == "ARMATURE"]
+    for called in ((obj.name for obj in armatures), (obj.name.rpartition(".")[0] for obj in armatures)):
+        for obj, name in zip(armatures, called, strict=True):
+            if name == argument.name:
+                return side_of(obj, view_layer_of(bpy.context))
+    collection = bpy.data.collections.get(argument.name)
+    held = collection is not None and any(obj in set(objects) for obj in collection.all_objects)
+    return side_of(collection, view_layer_of(bpy.context)) if collection is not None and held else None
 
 
 def has_operator(name: str) -> bool:
@@ -140,7 +168,7 @@ def _scene_meshes() -> list[bpy.types.Object]:
 
 
 def _import(path: Path) -> list[bpy.types.Object]:
-    """Import a file and return its meshes."""
+    """Import a file and return its meshes with faces, and its armatures."""
     name = next((name for name in _IMPORTERS[path.suffix.lower()] if has_operator(name)), None)
     if name is None:
         raise ObjectError(
@@ -154,16 +182,28 @@ def _import(path: Path) -> list[bpy.types.Object]:
     except RuntimeError as error:
         raise ObjectError(f'"{path}" cannot be read: {said_by(error)}') from error
     added = [obj for obj in bpy.data.objects if obj not in before]
-    return [obj for obj in added if obj.type == "MESH" and len(mesh_of(obj).polygons)]
+    return [obj for obj in added if obj.type == "ARMATURE" or (obj.type == "MESH" and len(mesh_of(obj).polygons))]
 
 
-def _append(argument: MeshArgument) -> bpy.types.Object:
-    """Append an object of another .blend, with its parents and what its modifiers use."""
+def _append(argument: MeshArgument) -> Side:
+    """Append an object of another .blend, with its parents and what its modifiers use, or a whole character."""
+    path = str(argument.path.resolve())
     try:
         libraries: Any = bpy.data.libraries
-        with libraries.load(str(argument.path.resolve()), link=False) as (there, here):
+        with libraries.load(path, link=False) as (there, here):
             names = [name for name in there.objects if argument.name in ("", name)]
+            if argument.name and not names and argument.name in there.collections:
+                here.collections = [argument.name]
             here.objects = list(names)
+        if here.collections:
+            (collection,) = here.collections
+            cast("bpy.types.Scene", bpy.context.scene).collection.children.link(collection)
+            for obj in list(collection.all_objects):
+                _link(obj)
+            view_layer_of(bpy.context).update()
+            return side_of(collection, view_layer_of(bpy.context))
+        if argument.name and names and here.objects[0].type == "ARMATURE":
+            return _append_character(path, here.objects[0])
     except (OSError, RuntimeError) as error:
         raise ObjectError(f'"{argument.path}" cannot be opened: {said_by(error)}') from error
     if argument.name and not names:
@@ -177,6 +217,25 @@ def _append(argument: MeshArgument) -> bpy.types.Object:
     obj = _choose(meshes.values(), argument, tuple(meshes))
     _link(obj)
     return obj
+
+
+def _append_character(path: str, armature: bpy.types.Object) -> Side:
+    """Append all meshes of another .blend that an armature moves which was appended from it."""
+    before = set(bpy.data.objects)
+    name, libraries = armature.name, cast("Any", bpy.data.libraries)
+    bpy.data.objects.remove(armature)  # it comes again with what hangs on it
+    with libraries.load(path, link=False) as (there, here):
+        here.objects = list(there.objects)
+    loaded = [obj for obj in here.objects if obj is not None]
+    mover = next(obj for obj in loaded if obj.type == "ARMATURE" and obj.name == name)
+    kept = [obj for obj in loaded if mover in armatures_above(obj)]
+    for obj in kept:
+        _link(obj)
+    used = {obj for obj in bpy.data.objects if obj in before or obj.users_collection}
+    for obj in [obj for obj in loaded if obj not in used]:
+        bpy.data.objects.remove(obj)
+    view_layer_of(bpy.context).update()
+    return side_of(mover, view_layer_of(bpy.context))
 
 
 def _link(obj: bpy.types.Object) -> None:
@@ -201,6 +260,27 @@ def _choose(meshes: Iterable[bpy.types.Object], argument: MeshArgument, names: S
     elif len(objects) == 1:
         return objects[0]
     raise ObjectError(_open_choice(argument, names))
+
+
+def _chosen_of_import(
+    added: Sequence[bpy.types.Object], argument: MeshArgument, notes: list[str], *, whole: bool
+) -> Side:
+    """Return what is named of an import, or the character of the mesh with the most vertices."""
+    found = _named(argument, added)
+    if found is not None:
+        return found
+    chosen = _choose_largest([obj for obj in added if obj.type == "MESH"], argument, notes)
+    armature = next((obj for obj in added if obj.type == "ARMATURE" and obj in armatures_above(chosen)), None)
+    if argument.name or armature is None or not whole:
+        return chosen
+    side = side_of(armature, view_layer_of(bpy.context))
+    if len(parts_of(side)) > 1:
+        notes[:] = [note for note in notes if f'"{chosen.name}"' not in note]
+        notes.append(
+            f'"{argument.path.name}" holds a character of {len(parts_of(side))} meshes on "{armature.name}", which was '
+            "taken as a whole. Name a mesh behind a colon for it alone."
+        )
+    return side
 
 
 def _choose_largest(meshes: Sequence[bpy.types.Object], argument: MeshArgument, notes: list[str]) -> bpy.types.Object:

@@ -13,11 +13,14 @@ import bpy
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..common.file_writing import beside
+from ..scene.character import parts_of
 from .meshes import has_operator
 from .operator_errors import said_by
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from ..scene.character import Side
 
 __all__ = ["output_argument", "save"]
 
@@ -51,8 +54,8 @@ def output_argument(text: str) -> Path:
     return path
 
 
-def save(path: Path, obj: bpy.types.Object) -> None:
-    """Write the whole scene into a .blend, or an object with its armatures into another kind of file.
+def save(path: Path, side: Side) -> None:
+    """Write the whole scene into a .blend, or an object or character with its armatures into another kind of file.
 
     Raises
     ------
@@ -65,20 +68,21 @@ def save(path: Path, obj: bpy.types.Object) -> None:
             with beside(path) as temporary:
                 bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
         else:
-            _select(obj)
+            _select(side)
             _export(path)
     except RuntimeError as error:
         raise ObjectError(f'"{path}" cannot be written: {said_by(error)}') from error
 
 
-def _select(obj: bpy.types.Object) -> None:
-    """Select an object and the armatures that move it, and nothing else."""
-    layer = view_layer_of(bpy.context)
-    movers = [obj.parent, *(getattr(modifier, "object", None) for modifier in obj.modifiers)]
-    wanted = [obj, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
+def _select(side: Side) -> None:
+    """Select the objects of a side and the armatures that move them, and nothing else."""
+    layer, parts = view_layer_of(bpy.context), parts_of(side)
+    movers = [obj.parent for obj in parts]
+    movers += [getattr(modifier, "object", None) for obj in parts for modifier in obj.modifiers]
+    wanted = [*parts, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
     for other in layer.objects:
         other.select_set(other in wanted)
-    layer.objects.active = obj
+    layer.objects.active = parts[0]
 
 
 def _export(path: Path) -> None:

@@ -14,6 +14,7 @@ import bpy
 from ...engine import HierMatchError
 from ..common.access import mesh_of
 from ..common.file_writing import write_whole
+from ..scene.character import parts_of
 from .command import ExitCode
 from .console import Console, interruptible
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..jobs.transfer_job import Carried
+    from ..scene.character import Side
     from ..storage.stored_match import StoredMatch
     from .meshes import MeshArgument
 
@@ -81,14 +83,14 @@ class Report:
         quality = (self.match or {}).get("quality")
         return quality is not None and quality["confidence"] < self.least_confidence
 
-    def add_object(self, role: str, argument: MeshArgument, obj: bpy.types.Object) -> None:
+    def add_object(self, role: str, argument: MeshArgument, obj: Side) -> None:
         """Say what was loaded."""
-        mesh = mesh_of(obj)
+        meshes = [mesh_of(part) for part in parts_of(obj)]
         self.objects[role] = {
             "file": str(argument.path),
             "object": obj.name,
-            "vertices": len(mesh.vertices),
-            "faces": len(mesh.polygons),
+            "vertices": sum(len(mesh.vertices) for mesh in meshes),
+            "faces": sum(len(mesh.polygons) for mesh in meshes),
         }
 
     def add_match(self, stored: StoredMatch) -> None:

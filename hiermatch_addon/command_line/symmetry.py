@@ -10,6 +10,7 @@ import numpy as np
 
 from ...engine import symmetry_map_steps
 from ..common.access import mesh_of, view_layer_of
+from ..scene.character import parts_of
 from ..scene.mesh_io import position_digest, read_mesh, topology
 from ..scene.pair import check_object
 from ..storage.match_file import MatchFile, save_match
@@ -58,7 +59,8 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
 
     def work(report: Report) -> None:
         console.progress(0.0, "Reading files")
-        (obj,), notes = load_meshes([parsed.mesh])
+        (side,), notes = load_meshes([parsed.mesh], whole=False)
+        obj = parts_of(side)[0]
         report.add_object("mesh", parsed.mesh, obj)
         report.add_notes(notes)
         context = bpy.context

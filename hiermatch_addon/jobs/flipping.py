@@ -8,9 +8,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ...engine import densify_steps, distances_to_vertices_steps, within
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..scene.mesh_io import read_mesh
+from ..scene.character import read_surface
 from ..scene.pair import check_pair
 from ..storage.answer_writing import following, mapped_contents_steps, restored
 from ..storage.contents import contents_steps
@@ -67,12 +67,11 @@ class FlipJob(RewritingJob):
             )
         use_modifiers = stored.written.use_modifiers
         self._meshes = (
-            read_mesh(source.obj, depsgraph, use_modifiers=use_modifiers),
-            read_mesh(target.obj, depsgraph, use_modifiers=use_modifiers),
+            read_surface(source.obj, depsgraph, use_modifiers=use_modifiers),
+            read_surface(target.obj, depsgraph, use_modifiers=use_modifiers),
         )
         self._maps, self._other_maps = (
-            StoredMaps.read(mesh_of(source.obj), mesh_of(target.obj), map_name(half.prefix, other=other))
-            for other in (False, True)
+            StoredMaps.read(source.obj, target.obj, map_name(half.prefix, other=other)) for other in (False, True)
         )
         super().__init__((source, target), replace(stored, mirrored=not stored.mirrored), started)
 

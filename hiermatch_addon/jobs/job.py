@@ -7,8 +7,6 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import bpy
-
 from ...engine import (
     MatchSettings,
     Progress,
@@ -19,10 +17,10 @@ from ...engine import (
     placed_by_map,
     within,
 )
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..properties.properties import match_settings
-from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.character import SideReference, positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_pair
 from ..storage import writing
 from ..storage.contents import contents_steps
@@ -33,8 +31,11 @@ from ..storage.vertex_maps import StoredMaps, add_maps
 from .stepped_job import SteppedJob
 
 if TYPE_CHECKING:
+    import bpy
+
     from ...engine import DenseMatch, MatchResult, Steps
     from ..properties.properties import MatchOptions
+    from ..scene.character import Side
     from ..storage.contents import Content
     from ..storage.vertex_maps import MapPair
 
@@ -174,8 +175,8 @@ class MatchJob(SteppedJob):
     ----------
     context : bpy.types.Context
         Where the objects are.
-    source, target : bpy.types.Object
-        The objects.
+    source, target : bpy.types.Object or Character
+        The objects, or characters of several.
     options : JobOptions
         What to match and to write.
 
@@ -190,23 +191,20 @@ class MatchJob(SteppedJob):
         If the objects or settings do not allow a match.
     """
 
-    def __init__(
-        self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, options: JobOptions
-    ) -> None:
+    def __init__(self, context: bpy.types.Context, source: Side, target: Side, options: JobOptions) -> None:
         self._start = time.perf_counter()
         self._options = options
         depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
         check_pair(view_layer_of(context), source, target)
         for obj in (source, target):
             _check_points(obj, options.settings)
-        self._uids = (source.session_uid, target.session_uid)
-        self._names = (source.name, target.name)
+        self._references = (SideReference.of(source), SideReference.of(target))
         self._meshes = (
-            read_mesh(source, depsgraph, use_modifiers=options.use_modifiers),
-            read_mesh(target, depsgraph, use_modifiers=options.use_modifiers),
+            read_surface(source, depsgraph, use_modifiers=options.use_modifiers),
+            read_surface(target, depsgraph, use_modifiers=options.use_modifiers),
         )
-        self._topologies = (topology(mesh_of(source)), topology(mesh_of(target)))
-        self._positions = (position_digest(mesh_of(source)), position_digest(mesh_of(target)))
+        self._topologies = (topology_of(source), topology_of(target))
+        self._positions = (positions_of(source), positions_of(target))
         self._landmarks = landmark_array(find_landmarks(source, target)) if options.use_landmarks else None
         self._excluded = (
             excluded_vertices(source, options.exclude_source),
@@ -281,7 +279,7 @@ class MatchJob(SteppedJob):
             raise RuntimeError("The match has not come to its end yet.")
         objects = self._objects(view_layer)
         for obj, read in zip(objects, self._topologies, strict=True):
-            if topology(mesh_of(obj)) != read:
+            if topology_of(obj) != read:
                 raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
         names, prefix = (objects[0].name, objects[1].name), self._options.prefix
         stored, prepared = self._stored(self._found, names), self._prepared
@@ -317,28 +315,29 @@ class MatchJob(SteppedJob):
             notes=tuple(notes),
         )
 
-    def _objects(self, view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
+    def _objects(self, view_layer: bpy.types.ViewLayer) -> list[Side]:
         """Look the objects up again and make sure that they are still what was read."""
-        found = {obj.session_uid: obj for obj in bpy.data.objects if obj.session_uid in self._uids}
-        for uid, name in zip(self._uids, self._names, strict=True):
-            if uid not in found:
-                raise ObjectError(f'"{name}" was deleted while it was being matched. Nothing was written.')
-        objects = [found[uid] for uid in self._uids]
+        objects: list[Side] = []
+        for reference in self._references:
+            found = reference.find()
+            if found is None:
+                raise ObjectError(f'"{reference.name}" was deleted while it was being matched. Nothing was written.')
+            objects.append(found)
         try:
             check_pair(view_layer, *objects)
         except ObjectError as error:
             raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
         for obj, mesh in zip(objects, self._meshes, strict=True):
-            if len(mesh_of(obj).vertices) != mesh.vertex_count:
+            if vertex_count(obj) != mesh.vertex_count:
                 raise ObjectError(
                     f'"{obj.name}" got another number of vertices while it was being matched. Nothing was written.'
                 )
         return objects
 
 
-def _check_points(obj: bpy.types.Object, settings: MatchSettings) -> None:
+def _check_points(obj: Side, settings: MatchSettings) -> None:
     """Make sure that there are vertices enough: a dense match takes fewer points by itself, where these are not."""
-    count, points = len(mesh_of(obj).vertices), settings.points
+    count, points = vertex_count(obj), settings.points
     if (settings.coarse_points if settings.dense else points) > count:
         raise ObjectError(
             f'"{obj.name}" has {count} vertices, too few for {points} Points. Set Points to {count} or fewer, '

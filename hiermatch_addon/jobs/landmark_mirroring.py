@@ -5,13 +5,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
 
 from ...engine import symmetry_map_steps, within
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.character import SideReference, positions_of, read_surface, topology_of
 from ..scene.pair import check_pair
 from ..storage.halves import find_common
 from ..storage.landmarks import add_landmarks, find_landmarks, landmark_array
@@ -19,9 +18,11 @@ from ..storage.vertex_maps import StoredMaps, map_name
 from .stepped_job import SteppedJob
 
 if TYPE_CHECKING:
+    import bpy
     from numpy.typing import NDArray
 
     from ...engine import Steps, TriangleMesh
+    from ..scene.character import Side
     from ..storage.landmarks import Landmark
 
 __all__ = ["MirrorJob"]
@@ -43,7 +44,7 @@ class MirrorJob(SteppedJob):
     ----------
     context : bpy.types.Context
         Where the objects are.
-    source, target : bpy.types.Object
+    source, target : bpy.types.Object or Character
         The objects, in Object Mode.
 
     Attributes
@@ -59,7 +60,7 @@ class MirrorJob(SteppedJob):
         If the objects cannot be read or written, or have no landmarks in common.
     """
 
-    def __init__(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def __init__(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         depsgraph = context.evaluated_depsgraph_get()
         check_pair(view_layer_of(context), source, target)
         found = landmark_array(find_landmarks(source, target))
@@ -68,8 +69,8 @@ class MirrorJob(SteppedJob):
                 f'"{source.name}" and "{target.name}" have no landmarks in common that are on. Add some first.'
             )
         self._landmarks = found
-        self._objects = tuple((obj.session_uid, obj.name, _state(obj)) for obj in (source, target))
-        self._meshes = tuple(read_mesh(obj, depsgraph, use_modifiers=False) for obj in (source, target))
+        self._objects = tuple((SideReference.of(side), _state(side)) for side in (source, target))
+        self._meshes = tuple(read_surface(obj, depsgraph, use_modifiers=False) for obj in (source, target))
         self._maps = _fresh_maps(source, target)
         self._images: list[NDArray[np.int64]] = []
         self.left_out = 0
@@ -84,10 +85,10 @@ class MirrorJob(SteppedJob):
             If the objects have changed.
         """
         objects = []
-        for uid, name, state in self._objects:
-            obj = next((obj for obj in bpy.data.objects if obj.session_uid == uid), None)
+        for reference, state in self._objects:
+            obj = reference.find()
             if obj is None or _state(obj) != state:
-                raise ObjectError(f'"{name}" was deleted or edited meanwhile. No landmark was added.')
+                raise ObjectError(f'"{reference.name}" was deleted or edited meanwhile. No landmark was added.')
             objects.append(obj)
         source, target = objects
         check_pair(view_layer, source, target)
@@ -127,19 +128,19 @@ class MirrorJob(SteppedJob):
         return after > before + _ASTRAY * np.sqrt(target.area)
 
 
-def _fresh_maps(source: bpy.types.Object, target: bpy.types.Object) -> StoredMaps | None:
+def _fresh_maps(source: Side, target: Side) -> StoredMaps | None:
     """Read the dense maps of a match that is not out of date, from source to target; None if there is none."""
     for half, partner in find_common(source, target):
         if not (half.staleness() or partner.staleness()):
             first, second = (half, partner) if half.role == "source" else (partner, half)
-            maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(half.prefix))
+            maps = StoredMaps.read(first.obj, second.obj, map_name(half.prefix))
             if maps is not None:
                 return maps if first is half else maps.reverse
     return None
 
 
-def _state(obj: bpy.types.Object) -> tuple[str, str]:
-    return topology(mesh_of(obj)), position_digest(mesh_of(obj))
+def _state(side: Side) -> tuple[str, str]:
+    return topology_of(side), positions_of(side)
 
 
 def _in_middle(mesh: TriangleMesh, vertex: int, image: int) -> bool:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...engine import Progress, refine_map_steps, within
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..scene.mesh_io import read_mesh
+from ..scene.character import read_surface
 from ..scene.pair import check_pair
 from ..storage.answer_writing import following, mapped_contents_steps
 from ..storage.excluded_regions import excluded_vertices
@@ -73,13 +73,13 @@ class RefineJob(RewritingJob):
                 "right."
             )
         self._landmarks: NDArray[np.int64] = marks
-        maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(prefix))
+        maps = StoredMaps.read(first.obj, second.obj, map_name(prefix))
         if maps is None:
             raise ObjectError(f"The match of {pair} has no dense map to refine. Match them again with Dense Map on.")
         use_modifiers = stored.written.use_modifiers
         self._meshes = (
-            read_mesh(first.obj, depsgraph, use_modifiers=use_modifiers),
-            read_mesh(second.obj, depsgraph, use_modifiers=use_modifiers),
+            read_surface(first.obj, depsgraph, use_modifiers=use_modifiers),
+            read_surface(second.obj, depsgraph, use_modifiers=use_modifiers),
         )
         between = maps.between(*self._meshes)
         self._map, self._map_back = between.source_to_target, between.target_to_source
@@ -87,7 +87,7 @@ class RefineJob(RewritingJob):
         at, to = self._landmarks.T
         apart = np.linalg.norm(self._meshes[1].vertices[to] - self._map.positions[at], axis=1)
         self.moved = float(apart.max() / np.sqrt(self._meshes[1].area))
-        self._other_maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(prefix, other=True))
+        self._other_maps = StoredMaps.read(first.obj, second.obj, map_name(prefix, other=True))
         super().__init__((first, second), stored, started)
 
     def _check_half(self, half: Half) -> None:

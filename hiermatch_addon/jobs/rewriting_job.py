@@ -8,6 +8,7 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from ..common.access import view_layer_of
+from ..scene.character import SideReference
 from ..scene.pair import check_pair
 from ..storage.answer_writing import write_answer
 from ..storage.halves import find_again
@@ -54,7 +55,7 @@ class RewritingJob(SteppedJob):
         source, target = halves
         self._start = started
         self.names, self.prefix, self.key = (source.obj.name, target.obj.name), source.prefix, source.key
-        self._uids = (source.obj.session_uid, target.obj.session_uid)
+        self._references = (SideReference.of(source.obj), SideReference.of(target.obj))
         self._stored = stored
         self._prepared: tuple[Content, Content] | None = None
         self.seconds = 0.0
@@ -87,6 +88,6 @@ class RewritingJob(SteppedJob):
 
     def _halves(self, view_layer: bpy.types.ViewLayer) -> tuple[Half, Half]:
         """Look the objects up again and make sure that they still carry the match."""
-        halves = find_again(self._uids, self.names, self.prefix, self.key)
+        halves = find_again(self._references, self.prefix, self.key)
         check_pair(view_layer, halves[0].obj, halves[1].obj)
         return halves

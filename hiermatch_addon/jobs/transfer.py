@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     import bpy
 
     from ...engine import FittedRig, Steps
+    from ..scene.character import Side
     from ..storage.vertex_maps import MapPair
 
 __all__ = ["Passage", "Transfer", "TransferReport"]
@@ -56,7 +57,7 @@ class TransferReport:
 
 
 class Transfer(Protocol):
-    """One kind of thing that is carried from one source to one target.
+    """One kind of thing that is carried from one source to one target, each an object or a character of several.
 
     Attributes
     ----------
@@ -69,8 +70,8 @@ class Transfer(Protocol):
     label: str
     uses_rig: bool
 
-    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
-        """Read everything from both objects and make sure that it can be written.
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
+        """Read everything from all objects of both sides and make sure that it can be written.
 
         Raises
         ------
@@ -81,5 +82,5 @@ class Transfer(Protocol):
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute what is to be written, without touching Blender's data."""
 
-    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write it."""

@@ -7,14 +7,12 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import bpy
-
 from ...engine import HierMatchError, Progress, fit_rig_steps, within
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..scene.armatures import read_rig
-from ..scene.mesh_io import position_digest, read_mesh, topology
-from ..scene.pair import check_object, check_pair
+from ..scene.character import SideReference, positions_of, read_surface, topology_of
+from ..scene.pair import check_pair, check_side
 from ..storage.halves import find_common
 from ..storage.stored_map import find_maps, keep_refined
 from ..storage.vertex_maps import MapPair, StoredMaps
@@ -25,8 +23,11 @@ from .transfer import Passage, TransferReport
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import bpy
+
     from ...engine import Steps, TriangleMesh
     from ..scene.armatures import SourceRig
+    from ..scene.character import Side
     from .job import JobOptions, Outcome
     from .transfer import Transfer
 
@@ -83,10 +84,8 @@ class Carried:
 class _Leg:
     """The way to one target."""
 
-    def __init__(
-        self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, options: TransferOptions
-    ) -> None:
-        self.uid, self.name = target.session_uid, target.name
+    def __init__(self, context: bpy.types.Context, source: Side, target: Side, options: TransferOptions) -> None:
+        self.reference, self.name = SideReference.of(target), target.name
         self.stored: StoredMaps | None = None
         self.refined = False
         self.prefix = options.prefix
@@ -97,16 +96,14 @@ class _Leg:
         if self.stored is None:
             self.match = MatchJob(context, source, target, _with_maps(options.match))
             self.prefix = options.match.prefix
-        self.mesh = read_mesh(target, context.evaluated_depsgraph_get(), use_modifiers=False)
+        self.mesh = read_surface(target, context.evaluated_depsgraph_get(), use_modifiers=False)
         self.state = _state(target)
         self.transfers: list[Transfer] = []
         self.left_out: list[TransferReport] = []
         self.better: StoredMaps | None = None
         self._optional = options.optional
 
-    def read(
-        self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, made: list[Transfer]
-    ) -> None:
+    def read(self, context: bpy.types.Context, source: Side, target: Side, made: list[Transfer]) -> None:
         """Read what is to be carried over.
 
         Raises
@@ -130,8 +127,8 @@ class _Leg:
             self.left_out.append(TransferReport("", remarks=said) if absent else TransferReport("", notes=said))
 
 
-def _carry_fresh_match(source: bpy.types.Object, target: bpy.types.Object, prefix: str) -> bool:
-    """Tell whether two objects carry one dense match at least that is not out of date."""
+def _carry_fresh_match(source: Side, target: Side, prefix: str) -> bool:
+    """Tell whether two sides carry one dense match at least that is not out of date."""
     found = [pair for pair in find_common(source, target) if prefix in ("", pair[0].prefix)]
     fresh = [pair for pair in found if not any(half.staleness() for half in pair)]
     return bool(fresh) and any(half.kept.get("written", {}).get("dense") for pair in fresh for half in pair)
@@ -142,8 +139,8 @@ def _with_maps(options: JobOptions) -> JobOptions:
     return replace(options, use_modifiers=False, settings=replace(options.settings, dense=True))
 
 
-def _state(obj: bpy.types.Object) -> tuple[str, str]:
-    return topology(mesh_of(obj)), position_digest(mesh_of(obj))
+def _state(side: Side) -> tuple[str, str]:
+    return topology_of(side), positions_of(side)
 
 
 class TransferJob(SteppedJob):
@@ -156,9 +153,9 @@ class TransferJob(SteppedJob):
     ----------
     context : bpy.types.Context
         Where the objects are.
-    source : bpy.types.Object
+    source : bpy.types.Object or Character
         What is carried from.
-    targets : sequence of bpy.types.Object
+    targets : sequence of bpy.types.Object or Character
         Where it is carried to.
     make : callable
         Makes the transfers for one target.
@@ -179,8 +176,8 @@ class TransferJob(SteppedJob):
     def __init__(
         self,
         context: bpy.types.Context,
-        source: bpy.types.Object,
-        targets: Sequence[bpy.types.Object],
+        source: Side,
+        targets: Sequence[Side],
         make: Callable[[], list[Transfer]],
         options: TransferOptions,
     ) -> None:
@@ -188,11 +185,11 @@ class TransferJob(SteppedJob):
         self._options = options
         depsgraph = context.evaluated_depsgraph_get()
         view_layer = view_layer_of(context)
-        check_object(view_layer, source)
+        check_side(view_layer, source)
         for target in targets:
             check_pair(view_layer, source, target)
-        self._source, self._source_name, self._source_state = source.session_uid, source.name, _state(source)
-        self._mesh: TriangleMesh = read_mesh(source, depsgraph, use_modifiers=False)
+        self._source, self._source_name, self._source_state = SideReference.of(source), source.name, _state(source)
+        self._mesh: TriangleMesh = read_surface(source, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []
         for target in targets:
             leg = _Leg(context, source, target, options)
@@ -232,9 +229,7 @@ class TransferJob(SteppedJob):
             carried.append(Carried(target.name, outcome, reports, time.perf_counter() - self._start))
         return carried
 
-    def _write_match(
-        self, context: bpy.types.Context, leg: _Leg, source: bpy.types.Object, target: bpy.types.Object
-    ) -> Outcome | None:
+    def _write_match(self, context: bpy.types.Context, leg: _Leg, source: Side, target: Side) -> Outcome | None:
         """Write the match if it is new, and the better maps.
 
         A source carries one match of a prefix only: with several targets, the new matches are used but not kept.
@@ -291,12 +286,13 @@ class TransferJob(SteppedJob):
         pair = MapPair(self._mesh, leg.mesh, fitted.source_to_target, fitted.target_to_source)
         return Passage(pair, fitted, rig.names)
 
-    def _objects(self, view_layer: bpy.types.ViewLayer) -> tuple[bpy.types.Object, list[bpy.types.Object]]:
+    def _objects(self, view_layer: bpy.types.ViewLayer) -> tuple[Side, list[Side]]:
         """Look the objects up again and make sure that they are still what was read."""
-        wanted = {self._source: self._source_name} | {leg.uid: leg.name for leg in self._legs}
-        found = {obj.session_uid: obj for obj in bpy.data.objects if obj.session_uid in wanted}
-        for uid, name in wanted.items():
-            if uid not in found:
-                raise ObjectError(f'"{name}" was deleted meanwhile. Nothing was written.')
-            check_object(view_layer, found[uid])
-        return found[self._source], [found[leg.uid] for leg in self._legs]
+        found = []
+        for reference in (self._source, *(leg.reference for leg in self._legs)):
+            side = reference.find()
+            if side is None:
+                raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
+            check_side(view_layer, side)
+            found.append(side)
+        return found[0], found[1:]

@@ -12,9 +12,10 @@ from ...engine import HierMatchError
 from ..common.access import mesh_of, view_layer_of
 from ..common.translated_text import translated
 from ..jobs.running import can_start
-from ..properties.panel_state import state_of
+from ..properties.panel_state import picked, state_of
 from ..properties.steering_lists import sync_lists
-from ..scene.pair import check_writable, named_object, selected_meshes
+from ..scene.character import parts_of, side_of
+from ..scene.pair import check_writable, named_side, selected_meshes
 from ..storage.writing import clear, is_marked, kept, prefixes
 
 if TYPE_CHECKING:
@@ -79,11 +80,11 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
     def _objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """Find the meshes to clear, each once."""
         if self.object:
-            candidates = [named_object(self.object)]
+            candidates = list(parts_of(named_side(view_layer_of(context), self.object)))
         else:
-            state = state_of(context)
-            picked = [obj for obj in (state.source, state.target) if obj is not None]
-            candidates = [*picked, *selected_meshes(context)]
+            layer = view_layer_of(context)
+            sides = [side_of(chosen, layer) for chosen in picked(state_of(context)) if chosen is not None]
+            candidates = [*(part for side in sides for part in parts_of(side)), *selected_meshes(context)]
         return [obj for obj in dict.fromkeys(candidates) if obj.type == "MESH"]
 
     def _prefixes(self, obj: bpy.types.Object) -> tuple[str, ...]:

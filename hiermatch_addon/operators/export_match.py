@@ -13,7 +13,7 @@ from bpy_extras.io_utils import ExportHelper
 from ...engine import HierMatchError
 from ..common.access import view_layer_of
 from ..common.translated_text import translated
-from ..properties.panel_state import state_of
+from ..properties.panel_state import picked, state_of
 from ..scene.pair import find_pair, selected_meshes
 from ..storage.halves import find_keyed
 from ..storage.match_exchange import collect_match
@@ -21,6 +21,8 @@ from ..storage.match_file import save_match
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    from ..scene.character import Side
 
 __all__ = ["HIERMATCH_OT_export_match"]
 
@@ -79,16 +81,16 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
         self.report({"INFO"}, translated(f'Exported the match of "{source.name}" and "{target.name}" to "{path.name}"'))
         return {"FINISHED"}
 
-    def _match(self, context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object, str]:
+    def _match(self, context: bpy.types.Context) -> tuple[Side, Side, str]:
         """Find the two objects of the match that is meant, and its prefix."""
         state = state_of(context)
-        named, picked, summary = (self.source, self.target), (state.source, state.target), state.summary
+        named, chosen, summary = (self.source, self.target), picked(state), state.summary
         shown = summary.key and self.prefix in ("", summary.prefix)
-        if shown and not any((*named, *picked)) and len(selected_meshes(context)) < 2:
+        if shown and not any((*named, *chosen)) and len(selected_meshes(context)) < 2:
             roles = ("target", "source") if summary.swapped else ("source", "target")
             source, target = (
                 find_keyed(view_layer_of(context), summary.key, summary.prefix, role, name).obj
                 for role, name in zip(roles, (summary.source, summary.target), strict=True)
             )
             return source, target, summary.prefix
-        return *find_pair(context, named, picked), self.prefix
+        return *find_pair(context, named, chosen), self.prefix

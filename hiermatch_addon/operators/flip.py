@@ -17,7 +17,7 @@ from ..jobs.running import can_start
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
 from ..properties.summary import remember
-from ..scene.pair import named_object
+from ..scene.pair import named_side
 from ..storage.halves import Half, find_half, find_keyed
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         """Find one side of the match that is meant."""
         summary, view_layer = state_of(context).summary, view_layer_of(context)
         if self.object:
-            return find_half(named_object(self.object), self.prefix)
+            return find_half(named_side(view_layer, self.object), self.prefix)
         if summary.key and self.prefix in ("", summary.prefix):
             role = "target" if summary.swapped else "source"
             return find_keyed(view_layer, summary.key, summary.prefix, role, summary.source)

@@ -14,7 +14,7 @@ from ...engine import HierMatchError
 from ..common.translated_text import translated
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
-from ..properties.panel_state import state_of
+from ..properties.panel_state import picked, state_of
 from ..properties.summary import remember
 from ..scene.pair import find_pair
 from ..storage.match_exchange import apply_match
@@ -75,7 +75,7 @@ class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: igno
         state = state_of(context)
         path = Path(bpy.path.abspath(self.filepath))
         try:
-            source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
+            source, target = find_pair(context, (self.source, self.target), picked(state))
             stored = apply_match(context, source, target, load_match(path), self.prefix)
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))

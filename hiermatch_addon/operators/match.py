@@ -14,11 +14,11 @@ from ..jobs.job import MatchJob, job_options
 from ..jobs.job_operator import JobOperator
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
-from ..properties.panel_state import state_of
+from ..properties.panel_state import picked, state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.summary import remember
-from ..scene.pair import find_pair, left_out_note, selected_targets
+from ..scene.pair import find_pair, left_out_note, name_of, selected_targets
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -77,12 +77,13 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     def _start(self, context: bpy.types.Context) -> MatchJob:
         """Read both objects."""
         state = state_of(context)
-        source, target = find_pair(context, (self.source, self.target), (state.source, state.target))
-        parts = [] if self.target or state.target else selected_targets(context, source)[1]
+        source, target = find_pair(context, (self.source, self.target), picked(state))
+        parts = [] if self.target or picked(state)[1] else selected_targets(context, source)[1]
         self._left_out = left_out_note(source, parts) if parts else ""
         job = MatchJob(context, source, target, job_options(self))
         # So that Adjust Last Operation repeats the match of the same two, whatever is selected by then.
-        self.source, self.target = source.name, target.name
+        layer = view_layer_of(context)
+        self.source, self.target = name_of(layer, source), name_of(layer, target)
         return job
 
     def _finish(self, context: bpy.types.Context, job: MatchJob) -> set[OperatorReturnItems]:

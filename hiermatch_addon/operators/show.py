@@ -17,6 +17,7 @@ from ..common.translated_text import translated
 from ..jobs.running import can_start
 from ..properties.steering_lists import common_match, steered_pair
 from ..properties.steering_properties import steering_of
+from ..scene.character import parts_of
 from ..scene.pair import check_writable
 from ..storage.views.views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
 
@@ -40,7 +41,8 @@ def _match_of(context: bpy.types.Context) -> tuple[Half, Half]:
     if halves is None:
         raise ObjectError("There is no match to show. Pick two meshes as Source and Target, and match them.")
     for half in halves:
-        check_writable(half.obj)
+        for part in parts_of(half.obj):
+            check_writable(part)
     return halves
 
 
@@ -108,7 +110,7 @@ class HIERMATCH_OT_write_regions(bpy.types.Operator):
 def _show(context: bpy.types.Context, halves: tuple[Half, Half], view: str) -> None:
     prepare_view(context, halves, view)
     steering, shading = steering_of(context), _shading(context)
-    objects = (halves[0].obj, halves[1].obj)
+    objects = [part for half in halves for part in parts_of(half.obj)]
     if not steering.before:
         steering.before = json.dumps(
             {
@@ -117,7 +119,7 @@ def _show(context: bpy.types.Context, halves: tuple[Half, Half], view: str) -> N
             }
         )
     name = attribute_of(halves[0].prefix, view)
-    show_attribute(objects, (name, name))
+    show_attribute(objects, [name] * len(objects))
     if shading:
         shading.type = "SOLID"
         shading.color_type = "VERTEX"
@@ -133,7 +135,7 @@ def _go_back(context: bpy.types.Context) -> None:
         shading.type = before["shading"][0]
     pair = steered_pair(cast("bpy.types.Scene", context.scene))
     if pair is not None:
-        show_attribute(pair, tuple(before["colors"]))
+        show_attribute([part for side in pair for part in parts_of(side)], before["colors"])
     steering.before = ""
 
 

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import bpy
 
 from ..common.access import mesh_of
 from ..common.translated_text import translated
-from ..properties.panel_state import state_of
+from ..properties.panel_state import pick, picked, state_of
+from ..properties.steering_lists import steered_pair
+from ..scene.character import parts_of
 from ..storage.halves import find_common
 from ..storage.writing import change_kept
 
@@ -36,7 +38,7 @@ class HIERMATCH_OT_swap(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it when there is something to exchange."""
         state = state_of(context)
-        if state.source is None and state.target is None:
+        if not any(picked(state)):
             cls.poll_message_set(translated("Pick a Source or a Target first"))
             return False
         return True
@@ -44,11 +46,12 @@ class HIERMATCH_OT_swap(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Exchange them, and with them what the panel calls source and target of a match that they carry."""
         state = state_of(context)
-        state.source, state.target = state.target, state.source
+        for role, chosen in zip(("target", "source"), picked(state), strict=True):
+            pick(state, role, chosen)
         state.exclude_source, state.exclude_target = state.exclude_target, state.exclude_source
-        if state.source is not None and state.target is not None:
-            for half, partner in find_common(state.source, state.target):
-                _set_swapped(state.summary, half, partner)
+        pair = steered_pair(cast("bpy.types.Scene", context.scene)) if all(picked(state)) else None
+        for half, partner in find_common(*pair) if pair else ():
+            _set_swapped(state.summary, half, partner)
         return {"FINISHED"}
 
 
@@ -56,7 +59,7 @@ def _set_swapped(summary: HIERMATCH_PG_summary, half: Half, partner: Half) -> No
     """Call the first of the two sides of a match the source from now on."""
     swapped = half.role == "target"
     for side in (half, partner):
-        if mesh_of(side.obj).library is None:
+        if all(mesh_of(part).library is None for part in parts_of(side.obj)):
             change_kept(side.obj, side.prefix, swapped=swapped)
     if (summary.prefix, summary.key) == (half.prefix, half.key):
         summary.swapped = swapped

@@ -9,12 +9,15 @@ import numpy as np
 
 from ..common.access import mesh_of
 from ..properties.steering_lists import steered_pair
+from ..scene.character import parts_of
 from ..scene.mesh_io import vertex_positions
 from .overlay_data import Drawing, Marks, Places, Shown, drawing, place
 
 if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
+
+    from ..scene.character import Side
 
 __all__ = ["read_drawing", "signature"]
 
@@ -33,9 +36,9 @@ def signature(scene: bpy.types.Scene, pending: tuple[str, int] | None) -> tuple[
         steering.pair_index,
         steering.landmark_index,
         pending,
-        *(obj.session_uid for obj in pair),
-        *(obj.visible_get() for obj in pair),
-        *(tuple(row) for obj in pair for row in cast("Any", obj.matrix_world)),
+        *(part.session_uid for side in pair for part in parts_of(side)),
+        *(part.visible_get() for side in pair for part in parts_of(side)),
+        *(tuple(row) for side in pair for part in parts_of(side) for row in cast("Any", part.matrix_world)),
     )
 
 
@@ -43,9 +46,9 @@ def read_drawing(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, pending
     """Compute what is to be drawn for a scene; nothing while one of the two meshes is hidden or being edited."""
     owner: Any = scene
     steering, pair = owner.hiermatch_steering, steered_pair(scene)
-    if pair is None or not all(obj.visible_get() for obj in pair):
+    if pair is None or not all(part.visible_get() for side in pair for part in parts_of(side)):
         return Drawing()
-    positions, matrices = zip(*(_shown(obj, depsgraph) for obj in pair), strict=True)
+    positions, matrices = zip(*(_shown_side(side, depsgraph) for side in pair), strict=True)
     marks, rows = [], (steering.pairs, steering.landmarks)
     for number, (items, chosen) in enumerate(zip(rows, (steering.pair_index, steering.landmark_index), strict=True)):
         read = _places if number == 0 else _at_vertices
@@ -68,6 +71,15 @@ def read_drawing(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, pending
         Shown(steering.show_points, steering.show_lines, steering.show_labels),
         pending=waiting,
     )
+
+
+def _shown_side(side: Side, depsgraph: bpy.types.Depsgraph) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Read where the vertices of a side are and its matrix: of several objects, positions in the world."""
+    shown = [_shown(part, depsgraph) for part in parts_of(side)]
+    if len(shown) == 1:
+        return shown[0]
+    world = [positions @ matrix[:3, :3].T + matrix[:3, 3] for positions, matrix in shown]
+    return np.concatenate(world).astype(np.float32), np.eye(4)
 
 
 def _shown(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[NDArray[np.float32], NDArray[np.float64]]:

@@ -13,6 +13,7 @@ from ..jobs.running import running_panel
 from ..properties.panel_state import state_of
 from ..properties.steering_lists import steered_pair
 from ..properties.steering_properties import steering_of
+from ..scene.character import parts_of
 from ..storage.views.views import VIEW_ITEMS, attribute_of
 from .progress_bar import draw_progress
 
@@ -178,6 +179,6 @@ def _shown_view(context: bpy.types.Context) -> str:
     shading = cast("bpy.types.SpaceView3D", context.space_data).shading
     if pair is None or shading.type != "SOLID" or shading.color_type != "VERTEX":
         return "NONE"
-    color = mesh_of(pair[0]).attributes.active_color_name
+    color = mesh_of(parts_of(pair[0])[0]).attributes.active_color_name
     views = (view for view, _, _ in VIEW_ITEMS if view != "NONE")
     return next((view for view in views if attribute_of(prefix, view) == color), "NONE")

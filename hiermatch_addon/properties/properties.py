@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ...engine import MatchSettings
+from ..common.access import view_layer_of
+from ..common.errors import ObjectError
 from ..common.translations import CONTEXT
+from ..scene.character import parts_of, side_of
+from ..scene.pair import named_side
 from ..storage.excluded_regions import region_names
 from .steering_lists import sync_lists
 from .summary import remember_common
@@ -76,10 +80,14 @@ _CHOICES = {
 def _search_regions(role: str) -> Callable[[Any, bpy.types.Context, str], list[str]]:
     """Make what lists the regions of one of the two objects, as they are picked or named."""
 
-    def search(owner: Any, _context: bpy.types.Context, _text: str) -> list[str]:  # noqa: ANN401 - options of a match
-        picked = getattr(owner, role)
-        obj = bpy.data.objects.get(picked) if isinstance(picked, str) else picked
-        return region_names(obj) if obj is not None and obj.type == "MESH" else []
+    def search(owner: Any, context: bpy.types.Context, _text: str) -> list[str]:  # noqa: ANN401 - options of a match
+        chosen = getattr(owner, role) or getattr(owner, f"{role}_collection", None)
+        layer = view_layer_of(context)
+        try:
+            side = named_side(layer, chosen) if isinstance(chosen, str) else side_of(chosen, layer) if chosen else None
+        except ObjectError:
+            return []
+        return region_names(side) if side is not None and parts_of(side)[0].type == "MESH" else []
 
     return search
 
@@ -203,8 +211,8 @@ def copy_options(source: MatchOptions, target: MatchOptions) -> None:
         setattr(target, name, getattr(source, name))
 
 
-def _is_mesh(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
-    return obj.type == "MESH"
+def _is_pickable(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
+    return obj.type in ("MESH", "ARMATURE")
 
 
 def _on_pick(owner: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
@@ -272,16 +280,29 @@ class HIERMATCH_PG_scene(MatchOptions, bpy.types.PropertyGroup):
 
     source: _props.PointerProperty(
         name="Source",
-        description="Mesh whose points are matched; if empty, the active object",
+        description="Mesh that is matched, or an armature with all meshes that it moves; if empty, what is active",
         type=bpy.types.Object,
-        poll=_is_mesh,
+        poll=_is_pickable,
         update=_on_pick,
     )
     target: _props.PointerProperty(
         name="Target",
-        description="Mesh on which the corresponding points are sought; if empty, the other selected mesh",
+        description="Mesh that corresponding points are sought on, or an armature with all meshes that it moves; if "
+        "empty, what else is selected",
         type=bpy.types.Object,
-        poll=_is_mesh,
+        poll=_is_pickable,
+        update=_on_pick,
+    )
+    source_collection: _props.PointerProperty(
+        name="Source Collection",
+        description="Collection whose meshes are the source together, if no object is picked",
+        type=bpy.types.Collection,
+        update=_on_pick,
+    )
+    target_collection: _props.PointerProperty(
+        name="Target Collection",
+        description="Collection whose meshes are the target together, if no object is picked",
+        type=bpy.types.Collection,
         update=_on_pick,
     )
     summary: _props.PointerProperty(name="Summary", description="The last match", type=HIERMATCH_PG_summary)

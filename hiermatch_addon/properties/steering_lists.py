@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..storage.halves import find_common
+from ..common.errors import ObjectError
+from ..scene.character import parts_of, side_of
+from ..storage.halves import find_carriers, find_common
 from ..storage.landmarks import find_landmarks
 from ..storage.stored_match import StoredMatch
-from .panel_state import summary_of
+from .panel_state import picked, summary_of
 
 if TYPE_CHECKING:
     import bpy
 
+    from ..scene.character import Side
     from ..storage.halves import Half
 
 __all__ = ["common_match", "point_name", "steered_pair", "sync_lists"]
@@ -27,17 +30,33 @@ _REVISIONS = 1 << 30
 """After so many changes the count begins anew."""
 
 
-def steered_pair(scene: bpy.types.Scene) -> tuple[bpy.types.Object, bpy.types.Object] | None:
-    """Return the two meshes that a scene's panels are about: those picked, else those of the last match."""
+def steered_pair(scene: bpy.types.Scene) -> tuple[Side, Side] | None:
+    """Return the two sides that a scene's panels are about: those picked, else those of the last match."""
     state: Any = scene
-    picked = (state.hiermatch.source, state.hiermatch.target)
-    summary = summary_of(scene)
-    names = (summary.source, summary.target) if summary.key else ("", "")
-    found = [obj or scene.objects.get(name) for obj, name in zip(picked, names, strict=True)]
-    source, target = found
-    if source is None or target is None or source == target or {source.type, target.type} != {"MESH"}:
+    source, target = (_steered(scene, chosen, number) for number, chosen in enumerate(picked(state.hiermatch)))
+    if source is None or target is None or source == target:
         return None
     return source, target
+
+
+def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -> Side | None:
+    """Return what is picked, else that side of the last match, 0 for what is shown as its source."""
+    summary = summary_of(scene)
+    if chosen is not None:
+        try:
+            side = side_of(chosen, scene.view_layers[0])
+        except ObjectError:
+            return None
+        return side if parts_of(side)[0].type == "MESH" else None
+    if not summary.key:
+        return None
+    name = (summary.source, summary.target)[number]
+    obj = scene.objects.get(name)
+    if obj is not None and obj.type == "MESH":
+        return obj
+    role = ("source", "target")[number != summary.swapped]
+    found = find_carriers(scene.objects, summary.key, summary.prefix, role)
+    return next((half.obj for half in found if half.obj.name == name), None)
 
 
 def common_match(scene: bpy.types.Scene) -> tuple[Half, Half] | None:

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array, diags_array, vstack
 
 from ...engine import Skeleton
+from ..common.access import mesh_of
+from .character import parts_of
 from .deform_layer import read_weights
 
 if TYPE_CHECKING:
@@ -17,10 +19,13 @@ if TYPE_CHECKING:
     import mathutils
     from numpy.typing import NDArray
 
+    from .character import Side
+
 __all__ = [
     "SourceRig",
     "armature_modifier",
     "armature_of",
+    "bone_of",
     "find_armature",
     "moving_armatures",
     "read_rig",
@@ -56,6 +61,21 @@ def armature_of(obj: bpy.types.Object) -> bpy.types.Armature:
     return cast("bpy.types.Armature", obj.data)
 
 
+def bone_of(obj: bpy.types.Object) -> str:
+    """Return the bone that an object hangs on as a whole, as eyes and props do; empty if it hangs on none.
+
+    Of a bone that does not deform it is the one above it that does, if there is one.
+    """
+    parent = obj.parent
+    if parent is None or parent.type != "ARMATURE" or obj.parent_type != "BONE" or armature_modifier(obj) is not None:
+        return ""
+    bone = armature_of(parent).bones.get(obj.parent_bone)
+    if bone is None:
+        return ""
+    deforming = [one for one in (bone, *bone.parent_recursive) if one.use_deform]
+    return deforming[0].name if deforming else bone.name
+
+
 def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | None:
     """Find the first Armature modifier of an object that has an armature."""
     for modifier in obj.modifiers:
@@ -64,7 +84,12 @@ def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | Non
     return None
 
 
-def find_armature(obj: bpy.types.Object) -> bpy.types.Object | None:
+def find_armature(side: Side) -> bpy.types.Object | None:
+    """Find the armature that moves a side: of its parts, the first that has one tells."""
+    return next((found for found in map(_armature_of_part, parts_of(side)) if found is not None), None)
+
+
+def _armature_of_part(obj: bpy.types.Object) -> bpy.types.Object | None:
     """Find the armature that moves an object: that of its first Armature modifier, or else its parent."""
     modifier = armature_modifier(obj)
     if modifier is not None:
@@ -72,9 +97,9 @@ def find_armature(obj: bpy.types.Object) -> bpy.types.Object | None:
     return obj.parent if obj.parent is not None and obj.parent.type == "ARMATURE" else None
 
 
-def moving_armatures(obj: bpy.types.Object) -> list[bpy.types.Object]:
-    """Return the armatures of all Armature modifiers of an object, each once."""
-    modifiers = [modifier for modifier in obj.modifiers if modifier.type == "ARMATURE"]
+def moving_armatures(side: Side) -> list[bpy.types.Object]:
+    """Return the armatures of all Armature modifiers of a side, each once."""
+    modifiers = [modifier for obj in parts_of(side) for modifier in obj.modifiers if modifier.type == "ARMATURE"]
     armatures = [cast("bpy.types.ArmatureModifier", modifier).object for modifier in modifiers]
     return list(dict.fromkeys(armature for armature in armatures if armature is not None))
 
@@ -93,31 +118,41 @@ def read_skeleton(armature: bpy.types.Object) -> Skeleton:
     return Skeleton(parents, placed(heads), placed(tails))
 
 
-def read_rig(obj: bpy.types.Object) -> SourceRig | None:
-    """Read the rig of a mesh object.
+def read_rig(side: Side) -> SourceRig | None:
+    """Read the rig of a mesh object, or of a character.
 
-    The mesh's own vertices belong to the rest pose, whatever pose the armature is in.
+    The meshes' own vertices belong to the rest pose, whatever pose the armature is in.  What hangs on a bone as a whole
+    is moved by it alone.
 
     Returns
     -------
     SourceRig or None
-        None if no armature moves the object, or no vertex has a weight of one of its deforming bones.
+        None if no armature moves it, or no vertex has a weight of one of its deforming bones.
     """
-    armature = find_armature(obj)
+    armature = find_armature(side)
     if armature is None:
         return None
     bones = armature_of(armature).bones
     numbers = {bone.name: number for number, bone in enumerate(bones) if bone.use_deform}
-    groups = [group for group in obj.vertex_groups if group.name in numbers]
-    if not groups:
-        return None
-    columns = read_weights(obj)[:, [group.index for group in groups]].tocoo()
-    places = np.array([numbers[group.name] for group in groups], np.int64)
-    weights = csr_array((columns.data, (columns.row, places[columns.col])), shape=(columns.shape[0], len(bones)))
-    weights = _normalised(weights)
+    parts = [_bone_weights(obj, armature, numbers, len(bones)) for obj in parts_of(side)]
+    weights = _normalised(csr_array(vstack(parts, format="csr")))
     if weights.nnz == 0:
         return None
     return SourceRig(armature.name, tuple(bone.name for bone in bones), read_skeleton(armature), weights)
+
+
+def _bone_weights(obj: bpy.types.Object, armature: bpy.types.Object, numbers: dict[str, int], count: int) -> csr_array:
+    """Read how much each of all bones moves the vertices of an object, (n, count), as its groups say."""
+    vertices = len(mesh_of(obj).vertices)
+    if obj.parent == armature and bone_of(obj):
+        place = armature_of(armature).bones.find(bone_of(obj))
+        return csr_array((np.ones(vertices), (np.arange(vertices), np.full(vertices, place))), shape=(vertices, count))
+    groups = [group for group in obj.vertex_groups if group.name in numbers]
+    if not groups:
+        return csr_array((vertices, count))
+    columns = read_weights(obj)[:, [group.index for group in groups]].tocoo()
+    places = np.array([numbers[group.name] for group in groups], np.int64)
+    return csr_array((columns.data, (columns.row, places[columns.col])), shape=(vertices, count))
 
 
 def _normalised(weights: csr_array) -> csr_array:

@@ -21,6 +21,7 @@ __all__ = [
     "is_blended",
     "is_free",
     "is_known",
+    "missing_attribute",
     "read_attribute",
     "read_corner_normals",
     "read_face_materials",
@@ -109,6 +110,14 @@ def read_attribute(mesh: bpy.types.Mesh, name: str) -> NDArray[Any]:
     values = np.empty(len(attribute.data) * width, number)
     attribute.data.foreach_get(member, values)
     return values if width == 1 else values.reshape(-1, width)
+
+
+def missing_attribute(mesh: bpy.types.Mesh, layout: AttributeLayout) -> NDArray[Any]:
+    """Return what stands for an attribute that a mesh lacks: white as a color, else zeros."""
+    held: Any = {"POINT": mesh.vertices, "EDGE": mesh.edges, "FACE": mesh.polygons, "CORNER": mesh.loops}[layout.domain]
+    _, number, width = _TYPES[layout.kind]
+    shape = (len(held),) if width == 1 else (len(held), width)
+    return np.ones(shape, number) if layout.kind in ("FLOAT_COLOR", "BYTE_COLOR") else np.zeros(shape, number)
 
 
 def write_attribute(mesh: bpy.types.Mesh, layout: AttributeLayout, values: NDArray[Any]) -> None:

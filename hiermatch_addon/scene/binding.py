@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Binding a mesh to an armature as another mesh is bound to its own."""
+"""Binding a mesh or a character to an armature as another is bound to its own."""
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
+from ..common.phrases import listed
 from .armatures import armature_modifier, find_armature, moving_armatures
+from .character import parts_of
+
+if TYPE_CHECKING:
+    from .character import Side
 
 __all__ = ["bind", "made_rig", "mark_made"]
 
@@ -23,9 +28,9 @@ def mark_made(armature: bpy.types.Object, source: bpy.types.Object) -> None:
     cast("Any", armature)[_MARKER] = source.name
 
 
-def made_rig(target: bpy.types.Object, source: bpy.types.Object) -> bpy.types.Object | None:
+def made_rig(target: Side, source: bpy.types.Object) -> bpy.types.Object | None:
     """Find the armature that moves `target`, or is its parent, and was made after the armature `source`."""
-    candidates: list[Any] = [*moving_armatures(target), target.parent]
+    candidates: list[Any] = [*moving_armatures(target), *(part.parent for part in parts_of(target))]
     for armature in candidates:
         if armature is None or armature.type != "ARMATURE" or armature == source or _MARKER not in armature:
             continue
@@ -36,36 +41,45 @@ def made_rig(target: bpy.types.Object, source: bpy.types.Object) -> bpy.types.Ob
     return None
 
 
-def bind(target: bpy.types.Object, armature: bpy.types.Object, source: bpy.types.Object) -> list[str]:
-    """Let an armature move a mesh with a modifier set as the source's, and be its parent if the source's is.
+def bind(target: Side, armature: bpy.types.Object, source: Side) -> list[str]:
+    """Let an armature move all of a side with modifiers set as the source's, and be the parent if the source's is.
 
-    The mesh stays where it is.  Other modifiers and another parent stay.
+    The target stays where it is.  Other modifiers and another parent stay.
 
     Returns
     -------
     list of str
         What is to be known, one sentence each.
     """
+    model = next((part for part in parts_of(source) if armature_modifier(part)), parts_of(source)[0])
+    parented = any(part.parent is not None and part.parent == find_armature(source) for part in parts_of(source))
+    others: dict[str, list[str]] = {}
+    parents: dict[str, list[str]] = {}
+    for part in parts_of(target):
+        modifier: Any = next((one for one in part.modifiers if getattr(one, "object", None) == armature), None)
+        if modifier is None:
+            modifier = part.modifiers.new("Armature", "ARMATURE")
+            _take_settings(modifier, armature_modifier(model), part)
+            modifier.object = armature
+            part.modifiers.move(len(part.modifiers) - 1, 0)
+        for other in moving_armatures(part)[:2]:
+            if other != armature:
+                others.setdefault(other.name, []).append(part.name)
+        if not parented or part.parent in (armature, *parts_of(target)):
+            continue
+        if part.parent is not None:
+            parents.setdefault(part.parent.name, []).append(part.name)
+            continue
+        part.parent = armature
+        part.matrix_parent_inverse = armature.matrix_world.inverted_safe()
     notes = []
-    modifier: Any = next((one for one in target.modifiers if getattr(one, "object", None) == armature), None)
-    if modifier is None:
-        modifier = target.modifiers.new("Armature", "ARMATURE")
-        _take_settings(modifier, armature_modifier(source), target)
-        modifier.object = armature
-        target.modifiers.move(len(target.modifiers) - 1, 0)
-    others = [other.name for other in moving_armatures(target) if other != armature]
-    if others:
+    for other, names in others.items():
         notes.append(
-            f'"{target.name}" is moved by the armature "{others[0]}" as well. Remove that Armature modifier unless '
-            "both are meant to move it."
+            f'{listed(names)} is moved by the armature "{other}" as well. Remove that Armature modifier unless both '
+            "are meant to move it."
         )
-    if source.parent is None or source.parent != find_armature(source) or target.parent == armature:
-        return notes
-    if target.parent is not None:
-        notes.append(f'"{target.name}" keeps its parent "{target.parent.name}".')
-        return notes
-    target.parent = armature
-    target.matrix_parent_inverse = armature.matrix_world.inverted_safe()
+    for parent, names in parents.items():
+        notes.append(f'{listed(names)} keeps its parent "{parent}".')
     return notes
 
 

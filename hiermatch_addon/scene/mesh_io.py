@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from mathutils import Matrix
 
 from ...engine import MeshError, TriangleMesh
 from ..common.access import mesh_of
@@ -100,7 +101,8 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
         mesh.calc_loop_triangles()
         corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
         mesh.loop_triangles.foreach_get("vertices", corners)
-    matrix = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=np.float64)
+    shown = obj.evaluated_get(depsgraph).matrix_world
+    matrix = np.array(shown if use_modifiers else _rest_matrix(obj) or shown, dtype=np.float64)
     with np.errstate(invalid="ignore"):  # positions that are no numbers are told below
         vertices = positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     triangles = corners.reshape(-1, 3).astype(np.int64)
@@ -116,6 +118,18 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
         return TriangleMesh(vertices, triangles[proper])
     except MeshError as error:
         raise ObjectError(f'"{obj.name}": {error}') from error
+
+
+def _rest_matrix(obj: bpy.types.Object) -> Matrix | None:
+    """Return where an object that hangs on a bone stands while its armature is at rest; None if it hangs on none."""
+    armature, bones = obj.parent, getattr(obj.parent and obj.parent.data, "bones", None)
+    if armature is None or bones is None or obj.parent_type != "BONE" or obj.parent_bone not in bones:
+        return None
+    bone = bones[obj.parent_bone]
+    place = Matrix.Identity(4)
+    if not bone.use_relative_parent:
+        place = bone.matrix_local @ Matrix.Translation((0, bone.length, 0))
+    return armature.matrix_world @ place @ obj.matrix_parent_inverse @ obj.matrix_basis
 
 
 def topology(mesh: bpy.types.Mesh) -> str:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which two objects to match, and whether they can be matched."""
+"""Which two objects or characters to match, and whether they can be matched."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import bpy
 import numpy as np
@@ -11,40 +11,56 @@ import numpy as np
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..common.phrases import listed
+from .character import Character, armatures_above, joined, parts_of, side_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .character import Side
+
 __all__ = [
+    "active_side",
     "check_object",
     "check_pair",
+    "check_side",
     "check_writable",
     "find_pair",
     "left_out_note",
+    "name_of",
     "named_object",
+    "named_side",
     "selected_meshes",
     "selected_targets",
 ]
 
 
+_PLUS = " + "
+"""What stands between the names of several objects."""
+
+
 def find_pair(
     context: bpy.types.Context,
     names: tuple[str, str] = ("", ""),
-    picked: tuple[bpy.types.Object | None, bpy.types.Object | None] = (None, None),
-) -> tuple[bpy.types.Object, bpy.types.Object]:
-    """Find source and target: by name, else as picked, else as selected (the active object is the source).
+    picked: tuple[bpy.types.ID | Character | None, bpy.types.ID | Character | None] = (None, None),
+) -> tuple[Side, Side]:
+    """Find source and target: by name, else as picked, else as selected.
 
-    What is only selected is no target if the source's rig moves it.
+    Of what is selected, the source is what hangs on the rig of the active object, or the active object alone if it has
+    none; the target is the rest.
 
     Raises
     ------
     ObjectError
         If a name is unknown, or the selection leaves open which two are meant.
     """
-    source, target = (named_object(name) if name else pick for name, pick in zip(names, picked, strict=True))
-    active = view_layer_of(context).objects.active
-    if source is None and active is not None and active.select_get() and active != target:
-        source = active
+    layer = view_layer_of(context)
+    source, target = (
+        named_side(layer, name) if name else None if pick is None else side_of(pick, layer)
+        for name, pick in zip(names, picked, strict=True)
+    )
+    active = layer.objects.active
+    if source is None and active is not None and active.select_get():
+        source = active_side(context, without=target)
     if source is None:
         source = _only(selected_meshes(context, without=target), "Source")
     if target is None:
@@ -66,37 +82,136 @@ def named_object(name: str) -> bpy.types.Object:
     return obj
 
 
-def selected_meshes(context: bpy.types.Context, without: bpy.types.Object | None = None) -> list[bpy.types.Object]:
-    """Return the selected mesh objects except for one."""
-    return [obj for obj in view_layer_of(context).objects.selected if obj.type == "MESH" and obj != without]
+def named_side(view_layer: bpy.types.ViewLayer, name: str) -> Side:
+    """Return what is meant by the name of an object or, if there is none of that name, of a collection.
+
+    Several objects are named with " + " between their names.
+
+    Raises
+    ------
+    ObjectError
+        If there is neither, or it holds no meshes.
+    """
+    if name in bpy.data.objects:
+        return side_of(bpy.data.objects[name], view_layer)
+    if name in bpy.data.collections:
+        return side_of(bpy.data.collections[name], view_layer)
+    sides = [side_of(named_object(one), view_layer) for one in name.split(_PLUS)]
+    return joined(sides[0].name, [part for side in sides for part in parts_of(side)])
 
 
-def selected_targets(
-    context: bpy.types.Context, source: bpy.types.Object
-) -> tuple[list[bpy.types.Object], list[bpy.types.Object]]:
-    """Return the selected meshes that may be targets, and those that are parts of the source's own character.
+def name_of(view_layer: bpy.types.ViewLayer, side: Side) -> str:
+    """Return the name by which `named_side` finds a side again."""
+    if isinstance(side, Character):
+        try:
+            same = named_side(view_layer, side.name) == side
+        except ObjectError:
+            same = False
+        return side.name if same else _PLUS.join(part.name for part in side.parts)
+    return side.name
 
-    The latter hang on the armature that moves the source, as clothes, hair and eyes do.
+
+def selected_meshes(context: bpy.types.Context, without: Side | None = None) -> list[bpy.types.Object]:
+    """Return the selected mesh objects except for those of one side."""
+    apart = () if without is None else parts_of(without)
+    return [obj for obj in view_layer_of(context).objects.selected if obj.type == "MESH" and obj not in apart]
+
+
+def active_side(context: bpy.types.Context, without: Side | None = None) -> Side | None:
+    """Return what is active: with a rig, all that is selected of what hangs on the rig; of an armature alone, all.
+
+    None if nothing is active, or it is neither a mesh nor an armature, or it is part of the side `without`.
+    """
+    active = view_layer_of(context).objects.active
+    if (
+        active is None
+        or active.type not in ("MESH", "ARMATURE")
+        or (without is not None and active in parts_of(without))
+    ):
+        return None
+    rig = armatures_above(active)
+    parts = [obj for obj in selected_meshes(context, without) if not rig.isdisjoint(armatures_above(obj))]
+    if active.type == "ARMATURE":
+        return joined(active.name, parts) if parts else side_of(active, view_layer_of(context))
+    return joined(_rig_name(active), [active, *parts])
+
+
+def selected_targets(context: bpy.types.Context, source: Side) -> tuple[list[Side], list[bpy.types.Object]]:
+    """Return what is selected and may be a target, and the meshes that are parts of the source's own character.
+
+    The latter hang on the armature that moves the source, as clothes, hair and eyes do.  What hangs on another rig is
+    one target, and so are meshes without a rig that have the same topmost parent, or fill a collection of their own.
 
     Raises
     ------
     ObjectError
         If there are parts only.
     """
-    targets: list[bpy.types.Object] = []
+    own = parts_of(source)
+    rig = {armature for part in own for armature in armatures_above(part)}
+    meshes: list[bpy.types.Object] = []
     parts: list[bpy.types.Object] = []
-    rig = _armatures(source)
     for obj in selected_meshes(context, without=source):
-        (targets if rig.isdisjoint(_armatures(obj)) else parts).append(obj)
-    if parts and not targets:
+        (meshes if rig.isdisjoint(armatures_above(obj)) else parts).append(obj)
+    targets = _grouped(context, meshes, own)
+    for obj in view_layer_of(context).objects.selected:
+        if obj.type == "ARMATURE" and obj not in rig and not any(obj in armatures_above(mesh) for mesh in meshes):
+            targets.append(side_of(obj, view_layer_of(context)))
+    same = parts or [part for part in own if len(own) > 1 and part.select_get()]
+    if same and not targets:
         raise ObjectError(
-            f'All that is selected beside "{source.name}" is moved by the same rig: {_names(parts)}. Select a mesh of '
+            f'All that is selected is moved by the same rig as "{own[0].name}": {_names(same)}. Select a mesh of '
             "another character, or pick the part as the Target in the panel if it is meant."
         )
     return targets, parts
 
 
-def left_out_note(source: bpy.types.Object, parts: Sequence[bpy.types.Object]) -> str:
+def _grouped(
+    context: bpy.types.Context, meshes: Sequence[bpy.types.Object], own: Sequence[bpy.types.Object]
+) -> list[Side]:
+    """Put meshes together that are one character, in the order of the first of each; `own` are the source's."""
+    groups: list[tuple[set[bpy.types.ID], str, list[bpy.types.Object]]] = []
+    for obj in meshes:
+        holders, name = _holders(context, obj, meshes, own)
+        met = next((group for group in groups if not group[0].isdisjoint(holders)), None)
+        if met is None:
+            groups.append((holders, name, [obj]))
+        else:
+            met[0].update(holders)
+            met[2].append(obj)
+    return [joined(name, found) for _, name, found in groups]
+
+
+def _holders(
+    context: bpy.types.Context,
+    obj: bpy.types.Object,
+    meshes: Sequence[bpy.types.Object],
+    own: Sequence[bpy.types.Object],
+) -> tuple[set[bpy.types.ID], str]:
+    """Return what holds an object together with others: its armatures, else its topmost parent, else a collection."""
+    holders: set[bpy.types.ID] = set(armatures_above(obj))
+    if holders:
+        return holders, _rig_name(obj)
+    top = obj
+    while top.parent is not None:
+        top = top.parent
+    if top != obj or any(other.parent == obj for other in meshes):
+        return {top}, top.name
+    root = cast("bpy.types.Scene", context.scene).collection
+    for collection in obj.users_collection:
+        held = {other for other in collection.all_objects if other.type == "MESH" and other.visible_get()}
+        if collection != root and held <= set(meshes) and held.isdisjoint(own):
+            return {collection}, collection.name
+    return {obj}, obj.name
+
+
+def _rig_name(obj: bpy.types.Object) -> str:
+    """Name the character that an object is of: as the first armature that is found from it, else as itself."""
+    found = sorted(armature.name for armature in armatures_above(obj))
+    return found[0] if found else obj.name
+
+
+def left_out_note(source: Side, parts: Sequence[bpy.types.Object]) -> str:
     """Say that selected parts of the source's own character were left out."""
     return f'What the rig of "{source.name}" moves as well was left alone: {_names(parts)}.'
 
@@ -105,18 +220,7 @@ def _names(objects: Sequence[bpy.types.Object]) -> str:
     return listed(sorted(obj.name for obj in objects))
 
 
-def _armatures(obj: bpy.types.Object) -> set[bpy.types.Object]:
-    """Return the armatures that move an object, by modifiers or as what it hangs on, and those that move the latter."""
-    found: set[bpy.types.Object] = set()
-    link: bpy.types.Object | None = obj
-    while link is not None:
-        armatures = [getattr(modifier, "object", None) for modifier in link.modifiers if modifier.type == "ARMATURE"]
-        found.update(armature for armature in (link, *armatures) if armature and armature.type == "ARMATURE")
-        link = link.parent
-    return found
-
-
-def _only(candidates: Sequence[bpy.types.Object], role: str) -> bpy.types.Object:
+def _only(candidates: Sequence[Side], role: str) -> Side:
     """Return the only candidate for a role."""
     if len(candidates) != 1:
         found = "no other mesh is selected" if not candidates else f"{len(candidates)} other meshes are selected"
@@ -127,8 +231,8 @@ def _only(candidates: Sequence[bpy.types.Object], role: str) -> bpy.types.Object
     return candidates[0]
 
 
-def check_pair(view_layer: bpy.types.ViewLayer, source: bpy.types.Object, target: bpy.types.Object) -> None:
-    """Make sure that two objects can be matched and written to.
+def check_pair(view_layer: bpy.types.ViewLayer, source: Side, target: Side) -> None:
+    """Make sure that two sides can be matched and written to.
 
     Raises
     ------
@@ -137,13 +241,39 @@ def check_pair(view_layer: bpy.types.ViewLayer, source: bpy.types.Object, target
     """
     if source == target:
         raise ObjectError(f'Source and Target are both "{source.name}". Choose two different objects.')
-    for obj in (source, target):
-        check_object(view_layer, obj)
-    if source.data == target.data:
-        raise ObjectError(
-            f'"{source.name}" and "{target.name}" share the same mesh data. Give one of them its own first '
-            "(Object > Relations > Make Single User > Object & Data)."
-        )
+    for side in (source, target):
+        check_side(view_layer, side)
+    for mine in parts_of(source):
+        for other in parts_of(target):
+            if mine == other:
+                raise ObjectError(
+                    f'"{mine.name}" belongs to both Source and Target. Choose two characters that share no object.'
+                )
+            if mine.data == other.data:
+                raise ObjectError(
+                    f'"{mine.name}" and "{other.name}" share the same mesh data. Give one of them its own first '
+                    "(Object > Relations > Make Single User > Object & Data)."
+                )
+
+
+def check_side(view_layer: bpy.types.ViewLayer, side: Side) -> None:
+    """Make sure that all parts of a side can be read and written to.
+
+    Raises
+    ------
+    ObjectError
+        If one cannot, or two share one mesh.
+    """
+    seen: dict[bpy.types.ID, str] = {}
+    for part in parts_of(side):
+        check_object(view_layer, part)
+        mesh = mesh_of(part)
+        if mesh in seen:
+            raise ObjectError(
+                f'"{seen[mesh]}" and "{part.name}" share the same mesh data. Give one of them its own first '
+                "(Object > Relations > Make Single User > Object & Data)."
+            )
+        seen[mesh] = part.name
 
 
 def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> None:

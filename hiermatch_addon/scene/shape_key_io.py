@@ -10,6 +10,7 @@ import numpy as np
 
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
+from .character import parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,11 +18,15 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
+    from .character import Side
+
 __all__ = [
     "KeySettings",
     "add_keys",
+    "all_key_names",
     "can_be_absolute",
     "check_keys_writable",
+    "key_holder",
     "key_paths",
     "key_positions",
     "key_value_path",
@@ -124,6 +129,16 @@ def key_positions(key: bpy.types.ShapeKey) -> NDArray[np.float64]:
     positions = np.empty(3 * len(key.data), np.float32)
     key.data.foreach_get("co", positions)
     return positions.reshape(-1, 3).astype(np.float64)
+
+
+def all_key_names(side: Side) -> tuple[str, ...]:
+    """Return the names of the shape keys of all parts of a side, each once, without reference keys."""
+    return tuple(dict.fromkeys(name for part in parts_of(side) for name in shape_key_names(part)))
+
+
+def key_holder(side: Side, name: str) -> bpy.types.Object:
+    """Return the first part of a side that has a shape key of that name."""
+    return next(part for part in parts_of(side) if name in shape_key_names(part))
 
 
 def read_offsets(obj: bpy.types.Object, names: Sequence[str], *, from_reference: Sequence[str]) -> NDArray[np.float64]:

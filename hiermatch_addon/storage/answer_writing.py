@@ -13,11 +13,11 @@ from .stored_match import CornerPoints, Quality
 from .vertex_maps import add_maps, place_points
 
 if TYPE_CHECKING:
-    import bpy
     import numpy as np
     from numpy.typing import NDArray
 
     from ...engine import DenseMatch, Steps, SurfacePoints, TriangleMesh
+    from ..scene.character import Side
     from .contents import Content
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
@@ -92,7 +92,7 @@ def mapped_contents_steps(
 
 
 def write_answer(
-    objects: tuple[bpy.types.Object, bpy.types.Object],
+    objects: tuple[Side, Side],
     stored: StoredMatch,
     prepared: tuple[Content, Content],
     prefix: str,

@@ -116,6 +116,28 @@ class Content:
     values: dict[str, NDArray[Any]] = field(default_factory=dict)
     keep: dict[str, Any] = field(default_factory=dict)
 
+    def of_part(self, own: slice, number: int, count: int, name: str) -> Content:
+        """Return what of it stands on one part of a character.
+
+        Parameters
+        ----------
+        own : slice
+            Which of all vertices are the part's.
+        number, count : int
+            Which part it is, from 0, of how many; kept with it, so that the parts find each other again.
+        name : str
+            What the part is called now.
+        """
+        groups = {}
+        for group, (vertices, weights) in self.groups.items():
+            inside = (vertices >= own.start) & (vertices < own.stop)
+            if inside.any():
+                groups[group] = (vertices[inside] - own.start, weights[inside])
+        colored = {layer: values[own] for layer, values in self.colors.items()}
+        values = {layer: values[own] for layer, values in self.values.items()}
+        keep = {**self.keep, "part": number, "parts": count, "part_name": name} if self.keep else {}
+        return Content(groups, colored, values, keep)
+
     @property
     def shown(self) -> str | None:
         """The color attribute to make the active one: the first."""

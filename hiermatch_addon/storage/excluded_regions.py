@@ -10,6 +10,7 @@ import numpy as np
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..scene.attribute_io import read_attribute
+from ..scene.character import parts_of
 from ..scene.deform_layer import read_weights
 from ..scene.material_slots import read_materials
 from ..scene.mesh_io import corner_vertices, face_corner_counts
@@ -18,6 +19,8 @@ from .written_names import written_names
 if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
+
+    from ..scene.character import Side
 
 __all__ = ["excluded_vertices", "region_names"]
 
@@ -31,8 +34,12 @@ _HALF = 0.5
 """From which weight on a vertex belongs to a region."""
 
 
-def region_names(obj: bpy.types.Object) -> list[str]:
-    """Return what names of regions a mesh object has."""
+def region_names(side: Side) -> list[str]:
+    """Return what names of regions the parts of a side have."""
+    return list(dict.fromkeys(name for part in parts_of(side) for name in _names_of_part(part)))
+
+
+def _names_of_part(obj: bpy.types.Object) -> list[str]:
     ours = written_names(obj)
     groups = [group.name for group in obj.vertex_groups if group.name not in ours]
     marked = [
@@ -49,13 +56,13 @@ def region_names(obj: bpy.types.Object) -> list[str]:
     return list(dict.fromkeys([*groups, *marked, *materials, *sets]))
 
 
-def excluded_vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_] | None:
+def excluded_vertices(side: Side, name: str) -> NDArray[np.bool_] | None:
     """Find the vertices of a region.
 
     Parameters
     ----------
-    obj : bpy.types.Object
-        A mesh object, in Object Mode.
+    side : bpy.types.Object or Character
+        A mesh object, in Object Mode, or several.
     name : str
         Name of a vertex group, whose vertices of at least half the full weight are meant; or else of a boolean
         attribute of vertices or of faces; or else of a material; or else of a face set, such as "Face Set 2".  Of
@@ -73,21 +80,28 @@ def excluded_vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_] | N
     """
     if not name:
         return None
-    found = _vertices(obj, name)
+    of_parts = [(len(mesh_of(part).vertices), _vertices(part, name)) for part in parts_of(side)]
+    if all(inside is None for _, inside in of_parts):
+        raise ObjectError(
+            f'"{side.name}" has no vertex group, boolean attribute, material or face set called "{name}", which is to '
+            "be left out. Choose another one, or empty the field."
+        )
+    found = np.concatenate([np.zeros(count, bool) if inside is None else inside for count, inside in of_parts])
     if not found.any():
         raise ObjectError(
-            f'No vertex of "{obj.name}" is in "{name}", which is to be left out. Assign vertices to it, or empty the '
+            f'No vertex of "{side.name}" is in "{name}", which is to be left out. Assign vertices to it, or empty the '
             "field."
         )
     if found.all():
         raise ObjectError(
-            f'All of "{obj.name}" is in "{name}", which is to be left out, so nothing remains to match. Choose a '
+            f'All of "{side.name}" is in "{name}", which is to be left out, so nothing remains to match. Choose a '
             "smaller region."
         )
     return found
 
 
-def _vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_]:
+def _vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_] | None:
+    """Find the vertices of a region of one object; None if it has none of that name."""
     mesh = mesh_of(obj)
     if name in obj.vertex_groups:
         column = read_weights(obj)[:, [obj.vertex_groups[name].index]]
@@ -105,10 +119,7 @@ def _vertices(obj: bpy.types.Object, name: str) -> NDArray[np.bool_]:
     meant = [number for number in np.unique(sets).tolist() if f"{_FACE_SET}{number}" == name]
     if meant:
         return _of_faces(mesh, np.isin(sets, meant))
-    raise ObjectError(
-        f'"{obj.name}" has no vertex group, boolean attribute, material or face set called "{name}", which is to be '
-        "left out. Choose another one, or empty the field."
-    )
+    return None
 
 
 def _face_sets(mesh: bpy.types.Mesh) -> NDArray[np.int32]:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ..common.access import mesh_of
 from ..common.errors import ObjectError
-from ..scene.mesh_io import position_digest, topology
+from ..scene.character import Character, parts_of, positions_of, topology_of
 from . import writing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from ..scene.character import Side, SideReference
 
 __all__ = ["Half", "find_again", "find_carriers", "find_common", "find_half", "find_keyed"]
 
@@ -25,15 +26,15 @@ class Half:
 
     Attributes
     ----------
-    obj : bpy.types.Object
-        The object.
+    obj : bpy.types.Object or Character
+        The object, or the character of several.
     prefix : str
         What all names written start with.
     kept : dict
         Its part of the stored match.
     """
 
-    obj: bpy.types.Object
+    obj: Side
     prefix: str
     kept: dict[str, Any]
 
@@ -64,26 +65,26 @@ class Half:
 
     def has_same_faces(self) -> bool:
         """Return whether stored vertex numbers still mean what they meant."""
-        return topology(mesh_of(self.obj)) == self.kept["topology"]
+        return topology_of(self.obj) == self.kept["topology"]
 
     def staleness(self) -> str:
         """Return a sentence that says why the match is out of date on this side; empty if it is not."""
         if not self.has_same_faces():
             change = "it has other vertices or faces"
-        elif self.kept.get("positions") not in (None, "", position_digest(mesh_of(self.obj))):
+        elif self.kept.get("positions") not in (None, "", positions_of(self.obj)):
             change = "its vertices were moved"
         else:
             return ""
         return f'The match is out of date: "{self.obj.name}" was edited since ({change}). Match again.'
 
 
-def find_half(obj: bpy.types.Object, prefix: str = "") -> Half:
-    """Find the match that an object carries.
+def find_half(obj: Side, prefix: str = "") -> Half:
+    """Find the match that an object carries, alone or as a part of a character.
 
     Parameters
     ----------
-    obj : bpy.types.Object
-        The object.
+    obj : bpy.types.Object or Character
+        The object; one part of a character is enough.
     prefix : str
         What the names that the match wrote start with; may be empty if there is one match only.
 
@@ -92,8 +93,7 @@ def find_half(obj: bpy.types.Object, prefix: str = "") -> Half:
     ObjectError
         If there is no such match, or several.
     """
-    candidates = [Half(obj, name, writing.kept(obj, name)) for name in _prefixes(obj) if prefix in ("", name)]
-    found = [half for half in candidates if half.kept]
+    found = [half for name in _prefixes(obj) if prefix in ("", name) for half in _whole_half(obj, name)]
     if not found:
         if prefix:
             raise ObjectError(f'"{obj.name}" carries no match with the Prefix "{prefix}". Match it first.')
@@ -142,25 +142,29 @@ def find_keyed(view_layer: bpy.types.ViewLayer, key: str, prefix: str, role: str
 
 
 def find_carriers(objects: Iterable[bpy.types.Object], key: str, prefix: str, role: str) -> list[Half]:
-    """Find all of some objects that carry one side of a match: the object that was matched, and its copies."""
-    return [
+    """Find what of some objects carries one side of a match: the object that was matched, and its copies.
+
+    The parts of a character are one carrier; of copies of a part, the one that still has its name is taken.
+    """
+    found = [
         Half(obj, prefix, kept)
         for obj in objects
         if prefix in _prefixes(obj)
         and (kept := writing.kept(obj, prefix))
         and (kept["key"], kept["role"]) == (key, role)
     ]
+    whole = [half for half in found if _part_count(half) == 1]
+    character = _assembled([half for half in found if _part_count(half) > 1])
+    return whole if character is None else [*whole, character]
 
 
-def find_again(uids: tuple[int, int], names: tuple[str, str], prefix: str, key: str) -> tuple[Half, Half]:
+def find_again(references: tuple[SideReference, SideReference], prefix: str, key: str) -> tuple[Half, Half]:
     """Find the two sides of a match again that some work has begun with.
 
     Parameters
     ----------
-    uids : tuple of int
-        By which Blender knows the two objects in this session.
-    names : tuple of str
-        What they were called when the work began.
+    references : tuple of SideReference
+        What the two sides are known by.
     prefix, key : str
         Which match.
 
@@ -170,27 +174,69 @@ def find_again(uids: tuple[int, int], names: tuple[str, str], prefix: str, key: 
         If one of them is gone, or does not carry the match any more.
     """
     halves = []
-    for uid, name in zip(uids, names, strict=True):
-        obj = next((obj for obj in bpy.data.objects if obj.session_uid == uid), None)
-        half = None if obj is None else Half(obj, prefix, writing.kept(obj, prefix))
-        if half is None or not half.kept or half.key != key:
-            raise ObjectError(f'"{name}" was deleted, cleared or matched anew meanwhile. Nothing was written.')
+    for reference in references:
+        side = reference.find()
+        half = None if side is None else _half(side, prefix)
+        if half is None or half.key != key:
+            raise ObjectError(
+                f'"{reference.name}" was deleted, cleared or matched anew meanwhile. Nothing was written.'
+            )
         halves.append(half)
     return halves[0], halves[1]
 
 
-def find_common(one: bpy.types.Object, other: bpy.types.Object) -> list[tuple[Half, Half]]:
-    """Find the matches of two objects with one another: for each its two sides, in the order of the objects."""
+def find_common(one: Side, other: Side) -> list[tuple[Half, Half]]:
+    """Find the matches of two sides with one another: for each its two halves, in the order of the sides."""
     pairs = []
     for prefix in _prefixes(one):
-        half, partner = Half(one, prefix, writing.kept(one, prefix)), Half(other, prefix, _kept(other, prefix))
-        if half.kept and partner.kept and (half.key, half.role) == (partner.key, partner.partner_role):
+        half, partner = _half(one, prefix), _half(other, prefix)
+        if half is not None and partner is not None and (half.key, half.role) == (partner.key, partner.partner_role):
             pairs.append((half, partner))
     return pairs
 
 
-def _prefixes(obj: bpy.types.Object) -> tuple[str, ...]:
-    return writing.prefixes(obj) if obj.type == "MESH" else ()
+def _half(side: Side, prefix: str) -> Half | None:
+    """Return what all parts of a side carry of one match, in their order; None if they do not carry all of one."""
+    parts = parts_of(side)
+    halves = [Half(part, prefix, _kept(part, prefix)) for part in parts]
+    if not all(half.kept for half in halves) or any(_part_count(half) != len(parts) for half in halves):
+        return None
+    known = {(half.key, half.role, int(half.kept.get("part", number)) - number) for number, half in enumerate(halves)}
+    return Half(side, prefix, halves[0].kept) if len(known) == 1 and {offset for *_, offset in known} == {0} else None
+
+
+def _whole_half(side: Side, prefix: str) -> list[Half]:
+    """Return what a side carries of a match, or the character that it is a part of; nothing if it carries none."""
+    half = Half(parts_of(side)[0], prefix, _kept(parts_of(side)[0], prefix))
+    if not half.kept:
+        return []
+    if _part_count(half) == 1:
+        return [half]
+    character = _half(side, prefix)
+    return [character] if character else find_carriers(bpy.data.objects, half.key, prefix, half.role)
+
+
+def _part_count(half: Half) -> int:
+    return int(half.kept.get("parts", 1))
+
+
+def _assembled(halves: list[Half]) -> Half | None:
+    """Put the parts of a character together; None if one is missing."""
+    chosen: dict[int, Half] = {}
+    for half in halves:
+        number = int(half.kept["part"])
+        if number not in chosen or half.obj.name == half.kept["part_name"]:
+            chosen[number] = half
+    if not chosen or len(chosen) < _part_count(halves[0]):
+        return None
+    first = chosen[0]
+    parts = tuple(part for number in sorted(chosen) for part in parts_of(chosen[number].obj))
+    return Half(Character(first.name, parts), first.prefix, first.kept)
+
+
+def _prefixes(side: Side) -> tuple[str, ...]:
+    first = parts_of(side)[0]
+    return writing.prefixes(first) if first.type == "MESH" else ()
 
 
 def _kept(obj: bpy.types.Object, prefix: str) -> dict[str, Any]:

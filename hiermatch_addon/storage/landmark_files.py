@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..common.access import mesh_of
 from ..common.errors import ObjectError
-from ..scene.mesh_io import topology, vertex_positions
+from ..scene.character import own_positions, topology_of
 from .landmarks import Landmark
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import bpy
     from numpy.typing import NDArray
+
+    from ..scene.character import Side
 
 __all__ = ["landmarks_from_text", "landmarks_to_text"]
 
@@ -30,7 +30,7 @@ _NEAR = 0.01
 _ROLES = ("source", "target")
 
 
-def landmarks_to_text(source: bpy.types.Object, target: bpy.types.Object, landmarks: Sequence[Landmark]) -> str:
+def landmarks_to_text(source: Side, target: Side, landmarks: Sequence[Landmark]) -> str:
     """Write landmarks as JSON: for each its vertices and where these are in the objects' own space.
 
     Both objects have to be in Object Mode.
@@ -38,9 +38,8 @@ def landmarks_to_text(source: bpy.types.Object, target: bpy.types.Object, landma
     text: dict[str, Any] = {"format": _FORMAT, "version": _VERSION}
     positions = {}
     for role, obj in zip(_ROLES, (source, target), strict=True):
-        mesh = mesh_of(obj)
-        positions[role] = vertex_positions(mesh).astype(np.float64)
-        text[role] = {"name": obj.name, "vertices": len(mesh.vertices), "faces": topology(mesh)}
+        positions[role] = own_positions(obj)
+        text[role] = {"name": obj.name, "vertices": len(positions[role]), "faces": topology_of(obj)}
     text["landmarks"] = [
         {"number": landmark.number, "use": landmark.use}
         | {
@@ -52,16 +51,14 @@ def landmarks_to_text(source: bpy.types.Object, target: bpy.types.Object, landma
     return json.dumps(text, indent=1)
 
 
-def landmarks_from_text(
-    text: str, source: bpy.types.Object, target: bpy.types.Object
-) -> tuple[list[Landmark], list[str]]:
+def landmarks_from_text(text: str, source: Side, target: Side) -> tuple[list[Landmark], list[str]]:
     """Read landmarks from JSON.
 
     Parameters
     ----------
     text : str
         What `landmarks_to_text` wrote.
-    source, target : bpy.types.Object
+    source, target : bpy.types.Object or Character
         The meshes, in Object Mode.  If their vertices are not numbered as they were, those are taken that are where
         the landmarks were.
 
@@ -92,7 +89,7 @@ def landmarks_from_text(
     notes: list[str] = []
     columns = []
     for obj, places, digest in zip((source, target), sides, digests, strict=True):
-        columns.append(_vertices(obj, places, notes, same=topology(mesh_of(obj)) == digest))
+        columns.append(_vertices(obj, places, notes, same=topology_of(obj) == digest))
     return [
         Landmark(number, there, back, use) for (number, use), there, back in zip(rows, *columns, strict=True)
     ], notes
@@ -104,11 +101,11 @@ def _place(plain: Any) -> tuple[int, tuple[float, float, float]]:  # noqa: ANN40
 
 
 def _vertices(
-    obj: bpy.types.Object, places: Sequence[tuple[int, tuple[float, float, float]]], notes: list[str], *, same: bool
+    obj: Side, places: Sequence[tuple[int, tuple[float, float, float]]], notes: list[str], *, same: bool
 ) -> list[int]:
     """Find the vertices of landmarks on one mesh."""
     vertices = [vertex for vertex, _ in places]
-    positions = vertex_positions(mesh_of(obj)).astype(np.float64)
+    positions = own_positions(obj)
     if same and all(0 <= vertex < len(positions) for vertex in vertices):
         return vertices
     found = _nearest(obj, positions, np.array([place for _, place in places], np.float64).reshape(-1, 3))
@@ -119,7 +116,7 @@ def _vertices(
     return found
 
 
-def _nearest(obj: bpy.types.Object, positions: NDArray[np.float64], places: NDArray[np.float64]) -> list[int]:
+def _nearest(obj: Side, positions: NDArray[np.float64], places: NDArray[np.float64]) -> list[int]:
     reach = _NEAR * float(np.linalg.norm(np.ptp(positions, axis=0)))
     found: list[int] = []
     for number, place in enumerate(places, start=1):

@@ -13,14 +13,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.errors import ObjectError
+from ..scene.character import parts_of, vertex_ranges
 from ..scene.pair import check_writable
-from .landmark_layer import read_marks, write_marks
+from . import landmark_layer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import bpy
     from numpy.typing import NDArray
+
+    from ..scene.character import Side
 
 __all__ = [
     "Landmark",
@@ -30,6 +33,7 @@ __all__ = [
     "find_landmarks",
     "landmark_array",
     "remove_landmark",
+    "select_on_side",
     "switch_landmark",
 ]
 
@@ -60,7 +64,7 @@ class Landmark:
     use: bool = True
 
 
-def find_landmarks(source: bpy.types.Object, target: bpy.types.Object) -> list[Landmark]:
+def find_landmarks(source: Side, target: Side) -> list[Landmark]:
     """Return what landmarks two meshes have in common, in the order of their numbers."""
     there, back = read_marks(source), read_marks(target)
     return [
@@ -76,16 +80,14 @@ def landmark_array(landmarks: Iterable[Landmark]) -> NDArray[np.int64] | None:
     return np.array(pairs, np.int64) if pairs else None
 
 
-def add_landmarks(
-    source: bpy.types.Object, target: bpy.types.Object, pairs: Iterable[tuple[int, int]]
-) -> list[Landmark]:
+def add_landmarks(source: Side, target: Side, pairs: Iterable[tuple[int, int]]) -> list[Landmark]:
     """Let vertices of the source and of the target correspond.
 
     A vertex has one landmark only: where one of the two has one already, that landmark moves.
 
     Parameters
     ----------
-    source, target : bpy.types.Object
+    source, target : bpy.types.Object or Character
         The objects, both in Object Mode or in Edit Mode.
     pairs : iterable of (int, int)
         Vertices of the source and of the target.
@@ -100,8 +102,7 @@ def add_landmarks(
     ObjectError
         If a mesh cannot be written to, or has all the landmarks that it can have.
     """
-    for obj in (source, target):
-        check_writable(obj)
+    _check_writable(source, target)
     there, back = read_marks(source), read_marks(target)
     added = []
     for pair in pairs:
@@ -118,7 +119,7 @@ def add_landmarks(
     return added
 
 
-def remove_landmark(source: bpy.types.Object, target: bpy.types.Object, number: int) -> None:
+def remove_landmark(source: Side, target: Side, number: int) -> None:
     """Remove a landmark from both meshes.
 
     Raises
@@ -131,7 +132,7 @@ def remove_landmark(source: bpy.types.Object, target: bpy.types.Object, number: 
         write_marks(obj, {other: mark for other, mark in read_marks(obj).items() if other != number})
 
 
-def switch_landmark(source: bpy.types.Object, target: bpy.types.Object, number: int, *, use: bool) -> None:
+def switch_landmark(source: Side, target: Side, number: int, *, use: bool) -> None:
     """Switch a landmark on or off.
 
     Raises
@@ -146,7 +147,7 @@ def switch_landmark(source: bpy.types.Object, target: bpy.types.Object, number: 
         write_marks(obj, marks)
 
 
-def clear_landmarks(source: bpy.types.Object, target: bpy.types.Object) -> int:
+def clear_landmarks(source: Side, target: Side) -> int:
     """Remove what landmarks two meshes have in common; return how many there were.
 
     Raises
@@ -154,8 +155,7 @@ def clear_landmarks(source: bpy.types.Object, target: bpy.types.Object) -> int:
     ObjectError
         If a mesh cannot be written to.
     """
-    for obj in (source, target):
-        check_writable(obj)
+    _check_writable(source, target)
     common = {landmark.number for landmark in find_landmarks(source, target)}
     for obj in (source, target):
         write_marks(obj, {number: mark for number, mark in read_marks(obj).items() if number not in common})
@@ -171,8 +171,47 @@ def _number_for(pair: tuple[int, int], there: dict[int, Mark], back: dict[int, M
     return next(number for number in range(1, _MOST + 2) if number not in there and number not in back)
 
 
-def _check_number(source: bpy.types.Object, target: bpy.types.Object, number: int) -> None:
-    for obj in (source, target):
-        check_writable(obj)
+def read_marks(side: Side) -> dict[int, Mark]:
+    """Return the landmarks of a side by their numbers; their vertices are counted through all parts."""
+    marks: dict[int, Mark] = {}
+    for part, start, _ in _bounds(side):
+        for number, (vertex, use) in landmark_layer.read_marks(part).items():
+            marks.setdefault(number, (vertex + start, use))
+    return dict(sorted(marks.items()))
+
+
+def write_marks(side: Side, marks: dict[int, Mark]) -> None:
+    """Let these be the landmarks of a side."""
+    for part, start, end in _bounds(side):
+        inside = {number: (vertex - start, use) for number, (vertex, use) in marks.items() if start <= vertex < end}
+        if inside != landmark_layer.read_marks(part):
+            landmark_layer.write_marks(part, inside)
+
+
+def _bounds(side: Side) -> list[tuple[bpy.types.Object, int, float]]:
+    """Return for each part the number of its first vertex, and of the one after its last.
+
+    The last part has no end: in Edit Mode a mesh may have more vertices than Object Mode knows of.
+    """
+    parts, ranges = parts_of(side), vertex_ranges(side)
+    ends = [*(own.stop for own in ranges[:-1]), np.inf]
+    return [(part, own.start, end) for part, own, end in zip(parts, ranges, ends, strict=True)]
+
+
+def select_on_side(side: Side, vertices: Iterable[int]) -> None:
+    """Select some vertices of a side, counted through all parts, and nothing else of it; see `select_vertices`."""
+    chosen = tuple(vertices)
+    for part, start, end in _bounds(side):
+        landmark_layer.select_vertices(part, [vertex - start for vertex in chosen if start <= vertex < end])
+
+
+def _check_writable(*sides: Side) -> None:
+    for side in sides:
+        for part in parts_of(side):
+            check_writable(part)
+
+
+def _check_number(source: Side, target: Side, number: int) -> None:
+    _check_writable(source, target)
     if number not in {landmark.number for landmark in find_landmarks(source, target)}:
         raise ObjectError(f'"{source.name}" and "{target.name}" have no landmark {number} in common.')

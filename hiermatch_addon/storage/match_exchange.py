@@ -6,9 +6,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..scene.mesh_io import position_digest, read_mesh, topology
+from ..scene.character import positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_pair
 from . import writing
 from .answer_writing import contents_with_maps, restored
@@ -21,17 +21,19 @@ from .vertex_maps import StoredMaps, map_name
 if TYPE_CHECKING:
     import bpy
 
+    from ..scene.character import Side
+
 __all__ = ["apply_match", "collect_match"]
 
 _SPARSE = "The imported match has no dense map: only its points were written, without colors and distortion."
 
 
-def collect_match(one: bpy.types.Object, other: bpy.types.Object, prefix: str = "") -> MatchFile:
+def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
     """Take the match that two objects carry with one another; what was matched as the source comes first.
 
     Parameters
     ----------
-    one, other : bpy.types.Object
+    one, other : bpy.types.Object or Character
         The objects, in whichever order.
     prefix : str
         What the names that the match wrote start with; may be empty if the two carry one match only.
@@ -52,18 +54,15 @@ def collect_match(one: bpy.types.Object, other: bpy.types.Object, prefix: str = 
     for half in (source, target):
         if stale := half.staleness():
             raise ObjectError(stale)
-    meshes = (mesh_of(source.obj), mesh_of(target.obj))
     return MatchFile(
         StoredMatch.from_plain(source.kept, target.kept),
-        (len(meshes[0].vertices), len(meshes[1].vertices)),
-        StoredMaps.read(*meshes, map_name(source.prefix)),
-        StoredMaps.read(*meshes, map_name(source.prefix, other=True)),
+        (vertex_count(source.obj), vertex_count(target.obj)),
+        StoredMaps.read(source.obj, target.obj, map_name(source.prefix)),
+        StoredMaps.read(source.obj, target.obj, map_name(source.prefix, other=True)),
     )
 
 
-def apply_match(
-    context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, match: MatchFile, prefix: str
-) -> StoredMatch:
+def apply_match(context: bpy.types.Context, source: Side, target: Side, match: MatchFile, prefix: str) -> StoredMatch:
     """Write a match on two objects, as if they had just been matched.
 
     They may be named, placed and posed otherwise than those it was exported from, but must have the same vertices and
@@ -90,12 +89,12 @@ def apply_match(
     stored = replace(
         match.stored,
         names=(source.name, target.name),
-        topologies=(topology(mesh_of(source)), topology(mesh_of(target))),
-        positions=(position_digest(mesh_of(source)), position_digest(mesh_of(target))),
+        topologies=(topology_of(source), topology_of(target)),
+        positions=(positions_of(source), positions_of(target)),
         swapped=False,
     )
     use_modifiers = stored.written.use_modifiers
-    source_mesh, target_mesh = (read_mesh(obj, depsgraph, use_modifiers=use_modifiers) for obj in objects)
+    source_mesh, target_mesh = (read_surface(obj, depsgraph, use_modifiers=use_modifiers) for obj in objects)
     meshes = (source_mesh, target_mesh)
     if match.maps is not None:
         prepared = contents_with_maps(stored, meshes, prefix, match.maps, match.other)
@@ -111,11 +110,11 @@ def apply_match(
     return stored
 
 
-def _check_fit(source: bpy.types.Object, target: bpy.types.Object, match: MatchFile) -> None:
+def _check_fit(source: Side, target: Side, match: MatchFile) -> None:
     """Make sure that the match is one of these meshes."""
     objects = (source, target)
     wanted = tuple(zip(match.counts, match.stored.topologies, strict=True))
-    here = tuple((len(mesh_of(obj).vertices), topology(mesh_of(obj))) for obj in objects)
+    here = tuple((vertex_count(obj), topology_of(obj)) for obj in objects)
     if _all_fit(here, wanted):
         return
     if _all_fit(here[::-1], wanted):

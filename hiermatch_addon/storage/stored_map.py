@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..common.access import mesh_of
 from ..common.errors import ObjectError
-from ..scene.mesh_io import read_mesh
+from ..scene.character import read_surface
 from .answer_writing import contents_with_maps, write_answer
 from .halves import find_common
 from .stored_match import StoredMatch
@@ -17,6 +16,7 @@ from .vertex_maps import StoredMaps, map_name
 if TYPE_CHECKING:
     import bpy
 
+    from ..scene.character import Side
     from .halves import Half
     from .vertex_maps import MapPair
 
@@ -46,12 +46,12 @@ class FoundMaps:
     use_modifiers: bool
 
 
-def find_maps(source: bpy.types.Object, target: bpy.types.Object, prefix: str = "") -> FoundMaps:
+def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
     """Find the dense maps between two objects that were matched, in whichever order.
 
     Parameters
     ----------
-    source, target : bpy.types.Object
+    source, target : bpy.types.Object or Character
         The objects; what is `source` here may have been the target of the match.
     prefix : str
         What the names that the match wrote start with; may be empty if the two carry one match only.
@@ -78,36 +78,32 @@ def find_maps(source: bpy.types.Object, target: bpy.types.Object, prefix: str = 
     stored = StoredMatch.from_plain(first.kept, second.kept)
     if not stored.written.dense:
         raise ObjectError(f"The match of {pair} has no dense map. Match them again with Dense Map on.")
-    maps = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(first.prefix))
+    maps = StoredMaps.read(first.obj, second.obj, map_name(first.prefix))
     if maps is None:
         raise ObjectError(f"The dense map of {pair} was removed from the attributes of a mesh. Match them again.")
     kept = maps if first is halves[0] else maps.reverse
     return FoundMaps(*halves, kept, stored.answer.refined, stored.written.use_modifiers)
 
 
-def stored_map(
-    context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, prefix: str = ""
-) -> MapPair:
+def stored_map(context: bpy.types.Context, source: Side, target: Side, prefix: str = "") -> MapPair:
     """Read the dense maps between two objects that were matched, with the meshes as they stand in the world.
 
     Parameters and errors are those of `find_maps`.
     """
     found = find_maps(source, target, prefix)
     depsgraph = context.evaluated_depsgraph_get()
-    meshes = [read_mesh(obj, depsgraph, use_modifiers=found.use_modifiers) for obj in (source, target)]
+    meshes = [read_surface(obj, depsgraph, use_modifiers=found.use_modifiers) for obj in (source, target)]
     return found.maps.between(meshes[0], meshes[1])
 
 
-def keep_refined(
-    context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object, prefix: str, maps: StoredMaps
-) -> None:
+def keep_refined(context: bpy.types.Context, source: Side, target: Side, prefix: str, maps: StoredMaps) -> None:
     """Let better maps take the place of those that two objects carry, and write what shows them anew.
 
     Parameters
     ----------
     context : bpy.types.Context
         Where the objects are.
-    source, target : bpy.types.Object
+    source, target : bpy.types.Object or Character
         The objects, in the order of `maps`.
     prefix : str
         As in `find_maps`.
@@ -125,10 +121,10 @@ def keep_refined(
     stored = StoredMatch.from_plain(first.kept, second.kept).as_refined()
     depsgraph = context.evaluated_depsgraph_get()
     source_mesh, target_mesh = (
-        read_mesh(half.obj, depsgraph, use_modifiers=stored.written.use_modifiers) for half in (first, second)
+        read_surface(half.obj, depsgraph, use_modifiers=stored.written.use_modifiers) for half in (first, second)
     )
     shown = maps if first is sides[0] else maps.reverse
-    other = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(first.prefix, other=True))
+    other = StoredMaps.read(first.obj, second.obj, map_name(first.prefix, other=True))
     prepared = contents_with_maps(stored, (source_mesh, target_mesh), first.prefix, shown, other)
     write_answer((first.obj, second.obj), stored, prepared, first.prefix)
 

@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...engine import ClosestPoints, MeshError, SurfaceMap, SurfacePoints
+from ..common.access import mesh_of
+from ..scene.character import parts_of
 from ..scene.mesh_io import read_values
 
 if TYPE_CHECKING:
-    import bpy
     from numpy.typing import NDArray
 
     from ...engine import TriangleMesh
+    from ..scene.character import Side
     from .contents import Content
 
 __all__ = ["MapPair", "StoredMaps", "VertexMap", "add_maps", "map_name", "place_points"]
@@ -79,12 +81,15 @@ class VertexMap:
         )
 
     @classmethod
-    def read(cls, mesh: bpy.types.Mesh, name: str) -> VertexMap | None:
-        """Read a map of that name from a mesh; None if it is not there, or not complete."""
-        found = [read_values(mesh, attribute, kind) for attribute, kind in _attributes(name)]
-        values = [value for value in found if value is not None]
-        if len(values) < len(found):
-            return None
+    def read(cls, side: Side, name: str) -> VertexMap | None:
+        """Read a map of that name from all parts of a side; None if it is not there, or not complete."""
+        meshes = [mesh_of(part) for part in parts_of(side)]
+        values = []
+        for attribute, kind in _attributes(name):
+            found = [read for mesh in meshes if (read := read_values(mesh, attribute, kind)) is not None]
+            if len(found) < len(meshes):
+                return None
+            values.append(np.concatenate(found))
         *corners, weights, confidence = values
         return cls(np.stack(corners, axis=1), weights, confidence)
 
@@ -135,7 +140,7 @@ class StoredMaps:
         return StoredMaps(self.of_target, self.of_source)
 
     @classmethod
-    def read(cls, source: bpy.types.Mesh, target: bpy.types.Mesh, name: str) -> StoredMaps | None:
+    def read(cls, source: Side, target: Side, name: str) -> StoredMaps | None:
         """Read both maps of that name; None if one is not there."""
         of_source, of_target = VertexMap.read(source, name), VertexMap.read(target, name)
         return None if of_source is None or of_target is None else cls(of_source, of_target)

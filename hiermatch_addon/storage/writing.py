@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING, Any
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..scene import mesh_io
+from ..scene.character import parts_of, vertex_ranges
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     import bpy
 
+    from ..scene.character import Side
     from .contents import Content
 
 __all__ = [
@@ -48,7 +50,7 @@ _TEMPORARY = " ~"
 _GROUP, _ATTRIBUTE = "group", "attribute"
 
 
-def check_names(obj: bpy.types.Object, content: Content, prefix: str) -> None:
+def check_names(side: Side, content: Content, prefix: str) -> None:
     """Make sure that nothing else stands where a match writes with a prefix.
 
     Raises
@@ -56,6 +58,22 @@ def check_names(obj: bpy.types.Object, content: Content, prefix: str) -> None:
     ObjectError
         If a vertex group or attribute of such a name exists that no match with this prefix wrote.
     """
+    for obj, of_part in _by_part(side, content):
+        _check_names(obj, of_part, prefix)
+
+
+def _by_part(side: Side, content: Content) -> list[tuple[bpy.types.Object, Content]]:
+    """Tell what of a content stands on which part of a side."""
+    parts = parts_of(side)
+    if len(parts) == 1:
+        return [(parts[0], content)]
+    return [
+        (part, content.of_part(own, number, len(parts), part.name))
+        for number, (part, own) in enumerate(zip(parts, vertex_ranges(side), strict=True))
+    ]
+
+
+def _check_names(obj: bpy.types.Object, content: Content, prefix: str) -> None:
     mesh = mesh_of(obj)
     writers = {name: writer for writer, record in _records(mesh).items() for name in record["written"]}
     present = dict.fromkeys(obj.vertex_groups.keys(), "a vertex group")
@@ -75,12 +93,13 @@ def check_names(obj: bpy.types.Object, content: Content, prefix: str) -> None:
         )
 
 
-def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str, *, show: bool = True) -> None:
-    """Write on several objects: all of it, or nothing if anything fails.
+def write(sides: Sequence[tuple[Side, Content]], prefix: str, *, show: bool = True) -> None:
+    """Write on several sides: all of it, or nothing if anything fails.
 
     Whatever was written with the same prefix before is replaced.  What is active in the lists of vertex groups and
     attributes stays so, except for the color attribute to be shown, if one is to `show`.
     """
+    plan = [one for side, content in sides for one in _by_part(side, content)]
     before = [_Active.of(obj) for obj, _ in plan]
     with ExitStack() as undo:
         for (obj, content), active in zip(plan, before, strict=True):
@@ -94,11 +113,16 @@ def write(plan: Sequence[tuple[bpy.types.Object, Content]], prefix: str, *, show
         mesh_of(obj).update()
 
 
-def extend(obj: bpy.types.Object, content: Content, prefix: str) -> None:
+def extend(side: Side, content: Content, prefix: str) -> None:
     """Write more beside what a match has written with a prefix, in place of what has the same names.
 
     It is recorded with the rest and goes with it.  What is active stays so.
     """
+    for obj, of_part in _by_part(side, content):
+        _extend(obj, of_part, prefix)
+
+
+def _extend(obj: bpy.types.Object, content: Content, prefix: str) -> None:
     mesh, active = mesh_of(obj), _Active.of(obj)
     kinds = _kinds(content)
     _add(obj, content)
@@ -111,15 +135,17 @@ def extend(obj: bpy.types.Object, content: Content, prefix: str) -> None:
     mesh.update()
 
 
-def take_away(obj: bpy.types.Object, names: Iterable[str], prefix: str) -> None:
+def take_away(side: Side, names: Iterable[str], prefix: str) -> None:
     """Remove some of what a match has written with a prefix."""
-    mesh, active = mesh_of(obj), _Active.of(obj)
-    records = _records(mesh)
-    written = records[prefix]["written"]
-    _remove(obj, {name: written.pop(name) for name in names if name in written})
-    _set_records(mesh, records)
-    active.restore(obj)
-    mesh.update()
+    gone = tuple(names)
+    for obj in parts_of(side):
+        mesh, active = mesh_of(obj), _Active.of(obj)
+        records = _records(mesh)
+        written = records[prefix]["written"]
+        _remove(obj, {name: written.pop(name) for name in gone if name in written})
+        _set_records(mesh, records)
+        active.restore(obj)
+        mesh.update()
 
 
 def is_marked(mesh: bpy.types.Mesh) -> bool:
@@ -158,11 +184,12 @@ def clear(obj: bpy.types.Object, prefix: str) -> bool:
     return True
 
 
-def change_kept(obj: bpy.types.Object, prefix: str, **changes: bool | str) -> None:
-    """Change some of what is kept on an object with what was written with a prefix."""
-    properties: Any = mesh_of(obj)
-    for name, value in changes.items():
-        properties[MARKER][prefix]["kept"][name] = value
+def change_kept(side: Side, prefix: str, **changes: bool | str) -> None:
+    """Change some of what is kept on a side with what was written with a prefix."""
+    for obj in parts_of(side):
+        properties: Any = mesh_of(obj)
+        for name, value in changes.items():
+            properties[MARKER][prefix]["kept"][name] = value
 
 
 def _kinds(content: Content) -> dict[str, str]:
@@ -192,7 +219,7 @@ def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Acti
         _remove(obj, records[prefix]["written"])
     written = _kinds(content)
     _take_names(obj, written)
-    if written:
+    if written or "part" in content.keep:
         records[prefix] = {
             "written": written,
             "color": before.color,

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..scene.attribute_io import AttributeLayout, attribute_layouts, is_free, is_known, read_seams
+from ..scene.character import parts_of
 from ..storage.written_names import written_names
 
 if TYPE_CHECKING:
     import bpy
 
+    from ..scene.character import Side
     from .options.attributes import AttributeSettings
 
 __all__ = ["SEAMS", "AttributeChoice", "choose_attributes", "taken_note"]
@@ -48,9 +50,7 @@ class AttributeChoice:
     notes: tuple[str, ...]
 
 
-def choose_attributes(
-    source: bpy.types.Object, target: bpy.types.Object, settings: AttributeSettings
-) -> AttributeChoice:
+def choose_attributes(source: Side, target: Side, settings: AttributeSettings) -> AttributeChoice:
     """Choose the attributes of the source that are wanted and can be written on the target.
 
     Raises
@@ -58,8 +58,11 @@ def choose_attributes(
     ObjectError
         If an attribute is asked for by a name that the source does not have.
     """
-    layouts = attribute_layouts(mesh_of(source))
-    ours = written_names(source) | written_names(target)
+    layouts: dict[str, AttributeLayout] = {}
+    for part in parts_of(source):
+        for name, layout in attribute_layouts(mesh_of(part)).items():
+            layouts.setdefault(name, layout)
+    ours = {name for part in (*parts_of(source), *parts_of(target)) for name in written_names(part)}
     unknown = [name for name in settings.names if name not in layouts]
     if unknown:
         raise ObjectError(f'"{source.name}" has no attribute "{unknown[0]}". Check the Names.')
@@ -69,11 +72,11 @@ def choose_attributes(
             continue
         if not is_known(layout.kind):
             notes.append(f'The attribute "{name}" of "{source.name}" is of the type {layout.kind}, and was left out.')
-        elif not is_free(target, layout):
-            notes.append(taken_note(target, name))
+        elif taken := [part for part in parts_of(target) if not is_free(part, layout)]:
+            notes += [taken_note(part, name) for part in taken]
         else:
             chosen.append(layout)
-    if settings.seams and read_seams(mesh_of(source)).any():
+    if settings.seams and any(read_seams(mesh_of(part)).any() for part in parts_of(source)):
         chosen.append(SEAMS)
     return AttributeChoice(tuple(chosen), tuple(notes))
 

@@ -13,20 +13,30 @@ from ..common.errors import NothingToCarryError
 from ..common.phrases import counted
 from ..jobs.transfer import TransferReport
 from ..scene.attribute_io import (
+    attribute_layouts,
     is_blended,
     is_free,
+    missing_attribute,
     read_attribute,
     read_corner_normals,
-    read_polygons,
     read_seams,
     write_attribute,
     write_corner_normals,
     write_seams,
 )
+from ..scene.character import (
+    corner_ranges,
+    edge_ranges,
+    face_ranges,
+    parts_of,
+    read_faces,
+    vertex_ranges,
+)
 from ..scene.material_slots import assign_materials, read_materials
 from .attribute_choice import SEAMS, choose_attributes, taken_note
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Any
 
     import bpy
@@ -35,6 +45,7 @@ if TYPE_CHECKING:
     from ...engine import Domain, Polygons, Steps
     from ..jobs.transfer import Passage
     from ..scene.attribute_io import AttributeLayout
+    from ..scene.character import Side
     from .options.attributes import AttributeSettings
 
 __all__ = ["AttributeTransfer"]
@@ -64,30 +75,39 @@ class AttributeTransfer:
         self._faces: tuple[Polygons, Polygons]
         self._materials: NDArray[np.int64] | None = None
         self._normals: NDArray[np.float64] | None = None
-        self._to_local = np.eye(3)
+        self._to_local: list[NDArray[np.float64]] = []
         self._colors = ("", "")
         self._notes: list[str] = []
 
-    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read what is chosen of the source and both meshes' faces, and make sure that it can be written."""
-        mine, theirs = mesh_of(source), mesh_of(target)
+        meshes = [mesh_of(part) for part in parts_of(source)]
         choice = choose_attributes(source, target, self._settings)
         self._notes.extend(choice.notes)
         for layout in choice.layouts:
-            self._values[layout] = read_seams(mine) if layout == SEAMS else read_attribute(mine, layout.name)
-        if self._settings.materials and len(source.material_slots):
-            self._materials = read_materials(source)[1]
-        if self._settings.normals and mine.has_custom_normals:
+            self._values[layout] = np.concatenate([_read_part(mesh, layout) for mesh in meshes])
+        if self._settings.materials and any(len(part.material_slots) for part in parts_of(source)):
+            self._materials = _read_materials(source)[1]
+        if self._settings.normals and any(mesh.has_custom_normals for mesh in meshes):
             # Normals turn by the inverse transpose of what positions turn by.
-            self._normals = _unit(read_corner_normals(mine) @ np.linalg.inv(_linear_part(context, source)))
-            self._to_local = _linear_part(context, target)
+            self._normals = np.concatenate(
+                [
+                    _unit(read_corner_normals(mesh_of(part)) @ np.linalg.inv(_linear_part(context, part)))
+                    for part in parts_of(source)
+                ]
+            )
+            self._to_local = [_linear_part(context, part) for part in parts_of(target)]
         if not self._values and self._materials is None and self._normals is None and not self._notes:
             raise NothingToCarryError(
                 f'"{source.name}" has nothing of what is to be carried over: no such attributes, materials, marked '
                 "edges or custom normals. Choose other options, or another Source."
             )
-        self._colors = (mine.attributes.active_color_name or "", mine.attributes.default_color_name or "")
-        self._faces = read_polygons(mine), read_polygons(theirs)
+        active, rendered = (
+            next(filter(None, (getattr(mesh.attributes, which) for mesh in meshes)), "")
+            for which in ("active_color_name", "default_color_name")
+        )
+        self._colors = (active, rendered)
+        self._faces = read_faces(source), read_faces(target)
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the values on the target."""
@@ -117,33 +137,56 @@ class AttributeTransfer:
         if self._normals is not None:
             frames = surface_frames(pair.target, pair.target_to_source.positions, radius=_NORMAL_RADIUS)
             turns = frames.rotations.transpose(0, 2, 1)
-            self._normals = carry_normals(self._normals, faces, crossing.places, pair.target, turns) @ self._to_local
+            self._normals = carry_normals(self._normals, faces, crossing.places, pair.target, turns)
 
-    def write(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write everything."""
-        mesh = mesh_of(target)
         done = []
         # The vertex groups that were carried just before may have taken a name.
-        taken = [layout for layout in self._values if layout != SEAMS and not is_free(target, layout)]
-        for layout in taken:
-            del self._values[layout]
-            self._notes.append(taken_note(target, layout.name))
-        for layout, values in self._values.items():
-            if layout == SEAMS:
-                write_seams(mesh, values)
-            else:
-                write_attribute(mesh, layout, values)
+        for part in parts_of(target):
+            taken = [layout for layout in self._values if layout != SEAMS and not is_free(part, layout)]
+            for layout in taken:
+                del self._values[layout]
+                self._notes.append(taken_note(part, layout.name))
+        materials = _read_materials(source)[0] if self._materials is not None else []
+        ranges = {
+            "POINT": vertex_ranges(target),
+            "EDGE": edge_ranges(target),
+            "FACE": face_ranges(target),
+            "CORNER": corner_ranges(target),
+        }
+        for number, part in enumerate(parts_of(target)):
+            self._write_part(number, part, {domain: own[number] for domain, own in ranges.items()}, materials)
         if self._values:
             done.append(counted(len(self._values), "attribute"))
+        if self._materials is not None:
+            done.append(counted(len(np.unique(self._materials)), "material"))
+        if self._normals is not None:
+            done.append("custom normals")
+        return TransferReport(", ".join(done), tuple(self._notes))
+
+    def _write_part(
+        self,
+        number: int,
+        part: bpy.types.Object,
+        ranges: Mapping[str, slice],
+        materials: list[bpy.types.Material | None],
+    ) -> None:
+        """Write everything on one part of the target, by its share of what has each domain's values."""
+        mesh = mesh_of(part)
+        for layout, values in self._values.items():
+            own = values[ranges[layout.domain]]
+            if layout == SEAMS:
+                write_seams(mesh, own)
+            else:
+                write_attribute(mesh, layout, own)
+        if self._values:
             self._show_colors(mesh)
         if self._materials is not None:
-            materials = read_materials(source)[0]
-            done.append(counted(assign_materials(target, materials, self._materials), "material"))
+            assign_materials(part, materials, self._materials[ranges["FACE"]])
         if self._normals is not None:
-            write_corner_normals(mesh, _unit(self._normals))
-            done.append("custom normals")
+            write_corner_normals(mesh, _unit(self._normals[ranges["CORNER"]] @ self._to_local[number]))
         mesh.update()
-        return TransferReport(", ".join(done), tuple(self._notes))
 
     def _show_colors(self, mesh: bpy.types.Mesh) -> None:
         """Make the source's active color attributes active on a mesh as far as it had none."""
@@ -154,6 +197,32 @@ class AttributeTransfer:
             attributes.active_color_name = active
         if render in written and not attributes.default_color_name:
             attributes.default_color_name = render
+
+
+def _read_part(mesh: bpy.types.Mesh, layout: AttributeLayout) -> NDArray[Any]:
+    """Read an attribute of one part: white, nothing or no where it lacks it."""
+    if layout == SEAMS:
+        return read_seams(mesh)
+    if attribute_layouts(mesh).get(layout.name) == layout:
+        return read_attribute(mesh, layout.name)
+    return missing_attribute(mesh, layout)
+
+
+def _read_materials(side: Side) -> tuple[list[bpy.types.Material | None], NDArray[np.int64]]:
+    """Read the materials of all parts, and for each face the number of its own among them, (f,)."""
+    materials: list[bpy.types.Material | None] = []
+    numbers = []
+    for part in parts_of(side):
+        own, slots = read_materials(part)
+        if len(parts_of(side)) == 1:
+            return own, slots
+        places = []
+        for material in own or [None]:
+            if material not in materials:
+                materials.append(material)
+            places.append(materials.index(material))
+        numbers.append(np.array(places, np.int64)[slots])
+    return materials, np.concatenate(numbers)
 
 
 def _linear_part(context: bpy.types.Context, obj: bpy.types.Object) -> NDArray[np.float64]:

@@ -16,6 +16,7 @@ from ..scene.armature_copy import copy_armature, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
 from ..scene.binding import bind, made_rig, mark_made
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
+from ..scene.character import parts_of
 from ..scene.key_drivers import counterparts
 from ..scene.pair import check_writable
 from ..scene.rest_action import keep_pose, pose_bases
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from ...engine import PlacedJoints, RestPose, Steps
     from ..jobs.transfer import Passage
+    from ..scene.character import Side
     from .options.rig import RigSettings
 
 __all__ = ["RigTransfer"]
@@ -52,9 +54,10 @@ class RigTransfer:
         self._rest: RestPose | None = None
         self._notes: list[str] = []
 
-    def read(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, _context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the directions of the source's bones, and make sure that the target can be bound."""
-        check_writable(target)
+        for part in parts_of(target):
+            check_writable(part)
         armature = find_armature(source)
         if armature is None:
             raise NothingToCarryError(
@@ -82,7 +85,8 @@ class RigTransfer:
         axes = [bone.matrix_local.to_3x3().col[2] for bone in armature_of(armature).bones]
         self._normals = np.array(axes, np.float64) @ matrix[:3, :3].T
         # The target stands as the source does: in the world, or each in the space of its object.
-        turns = [np.array(obj.matrix_world.to_3x3().normalized(), np.float64) for obj in (source, target)]
+        stands = [parts_of(side)[0].matrix_world for side in (source, target)]
+        turns = [np.array(matrix.to_3x3().normalized(), np.float64) for matrix in stands]
         self._frames = np.stack([np.eye(3), _rotation(turns[1] @ np.linalg.inv(turns[0]))])
 
     def steps(self, passage: Passage) -> Steps[None]:
@@ -102,18 +106,19 @@ class RigTransfer:
                 "The target seems to be in its rest pose already, so none was made. If it is posed, set Pose to Posed."
             )
 
-    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Make the armature, or update the one made before, and bind the target to it."""
         model = cast("bpy.types.Object", find_armature(source))
         placed = cast("PlacedJoints", self._placed)
+        first = parts_of(target)[0]
         made = made_rig(target, model) if self._settings.existing == "UPDATE" else None
         armature = made or _new_armature(context, target, model)
         missing = move_joints(context, armature, self._names, placed)
         if made is None:
-            kept = repoint(armature, counterparts(source, target, model, armature))
+            kept = repoint(armature, _counterparts(source, target, model, armature))
             if kept:
                 self._notes.append(f'Constraints or drivers of "{armature.name}" still point to {listed(kept)}.')
-            _move_to_collections(context, armature, target)
+            _move_to_collections(context, armature, first)
             mark_made(armature, model)
         elif missing:
             self._notes.append(f'"{armature.name}", which was made before, lacks {listed(missing)}.')
@@ -127,7 +132,7 @@ class RigTransfer:
                 f'Constraints or drivers move {listed(displaced)} of "{armature.name}" away from rest, and the target '
                 "with them. Check them."
             )
-        if not set(target.vertex_groups.keys()) & set(self._names):
+        if not {group.name for part in parts_of(target) for group in part.vertex_groups} & set(self._names):
             self._notes.append(
                 f'"{target.name}" has no weights for the bones of "{armature.name}" yet. Transfer the weights as well.'
             )
@@ -152,11 +157,19 @@ class RigTransfer:
         return keep_pose(armature, f"{armature.name} Rest", bases, show=self._settings.rest_shown).name
 
 
-def _new_armature(context: bpy.types.Context, target: bpy.types.Object, model: bpy.types.Object) -> bpy.types.Object:
+def _counterparts(
+    source: Side, target: Side, model: bpy.types.Object, armature: bpy.types.Object
+) -> dict[bpy.types.ID, bpy.types.ID]:
+    """Return what takes the place of what: of several parts, the first target's that of all of the source's."""
+    first = parts_of(target)[0]
+    return {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, model, armature).items()}
+
+
+def _new_armature(context: bpy.types.Context, target: Side, model: bpy.types.Object) -> bpy.types.Object:
     """Copy the source's armature to the place of the target, turned and scaled as it is."""
     armature = copy_armature(context, model, f"{model.name} {target.name}")
     matrix = model.matrix_world.copy()
-    matrix.translation = target.matrix_world.translation
+    matrix.translation = parts_of(target)[0].matrix_world.translation
     armature.matrix_world = matrix
     view_layer_of(context).update()
     return armature

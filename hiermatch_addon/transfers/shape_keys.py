@@ -8,17 +8,21 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from ...engine import bone_frames, carry_offsets_steps, surface_frames
+from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armatures import find_armature
+from ..scene.character import parts_of, vertex_ranges
 from ..scene.key_actions import share_key_action
 from ..scene.key_drivers import copy_key_drivers, counterparts
 from ..scene.shape_key_io import (
     KeySettings,
     add_keys,
+    all_key_names,
     can_be_absolute,
     check_keys_writable,
+    key_holder,
     key_paths,
     keys_of,
     linear_part,
@@ -33,6 +37,7 @@ if TYPE_CHECKING:
 
     from ...engine import Steps
     from ..jobs.transfer import Passage
+    from ..scene.character import Side
     from .options.shape_keys import ShapeKeySettings
 
 __all__ = ["ShapeKeyTransfer"]
@@ -54,15 +59,28 @@ class ShapeKeyTransfer:
         self._settings = settings
         self._keys: tuple[KeySettings, ...] = ()
         self._offsets: NDArray[np.float64] = np.empty((0, 0, 3))
-        self._time: float | None = None  # of the target's keys, if they become absolute
-        self._to_local: NDArray[np.float64] = np.eye(3)
-        self._carried: NDArray[np.float32] = np.empty((0, 0, 3), np.float32)
+        self._written: list[list[str]] = []  # for each part of the target
+        self._times: list[float | None] = []  # of each part's keys, if they become absolute
+        self._to_local: list[NDArray[np.float64]] = []
+        self._carried: NDArray[np.float64] = np.empty((0, 0, 3))
         self._notes: list[str] = []
 
-    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the source's keys, and make sure that they can be written on the target."""
         chosen = self._chosen(source)
-        present = shape_key_names(target)
+        for part in parts_of(target):
+            self._read_target(context, source, part, chosen)
+        names = [name for name in chosen if any(name in written for written in self._written)]
+        models = {name: cast("bpy.types.Key", keys_of(key_holder(source, name))) for name in names}
+        self._keys = tuple(KeySettings.of(keys.key_blocks[name], names) for name, keys in models.items())
+        # To world space, where the two surfaces are compared, and back into the target's.
+        self._offsets = np.concatenate([_read_part(context, part, names) for part in parts_of(source)], axis=1)
+
+    def _read_target(
+        self, context: bpy.types.Context, source: Side, target: bpy.types.Object, chosen: list[str]
+    ) -> None:
+        """Find out which keys can be written on one part of the target."""
+        present, first = shape_key_names(target), key_holder(source, chosen[0])
         if self._settings.existing == "SKIP":
             skipped = [name for name in chosen if name in present]
             chosen = [name for name in chosen if name not in present]
@@ -72,21 +90,17 @@ class ShapeKeyTransfer:
         chosen = [name for name in chosen if name not in locked]
         if locked:
             self._notes.append(f'Locked shape keys of "{target.name}" were left alone: {listed(locked)}.')
-        keys = cast("bpy.types.Key", keys_of(source))
+        keys = cast("bpy.types.Key", keys_of(first))
         absolute = not keys.use_relative and can_be_absolute(target, chosen)
         check_keys_writable(target, chosen, absolute=absolute)
-        self._keys = tuple(KeySettings.of(keys.key_blocks[name], chosen) for name in chosen)
-        self._time = keys.eval_time if absolute else None
+        self._written.append(chosen)
+        self._times.append(keys.eval_time if absolute else None)
         if not keys.use_relative and not absolute:
             self._notes.append(
-                f'The shape keys of "{source.name}" are absolute; on "{target.name}", which has others, they are '
+                f'The shape keys of "{first.name}" are absolute; on "{target.name}", which has others, they are '
                 "relative."
             )
-        # To world space, where the two surfaces are compared, and back into the target's.
-        direct = chosen if keys.use_relative else shape_key_names(source)
-        local = read_offsets(source, chosen, from_reference=direct)
-        self._offsets = local @ linear_part(context, source).T
-        self._to_local = np.linalg.inv(linear_part(context, target)).T
+        self._to_local.append(np.linalg.inv(linear_part(context, target)).T)
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the offsets of the target's vertices."""
@@ -103,31 +117,47 @@ class ShapeKeyTransfer:
             scaling=self._settings.scaling,
             threshold=self._settings.threshold,
         )
-        self._carried = (carried @ self._to_local).astype(np.float32)
+        self._carried = carried
 
-    def write(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
-        """Write keys and drivers."""
+    def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
+        """Write keys and drivers: of several parts, each gets the keys that move it."""
         if not self._keys:
             return TransferReport("", tuple(self._notes))
-        add_keys(target, self._keys, self._carried, time=self._time)
-        missing = sorted({key.vertex_group for key in self._keys} - {"", *target.vertex_groups.keys()})
+        parts, numbers = parts_of(target), {key.name: number for number, key in enumerate(self._keys)}
+        done: list[str] = []
+        missing: set[str] = set()
+        plan = zip(parts, vertex_ranges(target), self._written, self._times, self._to_local, strict=True)
+        for part, own, written, time, to_local in plan:
+            carried, all_of_them = self._carried[:, own], len(parts) == 1 or time is not None
+            moved = [
+                key
+                for number, key in enumerate(self._keys)
+                if key.name in written and (all_of_them or carried[number].any())
+            ]
+            if not moved:
+                continue
+            offsets = carried[[numbers[key.name] for key in moved]].astype(np.float64) @ to_local
+            add_keys(part, moved, offsets.astype(np.float32), time=time)
+            missing |= {key.vertex_group for key in moved} - {"", *part.vertex_groups.keys()}
+            done += self._animate(source, part, [key.name for key in moved], absolute=time is not None)
         if missing:
             self._notes.append(
-                f'"{target.name}" has no vertex group {listed(missing)}, by which shape keys of "{source.name}" are '
-                "limited. Carry the weights over first."
+                f'"{target.name}" has no vertex group {listed(sorted(missing))}, by which shape keys of '
+                f'"{source.name}" are limited. Carry the weights over first.'
             )
-        done = [counted(len(self._keys), "shape key"), *self._animate(source, target)]
+        self._notes = list(dict.fromkeys(self._notes))
+        done = [counted(len(self._keys), "shape key"), *dict.fromkeys(done)]
         return TransferReport(", ".join(done), tuple(self._notes))
 
-    def _chosen(self, source: bpy.types.Object) -> list[str]:
+    def _chosen(self, source: Side) -> list[str]:
         """Names of the keys to carry, in the order of the source."""
-        names = shape_key_names(source)
+        names = all_key_names(source)
         if not names:
             raise NothingToCarryError(
                 f'"{source.name}" has no shape keys beside the basis, so there are none to carry over.'
             )
         if self._settings.choice == "ACTIVE":
-            active = source.active_shape_key
+            active = next(filter(None, (part.active_shape_key for part in parts_of(source))), None)
             if active is None or active.name not in names:
                 raise ObjectError(
                     f'The active shape key of "{source.name}" is its basis. Select another one in its Shape Keys panel.'
@@ -142,23 +172,40 @@ class ShapeKeyTransfer:
             return [name for name in names if name in self._settings.names]
         return list(names)
 
-    def _animate(self, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
+    def _animate(self, source: Side, target: bpy.types.Object, names: list[str], *, absolute: bool) -> list[str]:
         """Copy the drivers of the keys that were written, and share their action; say what was done."""
-        mine, theirs = cast("bpy.types.Key", keys_of(source)), cast("bpy.types.Key", keys_of(target))
-        paths = key_paths([key.name for key in self._keys], absolute=self._time is not None)
+        theirs = cast("bpy.types.Key", keys_of(target))
         done = []
-        if self._settings.drivers:
-            places = counterparts(source, target, find_armature(source), find_armature(target))
-            count, kept = copy_key_drivers(mine, theirs, paths, places)
-            if count:
-                done.append(counted(count, "driver"))
-            if kept:
-                points = listed(sorted(kept))
-                self._notes.append(f'Drivers of the shape keys of "{target.name}" still point to {points}.')
-        if self._settings.action:
-            shared, note = share_key_action(source, target, paths)
-            if shared:
-                done.append(f'the action "{shared}"')
-            if note:
-                self._notes.append(note)
+        for part in parts_of(source):
+            mine, held = keys_of(part), [name for name in names if name in shape_key_names(part)]
+            if mine is None or not held:
+                continue
+            paths = key_paths(held, absolute=absolute)
+            if self._settings.drivers:
+                places = counterparts(part, target, find_armature(part), find_armature(target))
+                count, kept = copy_key_drivers(mine, theirs, paths, places)
+                if count:
+                    done.append(counted(count, "driver"))
+                if kept:
+                    points = listed(sorted(kept))
+                    self._notes.append(f'Drivers of the shape keys of "{target.name}" still point to {points}.')
+            if self._settings.action:
+                shared, note = share_key_action(part, target, paths)
+                if shared:
+                    done.append(f'the action "{shared}"')
+                if note:
+                    self._notes.append(note)
         return done
+
+
+def _read_part(context: bpy.types.Context, obj: bpy.types.Object, names: list[str]) -> NDArray[np.float64]:
+    """Read by how much keys move the vertices of one part in the world, (k, n, 3): not at all where it lacks them."""
+    offsets = np.zeros((len(names), len(mesh_of(obj).vertices), 3))
+    present = shape_key_names(obj)
+    held = [number for number, name in enumerate(names) if name in present]
+    if not held:
+        return offsets
+    relative = cast("bpy.types.Key", keys_of(obj)).use_relative
+    local = read_offsets(obj, [names[n] for n in held], from_reference=names if relative else present)
+    offsets[held] = local @ linear_part(context, obj).T
+    return offsets

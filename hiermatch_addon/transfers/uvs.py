@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ...engine import FacePlaces, Progress, carry_uvs_steps, within
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
@@ -14,10 +16,10 @@ from ..scene.attribute_io import (
     AttributeLayout,
     is_free,
     read_attribute,
-    read_polygons,
     write_attribute,
     write_seams,
 )
+from ..scene.character import corner_ranges, edge_ranges, parts_of, read_faces
 
 if TYPE_CHECKING:
     import bpy
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
     from ...engine import CarriedUVs, Polygons, Steps
     from ..jobs.transfer import Passage
+    from ..scene.character import Side
     from .options.uvs import UVSettings
 
 __all__ = ["UVTransfer"]
@@ -53,24 +56,26 @@ class UVTransfer:
         self._carried: dict[str, CarriedUVs] = {}
         self._notes: list[str] = []
 
-    def read(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, _context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the source's layers and both meshes' faces, and make sure that the layers can be written."""
-        mine, theirs = mesh_of(source), mesh_of(target)
+        meshes = [mesh_of(part) for part in parts_of(source)]
         for name in self._chosen(source):
-            if is_free(target, _layout(name)):
-                self._layers[name] = read_attribute(mine, name)
-            else:
-                self._notes.append(_taken(target, name))
-        count = len({layer.name for layer in theirs.uv_layers} | self._layers.keys())
-        if count > _MOST_LAYERS:
-            raise ObjectError(
-                f'"{target.name}" would have {count} UV maps, but Blender allows {_MOST_LAYERS}. '
-                "Remove some of them first, or carry fewer over."
-            )
-        active = mine.uv_layers.active
+            taken = [part for part in parts_of(target) if not is_free(part, _layout(name))]
+            self._notes += [_taken(part, name) for part in taken]
+            if not taken:
+                self._layers[name] = np.concatenate([_read_layer(mesh, name) for mesh in meshes])
+        for part in parts_of(target):
+            count = len({layer.name for layer in mesh_of(part).uv_layers} | self._layers.keys())
+            if count > _MOST_LAYERS:
+                raise ObjectError(
+                    f'"{part.name}" would have {count} UV maps, but Blender allows {_MOST_LAYERS}. '
+                    "Remove some of them first, or carry fewer over."
+                )
+        active = next((mesh.uv_layers.active for mesh in meshes if mesh.uv_layers.active), None)
         self._active = active.name if active else ""
-        self._render = next((layer.name for layer in mine.uv_layers if layer.active_render), "")
-        self._faces = read_polygons(mine), read_polygons(theirs)
+        rendered = (layer.name for mesh in meshes for layer in mesh.uv_layers if layer.active_render)
+        self._render = next(rendered, "")
+        self._faces = read_faces(source), read_faces(target)
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the UVs of the target's corners."""
@@ -85,18 +90,24 @@ class UVTransfer:
             start, end = ((number + part) / len(self._layers) for part in (0, 1))
             self._carried[name] = yield from within(carry_uvs_steps(uvs, faces, places, areas), start, end)
 
-    def write(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write layers and seams."""
         # The vertex groups that were carried just before may have taken a name.
-        for name in [name for name in self._carried if not is_free(target, _layout(name))]:
-            del self._carried[name]
-            self._notes.append(_taken(target, name))
+        for part in parts_of(target):
+            for name in [name for name in self._carried if not is_free(part, _layout(name))]:
+                del self._carried[name]
+                self._notes.append(_taken(part, name))
         if not self._carried:
             return TransferReport("", tuple(self._notes))
-        mesh = mesh_of(target)
-        for name, carried in self._carried.items():
-            write_attribute(mesh, _layout(name), carried.uvs)
+        for part, corners, edges in zip(parts_of(target), corner_ranges(target), edge_ranges(target), strict=True):
+            self._write_part(mesh_of(part), corners, edges)
         self._notes.extend(_astray(self._carried, source, target))
+        return TransferReport(counted(len(self._carried), "UV map"), tuple(self._notes))
+
+    def _write_part(self, mesh: bpy.types.Mesh, corners: slice, edges: slice) -> None:
+        """Write layers and seams on one part of the target, by its share of all corners and edges."""
+        for name, carried in self._carried.items():
+            write_attribute(mesh, _layout(name), carried.uvs[corners])
         layers: Any = mesh.uv_layers
         if self._active in self._carried:
             layers.active_index = layers.find(self._active)
@@ -104,20 +115,20 @@ class UVTransfer:
             layers[self._render].active_render = True
         if self._settings.seams:
             leading = self._active if self._active in self._carried else next(iter(self._carried))
-            write_seams(mesh, self._carried[leading].seams)
+            write_seams(mesh, self._carried[leading].seams[edges])
         mesh.update()
-        return TransferReport(counted(len(self._carried), "UV map"), tuple(self._notes))
 
-    def _chosen(self, source: bpy.types.Object) -> list[str]:
+    def _chosen(self, source: Side) -> list[str]:
         """Names of the layers to carry, in the order of the source."""
-        layers = mesh_of(source).uv_layers
-        names = [layer.name for layer in layers]
+        layers = [layer for part in parts_of(source) for layer in mesh_of(part).uv_layers]
+        names = list(dict.fromkeys(layer.name for layer in layers))
         if not names:
             raise NothingToCarryError(
                 f'"{source.name}" has no UV map to carry over. Unwrap it, or choose another Source.'
             )
         if self._settings.choice == "ACTIVE":
-            return [layers.active.name if layers.active else names[0]]
+            active = [found for part in parts_of(source) if (found := mesh_of(part).uv_layers.active)]
+            return [active[0].name if active else names[0]]
         if self._settings.choice == "NAMED":
             if not self._settings.names:
                 raise ObjectError("No UV map is named. Enter the Names of some, separated by commas.")
@@ -126,6 +137,12 @@ class UVTransfer:
                 raise ObjectError(f'"{source.name}" has no UV map "{unknown[0]}". Check the Names.')
             return [name for name in names if name in self._settings.names]
         return names
+
+
+def _read_layer(mesh: bpy.types.Mesh, name: str) -> NDArray[Any]:
+    """Read a UV layer of one part, (l, 2): its active one if it has none of that name, else zeros."""
+    layer = mesh.uv_layers.get(name) or mesh.uv_layers.active
+    return np.zeros((len(mesh.loops), 2), np.float32) if layer is None else read_attribute(mesh, layer.name)
 
 
 def _layout(name: str) -> AttributeLayout:
@@ -141,7 +158,7 @@ def _taken(target: bpy.types.Object, name: str) -> str:
     )
 
 
-def _astray(carried: dict[str, CarriedUVs], source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
+def _astray(carried: dict[str, CarriedUVs], source: Side, target: Side) -> list[str]:
     """Sentences on the islands that are not well placed, one for all layers of each kind."""
     notes = []
     lost = {name: layer for name, layer in carried.items() if layer.lost}

@@ -6,22 +6,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, cast
 
 from ..common.errors import NothingToCarryError, ObjectError
-from ..scene.armatures import armature_of, find_armature
+from ..scene.armatures import armature_of, bone_of, find_armature
+from ..scene.character import parts_of
 from ..storage.written_names import written_names
 
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["chosen_groups", "deforming_bones", "locked_groups"]
+    from ..scene.character import Side
+
+__all__ = ["chosen_groups", "deforming_bones", "group_names", "locked_groups"]
 
 
-def chosen_groups(source: bpy.types.Object, choice: str) -> list[str]:
+def chosen_groups(source: Side, choice: str) -> list[str]:
     """Return the names of the groups to carry, in their order.
 
     Parameters
     ----------
-    source : bpy.types.Object
-        The object that has the groups.
+    source : bpy.types.Object or Character
+        The object that has the groups, or the character whose parts have them.
     choice : {"ALL", "DEFORM", "SELECTED", "ACTIVE"}
         All groups, those of bones that deform, those of the bones that are selected, or the active group.  What a match
         wrote is none of them.
@@ -31,8 +34,7 @@ def chosen_groups(source: bpy.types.Object, choice: str) -> list[str]:
     ObjectError
         If there are none such.
     """
-    own = written_names(source)
-    names = [group.name for group in source.vertex_groups if group.name not in own]
+    names = group_names(source)
     if not names:
         raise NothingToCarryError(
             f'"{source.name}" has no vertex groups, so there are no weights to carry over. Choose a weighted mesh as '
@@ -41,7 +43,7 @@ def chosen_groups(source: bpy.types.Object, choice: str) -> list[str]:
     if choice == "ALL":
         return names
     if choice == "ACTIVE":
-        active = source.vertex_groups.active
+        active = parts_of(source)[0].vertex_groups.active
         if active is None or active.name not in names:
             raise ObjectError(
                 f'The active vertex group of "{source.name}" is one of a match. Select another one in its list of '
@@ -69,15 +71,27 @@ def chosen_groups(source: bpy.types.Object, choice: str) -> list[str]:
     return found
 
 
-def deforming_bones(*objects: bpy.types.Object) -> set[str]:
+def group_names(side: Side) -> list[str]:
+    """Return the names of all vertex groups that no match wrote; what hangs on a bone as a whole is in its group."""
+    names: dict[str, None] = {}
+    for part in parts_of(side):
+        own = written_names(part)
+        if bone_of(part):
+            names[bone_of(part)] = None
+        else:
+            names |= dict.fromkeys(group.name for group in part.vertex_groups if group.name not in own)
+    return list(names)
+
+
+def deforming_bones(*objects: Side) -> set[str]:
     """Return the names of all bones that deform in the armatures of these objects."""
     armatures = [armature for armature in map(find_armature, objects) if armature is not None]
     return {bone.name for armature in armatures for bone in armature_of(armature).bones if bone.use_deform}
 
 
-def locked_groups(obj: bpy.types.Object) -> set[str]:
-    """Return the names of the groups that are locked."""
-    return {group.name for group in obj.vertex_groups if group.lock_weight}
+def locked_groups(side: Side) -> set[str]:
+    """Return the names of the groups that are locked, on one part at least."""
+    return {group.name for part in parts_of(side) for group in part.vertex_groups if group.lock_weight}
 
 
 def _selected_bones(armature: bpy.types.Object) -> set[str]:

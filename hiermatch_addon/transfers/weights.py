@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, vstack
 
 from ...engine import Columns, carry_weights_steps, put_in, row_sums
 from ..common.access import mesh_of
@@ -16,9 +16,11 @@ from ..common.phrases import counted, listed
 from ..common.side_names import flipped_name
 from ..jobs.transfer import TransferReport
 from ..scene import mesh_io
+from ..scene.armatures import bone_of
+from ..scene.character import parts_of, vertex_ranges
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
 from ..storage.written_names import written_names
-from .weight_groups import chosen_groups, deforming_bones, locked_groups
+from .weight_groups import chosen_groups, deforming_bones, group_names, locked_groups
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
     from ...engine import Steps
     from ..jobs.transfer import Passage
+    from ..scene.character import Side
     from .options.weights import WeightSettings
 
 __all__ = ["WeightTransfer"]
@@ -71,11 +74,13 @@ class WeightTransfer:
         self._torn: NDArray[np.bool_] = np.zeros(0, bool)
         self._notes: list[str] = []
 
-    def read(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, _context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the weights of both, and make sure that the target's can be written."""
-        check_weights_writable(target)
+        for part in parts_of(target):
+            check_weights_writable(part)
         chosen = chosen_groups(source, self._settings.groups)
-        taken = [name for name in chosen if name in written_names(target)]
+        written = {name for part in parts_of(target) for name in written_names(part)}
+        taken = [name for name in chosen if name in written]
         if taken:
             chosen = [name for name in chosen if name not in taken]
             self._notes.append(
@@ -116,15 +121,18 @@ class WeightTransfer:
             normalise=settings.normalise,
         )
 
-    def write(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the groups."""
         if self._settings.mark:
             self._check_mark(target)
         columns, names = self._read_task.columns, self._read_task.names
         written = ~columns.locked & (columns.new | (columns.shared & columns.yielding & self._settings.normalise))
         numbers = np.flatnonzero(written)
-        write_weights(target, [names[number] for number in numbers], csr_array(self._result[:, numbers]))
-        self._add_other_sides(source, target)
+        result = self._result.tocsr()[:, numbers]
+        wanted = [names[number] for number in numbers]
+        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
+            _write_part(part, wanted, csr_array(result[own]), every=len(parts_of(target)) == 1)
+            self._add_other_sides(source, part)
         if self._settings.mark:
             self._write_mark(target)
         filled = int(self._torn.sum())
@@ -141,37 +149,35 @@ class WeightTransfer:
             raise RuntimeError("Nothing was read yet.")
         return self._task
 
-    def _make_task(
-        self, source: bpy.types.Object, target: bpy.types.Object, chosen: list[str], locked: set[str]
-    ) -> _Task:
+    def _make_task(self, source: Side, target: Side, chosen: list[str], locked: set[str]) -> _Task:
         """Find out what is what among all groups that matter.
 
         Beside those to carry these are other groups of the target's bones: locked ones, which take their share of the
         whole, and if only some groups are carried, all others, which give way.
         """
-        weights, own = read_weights(source), written_names(source)
-        users = [group.index for group in source.vertex_groups if group.name not in own]
+        users = group_names(source)
         bones = deforming_bones(source, target)
-        if not bones and _is_whole(csr_array(weights[:, users])):
+        if not bones and _is_whole(_columns(source, users, np.ones(len(users), bool))):
             # Without an armature to ask: groups that share out each vertex are those of bones.
-            bones = {source.vertex_groups[number].name for number in users}
+            bones = set(users)
         some = self._settings.groups in ("SELECTED", "ACTIVE")
         besides = [
-            group.name
-            for group in target.vertex_groups
-            if group.name in bones and group.name not in chosen and (some or group.name in locked)
+            name
+            for name in dict.fromkeys(group.name for part in parts_of(target) for group in part.vertex_groups)
+            if name in bones and name not in chosen and (some or name in locked)
         ]
         names = [*chosen, *besides]
         new = np.arange(len(names)) < len(chosen)
         shared = np.array([name in bones for name in names])
         columns = Columns(np.array([name in locked for name in names]), new, shared, yielding=some)
-        return _Task(names, columns, shared & new, _columns(source, weights, names, new), _columns(target, None, names))
+        return _Task(names, columns, shared & new, _columns(source, names, new), _columns(target, names))
 
-    def _add_other_sides(self, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def _add_other_sides(self, source: Side, target: bpy.types.Object) -> None:
         """Add the empty groups of the other side that the source has, for whoever mirrors the target."""
+        present = {group.name for part in parts_of(source) for group in part.vertex_groups}
         for name in self._read_task.names:
             other = flipped_name(name)
-            if other in source.vertex_groups and other not in target.vertex_groups:
+            if name in target.vertex_groups and other in present and other not in target.vertex_groups:
                 active = target.vertex_groups.active_index
                 target.vertex_groups.new(name=other)
                 target.vertex_groups.active_index = active or 0
@@ -180,7 +186,7 @@ class WeightTransfer:
     def _mark_name(self) -> str:
         return f"{self._settings.prefix} {_SUFFIX}"
 
-    def _check_mark(self, target: bpy.types.Object) -> None:
+    def _check_mark(self, target: Side) -> None:
         """Make sure that the color attribute can be written.
 
         Raises
@@ -188,31 +194,45 @@ class WeightTransfer:
         ObjectError
             If something else has its name.
         """
-        attribute = mesh_of(target).attributes.get(self._mark_name)
-        alike = attribute is None or (attribute.data_type, attribute.domain) == ("FLOAT_COLOR", "POINT")
-        if not alike or self._mark_name in target.vertex_groups:
-            raise ObjectError(
-                f'"{target.name}" already has something else called "{self._mark_name}". Rename it, or turn Mark '
-                "Rejected off."
-            )
+        for part in parts_of(target):
+            attribute = mesh_of(part).attributes.get(self._mark_name)
+            alike = attribute is None or (attribute.data_type, attribute.domain) == ("FLOAT_COLOR", "POINT")
+            if not alike or self._mark_name in part.vertex_groups:
+                raise ObjectError(
+                    f'"{part.name}" already has something else called "{self._mark_name}". Rename it, or turn Mark '
+                    "Rejected off."
+                )
 
-    def _write_mark(self, target: bpy.types.Object) -> None:
+    def _write_mark(self, target: Side) -> None:
         """Write and show the color attribute."""
-        attributes = mesh_of(target).attributes
-        rendered, old = attributes.default_color_name, attributes.get(self._mark_name)
-        if old is not None:
-            attributes.remove(old)
         colors = np.where(self._torn[:, None], _TORN, _WHOLE).astype(np.float32)
-        mesh_io.add_colors(mesh_of(target), self._mark_name, colors)
-        attributes.active_color_name = self._mark_name
-        attributes.default_color_name = rendered or self._mark_name
+        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
+            attributes = mesh_of(part).attributes
+            rendered, old = attributes.default_color_name, attributes.get(self._mark_name)
+            if old is not None:
+                attributes.remove(old)
+            mesh_io.add_colors(mesh_of(part), self._mark_name, colors[own])
+            attributes.active_color_name = self._mark_name
+            attributes.default_color_name = rendered or self._mark_name
 
 
-def _columns(
-    obj: bpy.types.Object, weights: csr_array | None, names: Sequence[str], chosen: NDArray[np.bool_] | None = None
-) -> csr_array:
-    """Pick the weights (n, g) of named groups; those that the object lacks, or that are not chosen, are empty."""
-    weights = read_weights(obj) if weights is None else weights
+def _write_part(obj: bpy.types.Object, names: Sequence[str], weights: csr_array, *, every: bool) -> None:
+    """Write groups (n, g) on one part: unless `every` is wanted, those only that have weight there, or are there."""
+    held = np.bincount(weights.tocoo().coords[1], minlength=len(names)) > 0
+    kept = [number for number, name in enumerate(names) if every or held[number] or name in obj.vertex_groups]
+    write_weights(obj, [names[number] for number in kept], csr_array(weights[:, kept]))
+
+
+def _columns(side: Side, names: Sequence[str], chosen: NDArray[np.bool_] | None = None) -> csr_array:
+    """Read the weights (n, g) of named groups; those that a part lacks, or that are not chosen, are empty there."""
+    return csr_array(vstack([_part_columns(part, names, chosen) for part in parts_of(side)], format="csr"))
+
+
+def _part_columns(obj: bpy.types.Object, names: Sequence[str], chosen: NDArray[np.bool_] | None) -> csr_array:
+    if chosen is not None and bone_of(obj):  # a part of the source that is moved by that bone alone
+        whole = np.array([name == bone_of(obj) for name in names]) & chosen
+        return csr_array(np.tile(whole.astype(float), (len(mesh_of(obj).vertices), 1)))
+    weights = read_weights(obj)
     places = np.array([obj.vertex_groups.find(name) for name in names])
     if chosen is not None:
         places[~chosen] = -1

@@ -10,6 +10,7 @@ import numpy as np
 from ...engine import Progress, in_between, kept_in_place, within, wrap_steps
 from ..common.access import mesh_of
 from ..jobs.transfer import TransferReport
+from ..scene.character import parts_of, vertex_ranges
 from ..scene.mesh_io import vertex_positions
 from ..scene.shape_key_io import (
     KeySettings,
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
     from ...engine import Steps
     from ..jobs.transfer import Passage
+    from ..scene.character import Side
     from .options.wrap import WrapSettings
 
 __all__ = ["WrapTransfer", "wrap_key_name"]
@@ -64,19 +66,20 @@ class WrapTransfer:
 
     def __init__(self, settings: WrapSettings) -> None:
         self._settings = settings
-        self._from_world: NDArray[np.float64] = np.eye(4)
+        self._from_world: list[NDArray[np.float64]] = []
         self._shapes: NDArray[np.float64] = np.empty((0, 0, 3))  # the wrapped one, and the in-betweens
         self._notes: list[str] = []
 
-    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Make sure that the result can be written."""
         moved, other = self._roles(source, target)
-        if self._settings.result == "KEY":
-            check_keys_writable(moved, self._names(other.name))
-        self._from_world = np.linalg.inv(world_matrix(context, moved))
+        for part in parts_of(moved):
+            if self._settings.result == "KEY":
+                check_keys_writable(part, self._names(other.name))
+            self._from_world.append(np.linalg.inv(world_matrix(context, part)))
 
     def steps(self, passage: Passage) -> Steps[None]:
-        """Compute the wrapped shape and those in between, in the space of the object."""
+        """Compute the wrapped shape and those in between."""
         forward = self._settings.moved == "SOURCE"
         pair = passage.pair if forward else passage.pair.reverse
         registered = passage.rig.registered if forward and passage.rig is not None else None
@@ -91,7 +94,7 @@ class WrapTransfer:
         if count:
             between = in_between(pair.source, positions, np.arange(1, count + 1) / (count + 1))
             shapes = np.concatenate([shapes, between])
-        self._shapes = shapes @ self._from_world[:3, :3].T + self._from_world[:3, 3]
+        self._shapes = shapes
         if wrapped.held.mean() < _LEAST_HELD:
             self._notes.append(
                 f"{1 - wrapped.held.mean():.0%} of the vertices have no place on the other mesh and follow their "
@@ -100,21 +103,28 @@ class WrapTransfer:
         if wrapped.folded > _MOST_FOLDED:
             self._notes.append(f"The wrapped surface is folded in places, {wrapped.folded:.1%} of it.")
 
-    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the shape keys."""
         moved, other = self._roles(source, target)
-        made = moved
+        names, made = self._names(other.name), []
+        plan = zip(parts_of(moved), vertex_ranges(moved), self._from_world, strict=True)
+        for part, own, matrix in plan:
+            written = part
+            if self._settings.result == "OBJECT":
+                written = _duplicate(context, part, f"{part.name} to {other.name}")
+            shapes = self._shapes[:, own] @ matrix[:3, :3].T + matrix[:3, 3]
+            add_keys(written, self._key_settings(written, names), _offsets(written, shapes))
+            _drive(cast("bpy.types.Key", keys_of(written)), names)
+            made.append(written.name)
+        key, first = names[0], made[0]
+        done = [
+            f'the shape key "{key}" on "{first}"' if len(made) == 1 else f'the shape key "{key}" on {len(made)} objects'
+        ]
         if self._settings.result == "OBJECT":
-            made = _duplicate(context, moved, f"{moved.name} to {other.name}")
-        names = self._names(other.name)
-        add_keys(made, self._key_settings(made, names), self._offsets(made))
-        _drive(cast("bpy.types.Key", keys_of(made)), names)
-        done = [f'the shape key "{names[0]}" on "{made.name}"']
-        if made != moved:
-            done.append("a new object")
+            done.append("a new object" if len(made) == 1 else f"{len(made)} new objects")
         return TransferReport(", ".join(done), tuple(self._notes))
 
-    def _roles(self, source: bpy.types.Object, target: bpy.types.Object) -> tuple[bpy.types.Object, bpy.types.Object]:
+    def _roles(self, source: Side, target: Side) -> tuple[Side, Side]:
         """Tell which one is laid onto which."""
         return (source, target) if self._settings.moved == "SOURCE" else (target, source)
 
@@ -131,14 +141,15 @@ class WrapTransfer:
         shown = not any(key.name.startswith(start) and key.value for key in others)
         return [KeySettings(name, value=float(shown and not number)) for number, name in enumerate(names)]
 
-    def _offsets(self, made: bpy.types.Object) -> NDArray[np.float64]:
-        """Return what is to be added to the basis: by the in-betweens, what lacks on the straight way."""
-        keys, mesh = keys_of(made), mesh_of(made)
-        rest = vertex_positions(mesh).astype(np.float64) if keys is None else key_positions(keys.reference_key)
-        offsets = self._shapes - rest
-        fractions = np.arange(1, len(offsets)) / len(offsets)
-        offsets[1:] -= fractions[:, None, None] * offsets[0]
-        return offsets
+
+def _offsets(made: bpy.types.Object, shapes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what is to be added to the basis for shapes (k, n, 3): by in-betweens, what lacks on the straight way."""
+    keys, mesh = keys_of(made), mesh_of(made)
+    rest = vertex_positions(mesh).astype(np.float64) if keys is None else key_positions(keys.reference_key)
+    offsets = shapes - rest
+    fractions = np.arange(1, len(offsets)) / len(offsets)
+    offsets[1:] -= fractions[:, None, None] * offsets[0]
+    return offsets
 
 
 def _duplicate(context: bpy.types.Context, obj: bpy.types.Object, name: str) -> bpy.types.Object:

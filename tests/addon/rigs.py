@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import bmesh
 import bpy
 import numpy as np
 from hiermatch.engine import FittedRig, SurfaceMap
@@ -159,3 +160,33 @@ def _add_weights(obj, weights):
     columns = weights[:, numbers].tocoo()
     for vertex, column, weight in zip(columns.row.tolist(), columns.col.tolist(), columns.data.tolist(), strict=True):
         groups[column].add([vertex], weight, "REPLACE")
+
+
+def split_up(obj, pieces):
+    """Cut a mesh object into objects of some of its faces, which share the positions of vertices along the cuts.
+
+    `pieces` gives for the center of each face (f, 3) the number of its piece.  All else of the object is copied to
+    each; it is gone afterwards.
+
+    Returns
+    -------
+    list of bpy.types.Object
+        The pieces, named as the object with a number.
+    """
+    mesh = obj.data
+    numbers = np.asarray(pieces(np.array([polygon.center for polygon in mesh.polygons])))
+    made = []
+    for number in np.unique(numbers).tolist():
+        part = obj.copy()
+        part.name, part.data = f"{obj.name} {number}", mesh.copy()
+        bpy.context.scene.collection.objects.link(part)
+        edited = bmesh.new()
+        edited.from_mesh(part.data)
+        faces = [face for face, piece in zip(list(edited.faces), numbers.tolist(), strict=True) if piece != number]
+        bmesh.ops.delete(edited, geom=faces, context="FACES")
+        edited.to_mesh(part.data)
+        edited.free()
+        made.append(part)
+    bpy.data.objects.remove(obj)
+    bpy.context.view_layer.update()
+    return made

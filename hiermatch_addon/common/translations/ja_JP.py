@@ -67,11 +67,20 @@ MESSAGES: Final[dict[str, str]] = {
     "By what the two meshes are recognised as the pair of this match": (
         "二つのメッシュがこのマッチングのペアだと識別するためのもの"
     ),
-    "Mesh whose points are matched; if empty, the active object": (
-        "ポイントをマッチングするメッシュ。空ならアクティブオブジェクト"
+    "Mesh that is matched, or an armature with all meshes that it moves; if empty, what is active": (
+        "マッチングするメッシュ、またはアーマチュアとそれが動かすすべてのメッシュ。空ならアクティブなもの"
     ),
-    "Mesh on which the corresponding points are sought; if empty, the other selected mesh": (
-        "対応するポイントを探すメッシュ。空なら選択中のもう一つのメッシュ"
+    (
+        "Mesh that corresponding points are sought on, or an armature with all meshes that it moves; if empty, what "
+        "else is selected"
+    ): ("対応するポイントを探すメッシュ、またはアーマチュアとそれが動かすすべてのメッシュ。空なら選択中のほかのもの"),
+    "Source Collection": "ソースコレクション",
+    "Target Collection": "ターゲットコレクション",
+    "Collection whose meshes are the source together, if no object is picked": (
+        "オブジェクトが選ばれていないとき、まとめてソースとなるメッシュのコレクション"
+    ),
+    "Collection whose meshes are the target together, if no object is picked": (
+        "オブジェクトが選ばれていないとき、まとめてターゲットとなるメッシュのコレクション"
     ),
     "Summary": "概要",
     "The last match": "最後のマッチング",
@@ -934,8 +943,8 @@ MESSAGES: Final[dict[str, str]] = {
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "クリックできるものがありません。二つの頂点を指定してhiermatch.add_landmarkを使ってください。"
     ),
-    "One of the two meshes was deleted or renamed. Press Esc and start again.": (
-        "二つのメッシュの一方が削除されたか、名前が変わりました。Escを押してやり直してください。"
+    "One of the two meshes was deleted. Press Esc and start again.": (
+        "二つのメッシュの一方が削除されました。Escを押してやり直してください。"
     ),
     "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
         "改良するマッチングがありません。二つのメッシュをソースとターゲットに選び、マッチングしてください。"
@@ -969,10 +978,27 @@ MESSAGES: Final[dict[str, str]] = {
         "どのメッシュがソースなのかが決まりません。パネルで選ぶか、アクティブオブジェクトにしてください。"
     ),
     (
-        'All that is selected beside "{0}" is moved by the same rig: {1}. Select a mesh of another character, or pick '
-        "the part as the Target in the panel if it is meant."
+        'The collection "{0}" holds no mesh with faces that is shown in this view layer. Show its meshes, or choose '
+        "another one."
     ): (
-        "「{0}」のほかに選択されているものは、すべて同じリグで動いています：{1}。別のキャラクターのメッシュを選択するか、"
+        "コレクション「{0}」には、このビューレイヤーに表示されている面のあるメッシュがありません。メッシュを表示するか、"
+        "別のコレクションを選んでください。"
+    ),
+    (
+        'The armature "{0}" moves no mesh with faces that is shown in this view layer. Show its meshes, or choose '
+        "another one."
+    ): (
+        "アーマチュア「{0}」は、このビューレイヤーに表示されている面のあるメッシュを動かしていません。メッシュを表示するか、"
+        "別のアーマチュアを選んでください。"
+    ),
+    '"{0}" belongs to both Source and Target. Choose two characters that share no object.': (
+        "「{0}」はソースとターゲットの両方に属しています。同じオブジェクトを共有しない二つのキャラクターを選んでください。"
+    ),
+    (
+        'All that is selected is moved by the same rig as "{0}": {1}. Select a mesh of another character, or pick the '
+        "part as the Target in the panel if it is meant."
+    ): (
+        "選択されているものは、すべて「{0}」と同じリグで動いています：{1}。別のキャラクターのメッシュを選択するか、"
         "その部分を対象にするならパネルでターゲットに選んでください。"
     ),
     'What the rig of "{0}" moves as well was left alone: {1}.': (
@@ -1746,11 +1772,11 @@ MESSAGES: Final[dict[str, str]] = {
     'The attribute "{0}" of "{1}" is of the type {2}, and was left out.': (
         "「{1}」の属性「{0}」は{2}型のため、除外しました。"
     ),
-    ('"{0}" is moved by the armature "{1}" as well. Remove that Armature modifier unless both are meant to move it.'): (
-        "「{0}」はアーマチュア「{1}」でも動きます。両方で動かすつもりでなければ、そのアーマチュアモディファイアーを"
+    ('{0} is moved by the armature "{1}" as well. Remove that Armature modifier unless both are meant to move it.'): (
+        "{0}はアーマチュア「{1}」でも動きます。両方で動かすつもりでなければ、そのアーマチュアモディファイアーを"
         "削除してください。"
     ),
-    '"{0}" keeps its parent "{1}".': "「{0}」の親は「{1}」のままです。",
+    '{0} keeps its parent "{1}".': "{0}の親は「{1}」のままです。",
     'The NLA tracks of the shape keys of "{0}" were left out.': "「{0}」のシェイプキーのNLAトラックは除外しました。",
     'The shape keys of "{0}" keep their own action "{1}".': "「{0}」のシェイプキーのアクションは「{1}」のままです。",
     "The imported match has no dense map: only its points were written, without colors and distortion.": (
@@ -1812,6 +1838,8 @@ MESSAGES: Final[dict[str, str]] = {
     "updated": "更新済み",
     "a new object": "新しいオブジェクト",
     'the shape key "{0}" on "{1}"': "「{1}」のシェイプキー「{0}」",
+    'the shape key "{0}" on {1} objects': "{1}個のオブジェクトのシェイプキー「{0}」",
+    "{0} new objects": "{0}個の新しいオブジェクト",
     'the action "{0}"': "アクション「{0}」",
     "custom normals": "カスタム法線",
     "1 attribute": "1個の属性",

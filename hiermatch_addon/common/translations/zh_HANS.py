@@ -53,9 +53,20 @@ MESSAGES: Final[dict[str, str]] = {
     "What the names of everything that was written start with": "所有写入内容的名称开头",
     "Key": "键",
     "By what the two meshes are recognised as the pair of this match": "用来识别这两个网格属于此匹配的标识",
-    "Mesh whose points are matched; if empty, the active object": "要匹配其上各点的网格；为空时使用活动物体",
-    "Mesh on which the corresponding points are sought; if empty, the other selected mesh": (
-        "在其上寻找对应点的网格；为空时使用另一个选中的网格"
+    "Mesh that is matched, or an armature with all meshes that it moves; if empty, what is active": (
+        "要匹配的网格，或骨架及其驱动的所有网格；为空时使用活动的物体"
+    ),
+    (
+        "Mesh that corresponding points are sought on, or an armature with all meshes that it moves; if empty, what "
+        "else is selected"
+    ): "在其上寻找对应点的网格，或骨架及其驱动的所有网格；为空时使用其余选中的物体",
+    "Source Collection": "源集合",
+    "Target Collection": "目标集合",
+    "Collection whose meshes are the source together, if no object is picked": (
+        "未选取物体时，以此集合中的网格共同作为源"
+    ),
+    "Collection whose meshes are the target together, if no object is picked": (
+        "未选取物体时，以此集合中的网格共同作为目标"
     ),
     "Summary": "摘要",
     "The last match": "上一次匹配",
@@ -765,9 +776,7 @@ MESSAGES: Final[dict[str, str]] = {
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "没有可点击的对象。请用两个顶点调用 hiermatch.add_landmark。"
     ),
-    "One of the two meshes was deleted or renamed. Press Esc and start again.": (
-        "两个网格之一被删除或重命名。请按 Esc 后重新开始。"
-    ),
+    "One of the two meshes was deleted. Press Esc and start again.": "两个网格之一被删除。请按 Esc 后重新开始。",
     "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
         "没有可改善的匹配。请选取两个网格作为源和目标并进行匹配。"
     ),
@@ -798,11 +807,20 @@ MESSAGES: Final[dict[str, str]] = {
         "无法确定哪个网格是源：请在面板中选取，或将其设为活动物体。"
     ),
     (
-        'All that is selected beside "{0}" is moved by the same rig: {1}. Select a mesh of another character, or pick '
-        "the part as the Target in the panel if it is meant."
-    ): (
-        "除“{0}”外，所选的全部由同一绑定驱动：{1}。请选择另一个角色的网格；如果确实要用该部件，请在面板中将其选为目标。"
+        'The collection "{0}" holds no mesh with faces that is shown in this view layer. Show its meshes, or choose '
+        "another one."
+    ): "集合“{0}”中没有在此视图层中显示的带面网格。请显示其网格，或选择另一个集合。",
+    (
+        'The armature "{0}" moves no mesh with faces that is shown in this view layer. Show its meshes, or choose '
+        "another one."
+    ): "骨架“{0}”没有驱动任何在此视图层中显示的带面网格。请显示其网格，或选择另一个骨架。",
+    '"{0}" belongs to both Source and Target. Choose two characters that share no object.': (
+        "“{0}”同时属于源和目标。请选择没有共同物体的两个角色。"
     ),
+    (
+        'All that is selected is moved by the same rig as "{0}": {1}. Select a mesh of another character, or pick the '
+        "part as the Target in the panel if it is meant."
+    ): ("所选的全部与“{0}”由同一绑定驱动：{1}。请选择另一个角色的网格；如果确实要用该部件，请在面板中将其选为目标。"),
     'What the rig of "{0}" moves as well was left alone: {1}.': "与“{0}”由同一绑定驱动的部件未作更改：{1}。",
     "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source.": (
         "无法确定哪个网格是目标。请在面板中选取，或在源之外再选择一个或多个。"
@@ -1389,10 +1407,10 @@ MESSAGES: Final[dict[str, str]] = {
         "“{0}”已有另一个名为“{1}”的内容，因此该属性被排除。请重命名其中之一。"
     ),
     'The attribute "{0}" of "{1}" is of the type {2}, and was left out.': "“{1}”的属性“{0}”属于 {2} 类型，已排除。",
-    ('"{0}" is moved by the armature "{1}" as well. Remove that Armature modifier unless both are meant to move it.'): (
-        "“{0}”也受骨架“{1}”驱动。除非有意由两者驱动，否则请移除那个骨架修改器。"
+    ('{0} is moved by the armature "{1}" as well. Remove that Armature modifier unless both are meant to move it.'): (
+        "{0}也受骨架“{1}”驱动。除非有意由两者驱动，否则请移除那个骨架修改器。"
     ),
-    '"{0}" keeps its parent "{1}".': "“{0}”保留其父级“{1}”。",
+    '{0} keeps its parent "{1}".': "{0}保留其父级“{1}”。",
     'The NLA tracks of the shape keys of "{0}" were left out.': "“{0}”的形态键的 NLA 轨道已排除。",
     'The shape keys of "{0}" keep their own action "{1}".': "“{0}”的形态键保留自己的动作“{1}”。",
     "The imported match has no dense map: only its points were written, without colors and distortion.": (
@@ -1443,6 +1461,8 @@ MESSAGES: Final[dict[str, str]] = {
     "updated": "已更新",
     "a new object": "新物体",
     'the shape key "{0}" on "{1}"': "“{1}”上的形态键“{0}”",
+    'the shape key "{0}" on {1} objects': "{1} 个物体上的形态键“{0}”",
+    "{0} new objects": "{0} 个新物体",
     'the action "{0}"': "动作“{0}”",
     "custom normals": "自定义法线",
     "1 attribute": "1 个属性",

@@ -17,10 +17,11 @@ from ...jobs.job_operator import JobOperator
 from ...jobs.running import can_start
 from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...properties.freshness import refresh
-from ...properties.panel_state import state_of
+from ...properties.panel_state import picked, state_of
 from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import remember
-from ...scene.pair import left_out_note, named_object, selected_targets
+from ...scene.character import side_of
+from ...scene.pair import active_side, left_out_note, name_of, named_side, selected_targets
 from ...transfers.retarget_properties import remember_transfer
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
     from ...jobs.transfer import Transfer
     from ...jobs.transfer_job import Carried
+    from ...scene.character import Side
 
 __all__ = ["TransferOperator"]
 
@@ -108,10 +110,10 @@ class TransferOperator(JobOperator):
         options = TransferOptions(match, self.prefix, refine=self.refine, optional=self.optional)
         job = TransferJob(context, source, targets, self._transfers, options)
         # So that Adjust Last Operation repeats it with the same ones, whatever is selected by then.
-        self.source = source.name
+        self.source = name_of(view_layer_of(context), source)
         self.targets.clear()
         for target in targets:
-            self.targets.add().name = target.name
+            self.targets.add().name = name_of(view_layer_of(context), target)
         return job
 
     def _finish(self, context: bpy.types.Context, job: TransferJob) -> set[OperatorReturnItems]:
@@ -143,7 +145,7 @@ class TransferOperator(JobOperator):
             said = ", ".join(done) if done else "nothing"
             self.report({"INFO"}, translated(f'Carried to "{one.target}" in {one.seconds:.1f} s: {said}'))
 
-    def _pick(self, context: bpy.types.Context) -> tuple[bpy.types.Object, list[bpy.types.Object]]:
+    def _pick(self, context: bpy.types.Context) -> tuple[Side, list[Side]]:
         """Find the source and the targets: by name, else as picked in the panel, else as selected.
 
         Raises
@@ -151,14 +153,17 @@ class TransferOperator(JobOperator):
         ObjectError
             If a name is unknown, or the selection leaves open what is meant.
         """
-        state, active = state_of(context), view_layer_of(context).objects.active
+        layer, (picked_source, picked_target) = view_layer_of(context), picked(state_of(context))
         names = [item.name for item in self.targets] or ([self.target] if self.target else [])
-        targets = [named_object(name) for name in dict.fromkeys(names)]
-        source = named_object(self.source) if self.source else state.source
-        if not targets and state.target is not None and state.target != source:
-            targets = [state.target]
-        if source is None and active is not None and active.type == "MESH" and active not in targets:
-            source = active
+        targets = [named_side(layer, name) for name in dict.fromkeys(names)]
+        source = named_side(layer, self.source) if self.source else None
+        if source is None and picked_source is not None:
+            source = side_of(picked_source, layer)
+        if not targets and picked_target is not None:
+            targets = [side for side in [side_of(picked_target, layer)] if side != source]
+        if source is None:
+            source = active_side(context, without=targets[0] if len(targets) == 1 else None)
+            source = None if source in targets else source
         if source is None:
             raise ObjectError("Which mesh is the Source is open: pick it in the panel, or make it the active object.")
         if not targets:

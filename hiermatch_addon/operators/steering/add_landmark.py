@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...common.access import mesh_of
 from ...common.errors import ObjectError
+from ...scene.character import vertex_count
 from ...storage.landmarks import add_landmarks
 from .landmark_operator import LandmarkOperator
 from .landmark_picking import selected_empties, selected_pair, vertices_at_empties
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    from ...scene.character import Side
 
 __all__ = ["HIERMATCH_OT_add_landmark"]
 
@@ -53,7 +55,7 @@ class HIERMATCH_OT_add_landmark(LandmarkOperator, bpy.types.Operator):
             return {"FINISHED"}
         return self.execute(context)
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         """Add the landmark."""
         if self.source_vertex >= 0 and self.target_vertex >= 0:
             pair = self.source_vertex, self.target_vertex
@@ -62,8 +64,8 @@ class HIERMATCH_OT_add_landmark(LandmarkOperator, bpy.types.Operator):
         else:
             pair = vertices_at_empties(context, source, target)
         for obj, vertex in zip((source, target), pair, strict=True):
-            count = len(mesh_of(obj).vertices)
-            if obj.mode == "OBJECT" and vertex >= count:
+            count = vertex_count(obj)
+            if context.mode == "OBJECT" and vertex >= count:
                 raise ObjectError(
                     f'"{obj.name}" has no vertex {vertex}: its vertices are numbered from 0 to {count - 1}.'
                 )

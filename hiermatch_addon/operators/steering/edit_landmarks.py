@@ -4,13 +4,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import bpy
 
 from ...common.errors import ObjectError
 from ...properties.steering_properties import steering_of
-from ...storage.landmark_layer import select_vertices
-from ...storage.landmarks import clear_landmarks, find_landmarks, remove_landmark, switch_landmark
+from ...storage.landmarks import clear_landmarks, find_landmarks, remove_landmark, select_on_side, switch_landmark
 from .landmark_operator import LandmarkOperator
+
+if TYPE_CHECKING:
+    from ...scene.character import Side
 
 __all__ = [
     "HIERMATCH_OT_clear_landmarks",
@@ -48,7 +52,7 @@ class HIERMATCH_OT_remove_landmark(_OneLandmark, bpy.types.Operator):
     bl_description = "Remove a landmark from both meshes"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)
         remove_landmark(source, target, number)
         return f"Removed landmark {number}"
@@ -62,7 +66,7 @@ class HIERMATCH_OT_clear_landmarks(LandmarkOperator, bpy.types.Operator):
     bl_description = "Remove all landmarks that source and target have in common"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         return f"Removed {clear_landmarks(source, target)} landmarks"
 
 
@@ -76,7 +80,7 @@ class HIERMATCH_OT_switch_landmark(_OneLandmark, bpy.types.Operator):
 
     use: bpy.props.BoolProperty(name="Use", description="Whether matches are to keep to it", default=True)
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)
         switch_landmark(source, target, number, use=self.use)
         return f"Landmark {number} is {'on' if self.use else 'off'}"
@@ -90,12 +94,12 @@ class HIERMATCH_OT_select_landmark(_OneLandmark, bpy.types.Operator):
     bl_description = "Select the two vertices of a landmark, and nothing else of the two meshes"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)
         found = {landmark.number: landmark for landmark in find_landmarks(source, target)}
         if number not in found:
             raise ObjectError(f'"{source.name}" and "{target.name}" have no landmark {number} in common.')
-        select_vertices(source, [found[number].source])
-        select_vertices(target, [found[number].target])
+        select_on_side(source, [found[number].source])
+        select_on_side(target, [found[number].target])
         steering_of(context).landmark_index = list(found).index(number)
         return ""

@@ -13,14 +13,14 @@ from ...common.errors import ObjectError
 from ...properties.steering_lists import common_match, point_name
 from ...properties.steering_properties import steering_of
 from ...scene.pair import check_pair
-from ...storage.landmark_layer import select_vertices
-from ...storage.landmarks import add_landmarks, find_landmarks, remove_landmark
+from ...storage.landmarks import add_landmarks, find_landmarks, remove_landmark, select_on_side
 from ...storage.stored_match import StoredMatch
 from ...storage.writing import change_kept, take_away
 from .landmark_operator import LandmarkOperator
 
 if TYPE_CHECKING:
     from ...properties.steering_properties import HIERMATCH_PG_pair
+    from ...scene.character import Side
     from ...storage.halves import Half
 
 __all__ = ["HIERMATCH_OT_lock_pair", "HIERMATCH_OT_remove_pair", "HIERMATCH_OT_select_pair"]
@@ -74,10 +74,10 @@ class HIERMATCH_OT_select_pair(_PairOperator, bpy.types.Operator):
     bl_description = "Select the vertices nearest to a matched point, and nothing else of the two meshes"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         row = self._row(context)
-        select_vertices(source, [row.source])
-        select_vertices(target, [row.target])
+        select_on_side(source, [row.source])
+        select_on_side(target, [row.target])
         return ""
 
 
@@ -92,7 +92,7 @@ class HIERMATCH_OT_lock_pair(_PairOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         row = self._row(context)
         pair = (row.source, row.target)
         for landmark in find_landmarks(source, target):
@@ -111,7 +111,7 @@ class HIERMATCH_OT_remove_pair(_PairOperator, bpy.types.Operator):
     bl_description = "Remove the vertex groups of a matched point from both meshes; the dense map stays as it is"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         check_pair(view_layer_of(context), source, target)
         row = self._row(context)
         number, name = row.number, row.name

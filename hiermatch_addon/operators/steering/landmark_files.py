@@ -20,6 +20,8 @@ from .landmark_operator import LandmarkOperator
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
+    from ...scene.character import Side
+
 __all__ = ["HIERMATCH_OT_load_landmarks", "HIERMATCH_OT_save_landmarks"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
@@ -71,7 +73,7 @@ class HIERMATCH_OT_save_landmarks(_FileOperator, bpy.types.Operator):
         name="Check Existing", description="Warn before a file is overwritten", default=True, options={"HIDDEN"}
     )
 
-    def _do(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         path, landmarks = self._path(), find_landmarks(source, target)
         if not landmarks:
             raise ObjectError(f'"{source.name}" and "{target.name}" have no landmarks in common. Add some first.')
@@ -98,7 +100,7 @@ class HIERMATCH_OT_load_landmarks(_FileOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def _do(self, _context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         path = self._path()
         try:
             text = path.read_text(encoding="utf8")

@@ -13,12 +13,15 @@ from ...common.access import window_manager_of
 from ...common.errors import ObjectError
 from ...common.translated_text import translated
 from ...jobs.running import is_running
-from ...properties.panel_state import state_of
+from ...properties.panel_state import pick, picked, state_of
 from ...properties.steering_lists import sync_lists
+from ...scene.character import Character, parts_of
 from ...scene.pair import check_writable, find_pair
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    from ...scene.character import Side
 
     _Operator = bpy.types.Operator
 else:
@@ -29,10 +32,8 @@ __all__ = ["LandmarkOperator", "pick_pair", "steerable_pair"]
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
-def steerable_pair(
-    context: bpy.types.Context, names: tuple[str, str] = ("", "")
-) -> tuple[bpy.types.Object, bpy.types.Object]:
-    """Find the two meshes that are meant: by name, else as picked in the panel, else as selected.
+def steerable_pair(context: bpy.types.Context, names: tuple[str, str] = ("", "")) -> tuple[Side, Side]:
+    """Find the two sides that are meant: by name, else as picked in the panel, else as selected.
 
     Raises
     ------
@@ -40,12 +41,13 @@ def steerable_pair(
         If that leaves open which, or one of them is no mesh of this file's own.
     """
     state = state_of(context)
-    source, target = find_pair(context, names, (state.source, state.target))
-    if source == target or source.data == target.data:
+    source, target = find_pair(context, names, picked(state))
+    meshes = [{part.data for part in parts_of(side)} for side in (source, target)]
+    if source == target or meshes[0] & meshes[1]:
         raise ObjectError(
             f'Source and Target are both "{source.name}", or share the same mesh data. Choose two meshes of their own.'
         )
-    for obj in (source, target):
+    for obj in (*parts_of(source), *parts_of(target)):
         if obj.type != "MESH":
             raise ObjectError(f'"{obj.name}" is not a mesh. Pick two mesh objects as Source and Target.')
         check_writable(obj)
@@ -54,13 +56,26 @@ def steerable_pair(
     return source, target
 
 
-def pick_pair(context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
-    """Pick two meshes in the panel where nothing is picked, so that it goes on showing what they have in common."""
+def pick_pair(context: bpy.types.Context, source: Side, target: Side) -> None:
+    """Pick both sides in the panel where nothing is picked, so that it goes on showing what they have in common."""
     state = state_of(context)
-    if state.source is None and state.target in (None, target):
-        state.source = source
-    if state.target is None and state.source == source:
-        state.target = target
+    wanted = tuple(_handle(side) for side in (source, target))
+    before = picked(state)
+    if before[0] is None and before[1] in (None, wanted[1]):
+        pick(state, "source", wanted[0])
+    if before[1] is None and picked(state)[0] == wanted[0]:
+        pick(state, "target", wanted[1])
+
+
+def _handle(side: Side) -> bpy.types.ID | None:
+    """Return what a side is picked by; None if it was selected part by part."""
+    if not isinstance(side, Character):
+        return side
+    for kept in (bpy.data.objects, bpy.data.collections):
+        found = cast("Any", kept).get(side.name)
+        if found is not None:
+            return cast("bpy.types.ID", found)
+    return None
 
 
 class LandmarkOperator(_Operator):
@@ -85,7 +100,7 @@ class LandmarkOperator(_Operator):
         source: str
         target: str
 
-    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         """Do it, and return what to report."""
         raise NotImplementedError
 

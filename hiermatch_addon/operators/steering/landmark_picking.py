@@ -10,13 +10,18 @@ import numpy as np
 
 from ...common.access import mesh_of, view_layer_of
 from ...common.errors import ObjectError
+from ...scene.character import parts_of, vertex_ranges
 from ...scene.mesh_io import vertex_positions
 from ...storage.landmark_layer import selected_vertices
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import bpy
     from mathutils import Vector
     from numpy.typing import NDArray
+
+    from ...scene.character import Side
 
 __all__ = ["Hit", "cast_ray", "selected_empties", "selected_pair", "shown_positions", "vertices_at_empties"]
 
@@ -40,7 +45,7 @@ class Hit:
     vertex: int
 
 
-def selected_pair(source: bpy.types.Object, target: bpy.types.Object) -> tuple[int, int]:
+def selected_pair(source: Side, target: Side) -> tuple[int, int]:
     """Return the vertex that is selected on each of two meshes in Edit Mode.
 
     Raises
@@ -50,11 +55,13 @@ def selected_pair(source: bpy.types.Object, target: bpy.types.Object) -> tuple[i
     """
     vertices = []
     for obj in (source, target):
-        if obj.mode != "EDIT":
+        parts = [(part, own.start) for part, own in zip(parts_of(obj), vertex_ranges(obj), strict=True)]
+        edited = [(part, start) for part, start in parts if part.mode == "EDIT"]
+        if not edited:
             raise ObjectError(
                 f'"{obj.name}" is not in Edit Mode. Select both meshes, enter Edit Mode, and select one vertex on each.'
             )
-        selected = selected_vertices(obj)
+        selected = [start + vertex for part, start in edited for vertex in selected_vertices(part)]
         if len(selected) != 1:
             raise ObjectError(
                 f'{len(selected) or "No"} vertices of "{obj.name}" are selected. Select exactly one vertex on each of '
@@ -69,9 +76,7 @@ def selected_empties(context: bpy.types.Context) -> list[bpy.types.Object]:
     return [obj for obj in view_layer_of(context).objects.selected if obj.type == "EMPTY"]
 
 
-def vertices_at_empties(
-    context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object
-) -> tuple[int, int]:
+def vertices_at_empties(context: bpy.types.Context, source: Side, target: Side) -> tuple[int, int]:
     """Return the vertices that are nearest to two selected empties, each on the mesh that it is near to.
 
     Raises
@@ -86,7 +91,10 @@ def vertices_at_empties(
             "the surfaces in Object Mode, or click on them with Pick Landmarks."
         )
     places = np.array([empty.matrix_world.translation for empty in empties], np.float64)
-    found = [_nearest(shown_positions(context, obj), places) for obj in (source, target)]
+    found = [
+        _nearest(np.concatenate([shown_positions(context, part) for part in parts_of(side)]), places)
+        for side in (source, target)
+    ]
     (on_source, far_source), (on_target, far_target) = found
     if far_source[0] + far_target[1] <= far_source[1] + far_target[0]:
         return int(on_source[0]), int(on_target[1])
@@ -94,7 +102,7 @@ def vertices_at_empties(
 
 
 def cast_ray(
-    context: bpy.types.Context, objects: tuple[bpy.types.Object, ...], origin: Vector, direction: Vector
+    context: bpy.types.Context, objects: Sequence[bpy.types.Object], origin: Vector, direction: Vector
 ) -> Hit | None:
     """Find the vertex that is meant by a click: the nearest one to where a ray in world space meets the meshes first.
 

@@ -17,6 +17,7 @@ from ...jobs.running import can_start
 from ...overlay.drawing import show_pending
 from ...properties.steering_lists import sync_lists
 from ...properties.steering_properties import steering_of
+from ...scene.character import SideReference, parts_of, vertex_ranges
 from ...storage.landmarks import add_landmarks
 from .landmark_operator import pick_pair, steerable_pair
 from .landmark_picking import cast_ray
@@ -24,6 +25,7 @@ from .landmark_picking import cast_ray
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
+    from ...scene.character import Side
     from .landmark_picking import Hit
 
 __all__ = ["HIERMATCH_OT_pick_landmarks"]
@@ -40,7 +42,7 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
     )
     bl_options = {"REGISTER"}  # each pair is a step of its own to undo
 
-    _names: tuple[str, str]
+    _sides: tuple[SideReference, SideReference]
     _pending: tuple[str, int] | None
     _workspace: str
     _added: int
@@ -65,7 +67,7 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         pick_pair(context, source, target)
-        self._names, self._pending, self._added = (source.name, target.name), None, 0
+        self._sides, self._pending, self._added = (SideReference.of(source), SideReference.of(target)), None, 0
         self._workspace = context.workspace.name if context.workspace else ""
         steering_of(context).show_overlay = True
         window_manager_of(context).modal_handler_add(self)
@@ -101,6 +103,10 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
             workspace.status_text_set(None)
         redraw_views(window_manager_of(context))
 
+    @property
+    def _names(self) -> tuple[str, str]:
+        return self._sides[0].name, self._sides[1].name
+
     def _hit(
         self,
         context: bpy.types.Context,
@@ -112,20 +118,27 @@ class HIERMATCH_OT_pick_landmarks(bpy.types.Operator):
         mouse = (event.mouse_x - region.x, event.mouse_y - region.y)
         origin = view3d_utils.region_2d_to_origin_3d(region, view, mouse)
         direction = view3d_utils.region_2d_to_vector_3d(region, view, mouse)
-        objects = tuple(bpy.data.objects[name] for name in self._names if name in bpy.data.objects)
-        if len(objects) < 2:
-            raise ObjectError("One of the two meshes was deleted or renamed. Press Esc and start again.")
-        return cast_ray(context, objects, origin, direction)
+        return cast_ray(context, [part for side in self._found() for part in parts_of(side)], origin, direction)
+
+    def _found(self) -> tuple[Side, Side]:
+        """Look the two sides up again."""
+        source, target = (reference.find() for reference in self._sides)
+        if source is None or target is None:
+            raise ObjectError("One of the two meshes was deleted. Press Esc and start again.")
+        return source, target
 
     def _take(self, context: bpy.types.Context, hit: Hit | None) -> None:
         """Keep the first place of a pair, or make a landmark of both."""
         if hit is None:
             raise ObjectError(f'Click on "{self._names[0]}" or on "{self._names[1]}".')
-        if self._pending is None or self._pending[0] == hit.obj.name:
-            self._pending = (hit.obj.name, hit.vertex)
+        source, target = self._found()
+        side = source if hit.obj in parts_of(source) else target
+        start = vertex_ranges(side)[parts_of(side).index(hit.obj)].start
+        clicked = (side.name, start + hit.vertex)
+        if self._pending is None or self._pending[0] == side.name:
+            self._pending = clicked
             return
-        vertices = dict([self._pending, (hit.obj.name, hit.vertex)])
-        source, target = (bpy.data.objects[name] for name in self._names)
+        vertices = dict([self._pending, clicked])
         (added,) = add_landmarks(source, target, [(vertices[source.name], vertices[target.name])])
         self._pending = None
         self._added += 1

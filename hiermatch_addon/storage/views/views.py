@@ -10,7 +10,7 @@ import numpy as np
 from ....engine import nearest_regions
 from ...common.access import mesh_of
 from ...common.errors import ObjectError
-from ...scene.mesh_io import read_mesh
+from ...scene.character import parts_of, read_surface
 from .. import writing
 from ..contents import Content
 from ..stored_match import StoredMatch
@@ -19,6 +19,8 @@ from . import colors
 from .view_colors import check_size, checked, region_colors
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import bpy
     from numpy.typing import NDArray
 
@@ -83,16 +85,16 @@ def prepare_view(context: bpy.types.Context, halves: tuple[Half, Half], view: st
             writing.extend(half.obj, content, half.prefix)
         return
     for half in halves:
-        if name not in mesh_of(half.obj).color_attributes:
+        if any(name not in mesh_of(part).color_attributes for part in parts_of(half.obj)):
             raise ObjectError(
                 f'"{half.obj.name}" carries no colors called "{name}". Match again with {_ENDINGS[view]} on under '
                 "Output, and for confidence with Dense Map on."
             )
 
 
-def show_attribute(objects: tuple[bpy.types.Object, bpy.types.Object], names: tuple[str, str]) -> None:
-    """Make color attributes the active ones of two meshes, as far as they exist."""
-    for obj, name in zip(objects, names, strict=True):
+def show_attribute(objects: Sequence[bpy.types.Object], names: Sequence[str]) -> None:
+    """Make color attributes the active ones of meshes, as far as they exist."""
+    for obj, name in zip(objects, names, strict=False):
         mesh = mesh_of(obj)
         if name in mesh.color_attributes:
             mesh.attributes.active_color_name = name
@@ -141,12 +143,12 @@ def _maps(context: bpy.types.Context, halves: tuple[Half, Half]) -> MapPair | No
     """Read the dense maps, of what was matched as the source first; None if there are none."""
     first, second = _in_order(halves)
     stored = StoredMatch.from_plain(first.kept, second.kept)
-    kept = StoredMaps.read(mesh_of(first.obj), mesh_of(second.obj), map_name(first.prefix))
+    kept = StoredMaps.read(first.obj, second.obj, map_name(first.prefix))
     if kept is None:
         return None
     depsgraph = context.evaluated_depsgraph_get()
     source, target = (
-        read_mesh(half.obj, depsgraph, use_modifiers=stored.written.use_modifiers) for half in (first, second)
+        read_surface(half.obj, depsgraph, use_modifiers=stored.written.use_modifiers) for half in (first, second)
     )
     return kept.between(source, target)
 
@@ -165,7 +167,7 @@ def _region_numbers(
     here, there = (points.nearest_vertices[kept] for points in (stored.source_points, stored.answer.target_points))
     if maps is None:
         depsgraph = context.evaluated_depsgraph_get()
-        meshes = [read_mesh(half.obj, depsgraph, use_modifiers=False) for half in (first, second)]
+        meshes = [read_surface(half.obj, depsgraph, use_modifiers=False) for half in (first, second)]
         found = (nearest_regions(meshes[0], here), nearest_regions(meshes[1], there))
     else:
         own = nearest_regions(maps.source, here)

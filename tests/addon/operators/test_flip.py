@@ -6,7 +6,6 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.common.access import mesh_of
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.jobs.flipping import FlipJob
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
@@ -400,8 +399,7 @@ class TestInSteps:
         while not self.advance(job):
             pass
         stored = job.finish(bpy.context)
-        meshes = [mesh_of(obj) for obj in dense_pair]
-        maps = StoredMaps.read(*meshes, map_name("HM", other=False))
+        maps = StoredMaps.read(*dense_pair, map_name("HM", other=False))
         depsgraph = bpy.context.evaluated_depsgraph_get()
         source, target = (read_mesh(obj, depsgraph, use_modifiers=False) for obj in dense_pair)
         images = maps.between(source, target).source_to_target.positions[stored.source_points.nearest_vertices]

@@ -111,7 +111,7 @@ class TestPartsOfTheSource:
         bind(target, add_armature(), "modifier")  # another character's
         select(source, target, coat, active=source)
         assert selected_targets(bpy.context, source) == ([target], [coat])
-        assert find_pair(bpy.context) == pair
+        assert find_pair(bpy.context, (source.name, "")) == pair
 
     def test_are_if_named_or_picked(self, pair):
         source, target = pair
@@ -121,7 +121,7 @@ class TestPartsOfTheSource:
         select(source, target, active=source)
         assert find_pair(bpy.context, ("", "Target")) == pair
         assert find_pair(bpy.context, picked=(None, target)) == pair
-        with pytest.raises(ObjectError, match='beside "Source" is moved by the same rig: "Target"'):
+        with pytest.raises(ObjectError, match='moved by the same rig as "Source": "Source", "Target"'):
             find_pair(bpy.context)
 
 

@@ -48,7 +48,7 @@ def same(one, other):
 def test_attributes_keep_the_map_in_single_precision(pair, meshes, maps, kept):
     write(pair, kept)
     assert set(MAP_ATTRIBUTES) <= set(pair[0].data.attributes.keys())
-    back = StoredMaps.read(pair[0].data, pair[1].data, "HM Map")
+    back = StoredMaps.read(*pair, "HM Map")
     assert same(back.of_source, kept.of_source)
     assert same(back.of_target, kept.of_target)
     between = back.between(*meshes)
@@ -72,10 +72,10 @@ def test_an_incomplete_map_is_none(pair, kept, name):
     write(pair, kept)
     data = pair[1].data
     data.attributes.remove(data.attributes[name])
-    assert StoredMaps.read(pair[0].data, data, "HM Map") is None
-    assert VertexMap.read(pair[0].data, "HM Map") is not None
+    assert StoredMaps.read(*pair, "HM Map") is None
+    assert VertexMap.read(pair[0], "HM Map") is not None
     data.attributes.new(name, "BOOLEAN", "FACE")  # something else of that name
-    assert StoredMaps.read(pair[0].data, data, "HM Map") is None
+    assert StoredMaps.read(*pair, "HM Map") is None
 
 
 @pytest.mark.parametrize(

@@ -210,6 +210,7 @@ def test_parts_of_the_source_that_are_selected_as_well_are_left_alone(pair, monk
     for obj in (*pair, coat):
         obj.select_set(state=True)
     bpy.context.view_layer.objects.active = source
+    bpy.context.scene.hiermatch.source = source  # this part of the character alone
     before, said = mesh_snapshot(coat), []
     monkeypatch.setattr(transfer_operator, "translated", lambda text: said.append(text) or text)
     target.vertex_groups.clear()

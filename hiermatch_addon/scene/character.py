@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Characters of several objects, such as body, hair, eyes and clothes on one rig: one surface, kept in parts.
+
+One side of a match is a mesh object, or a `Character` of several.  What works on sides goes by their parts; a mesh
+object is the only part of itself.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import bpy
+import numpy as np
+
+from ...engine import Polygons, TriangleMesh
+from ..common.access import mesh_of
+from ..common.errors import ObjectError
+from .attribute_io import read_polygons
+from .mesh_io import position_digest, read_mesh, topology, vertex_positions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "Character",
+    "Side",
+    "SideReference",
+    "armatures_above",
+    "character_of",
+    "corner_ranges",
+    "edge_ranges",
+    "face_ranges",
+    "joined",
+    "own_positions",
+    "parts_of",
+    "positions_of",
+    "read_faces",
+    "read_surface",
+    "side_of",
+    "topology_of",
+    "vertex_count",
+    "vertex_ranges",
+]
+
+
+@dataclass(frozen=True)
+class Character:
+    """Mesh objects that are one surface together.
+
+    Attributes
+    ----------
+    name : str
+        What it is called: as its armature or collection, or else as its first part.
+    parts : tuple of bpy.types.Object
+        The mesh objects, in the order in which their vertices are numbered.
+    """
+
+    name: str
+    parts: tuple[bpy.types.Object, ...]
+
+
+Side: TypeAlias = "bpy.types.Object | Character"
+"""What is matched on one side."""
+
+
+@dataclass(frozen=True)
+class SideReference:
+    """A side by which it is found again later in the session; unlike objects, it may be kept while Blender works.
+
+    Attributes
+    ----------
+    name : str
+        What it was called.
+    uids : tuple of int
+        By which Blender knows its parts.
+    """
+
+    name: str
+    uids: tuple[int, ...]
+
+    @classmethod
+    def of(cls, side: Side) -> SideReference:
+        """Take what a side is known by."""
+        return cls(side.name, tuple(part.session_uid for part in parts_of(side)))
+
+    def find(self) -> Side | None:
+        """Look the side up again; None if a part of it is gone."""
+        found = {obj.session_uid: obj for obj in bpy.data.objects if obj.session_uid in self.uids}
+        if len(found) < len(self.uids):
+            return None
+        parts = tuple(found[uid] for uid in self.uids)
+        return parts[0] if len(parts) == 1 else Character(self.name, parts)
+
+
+def parts_of(side: Side) -> tuple[bpy.types.Object, ...]:
+    """Return the mesh objects of a side."""
+    return side.parts if isinstance(side, Character) else (side,)
+
+
+def armatures_above(obj: bpy.types.Object) -> set[bpy.types.Object]:
+    """Return the armatures that move an object, by modifiers or as what it hangs on, and those that move the latter."""
+    found: set[bpy.types.Object] = set()
+    link: bpy.types.Object | None = obj
+    while link is not None:
+        armatures = [getattr(modifier, "object", None) for modifier in link.modifiers if modifier.type == "ARMATURE"]
+        found.update(armature for armature in (link, *armatures) if armature and armature.type == "ARMATURE")
+        link = link.parent
+    return found
+
+
+def character_of(side: Side) -> Character:
+    """Return a side as a character; a mesh object is one of a single part."""
+    return side if isinstance(side, Character) else Character(side.name, (side,))
+
+
+def joined(name: str, parts: Iterable[bpy.types.Object]) -> Side:
+    """Make a side of mesh objects: a character, ordered by their names, or the only object itself."""
+    ordered = tuple(sorted(dict.fromkeys(parts), key=lambda part: part.name))
+    return ordered[0] if len(ordered) == 1 else Character(name, ordered)
+
+
+def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -> Side:
+    """Return what is meant by something that was named or picked.
+
+    Parameters
+    ----------
+    chosen : bpy.types.ID or Character
+        A mesh object, which is meant alone; an armature, with all meshes that it moves; an empty, with all meshes
+        that hang on it; or a collection, with all meshes in it.  Other objects are returned as they are.
+    view_layer : bpy.types.ViewLayer
+        Where the parts are.  Those that are hidden, or have no faces, are left out.
+
+    Raises
+    ------
+    ObjectError
+        If an armature, empty or collection has no such meshes.
+    """
+    if isinstance(chosen, Character):
+        return chosen
+    shown = [obj for obj in view_layer.objects if _is_part(obj, view_layer)]
+    if isinstance(chosen, bpy.types.Collection):
+        parts = [obj for obj in shown if obj.name in chosen.all_objects and chosen.all_objects[obj.name] == obj]
+        if not parts:
+            raise ObjectError(
+                f'The collection "{chosen.name}" holds no mesh with faces that is shown in this view layer. Show its '
+                "meshes, or choose another one."
+            )
+        return joined(chosen.name, parts)
+    obj: Any = chosen
+    if obj.type == "ARMATURE":
+        parts = [part for part in shown if obj in armatures_above(part)]
+        if not parts:
+            raise ObjectError(
+                f'The armature "{obj.name}" moves no mesh with faces that is shown in this view layer. Show its '
+                "meshes, or choose another one."
+            )
+        return joined(obj.name, parts)
+    if obj.type == "EMPTY":
+        below = set(obj.children_recursive)
+        parts = [part for part in shown if part in below]
+        return joined(obj.name, parts) if parts else obj
+    return obj
+
+
+def vertex_count(side: Side) -> int:
+    """Return how many vertices a side has."""
+    return sum(len(mesh_of(part).vertices) for part in parts_of(side))
+
+
+def vertex_ranges(side: Side) -> list[slice]:
+    """Return for each part of a side which of all vertices are its own."""
+    return _ranges([len(mesh_of(part).vertices) for part in parts_of(side)])
+
+
+def corner_ranges(side: Side) -> list[slice]:
+    """Return for each part of a side which of all corners of faces are its own."""
+    return _ranges([len(mesh_of(part).loops) for part in parts_of(side)])
+
+
+def face_ranges(side: Side) -> list[slice]:
+    """Return for each part of a side which of all faces are its own."""
+    return _ranges([len(mesh_of(part).polygons) for part in parts_of(side)])
+
+
+def edge_ranges(side: Side) -> list[slice]:
+    """Return for each part of a side which of all edges are its own."""
+    return _ranges([len(mesh_of(part).edges) for part in parts_of(side)])
+
+
+def read_surface(side: Side, depsgraph: bpy.types.Depsgraph, *, use_modifiers: bool) -> TriangleMesh:
+    """Read all parts of a side as one surface, as they stand in the world; see `read_mesh`."""
+    meshes = [read_mesh(part, depsgraph, use_modifiers=use_modifiers) for part in parts_of(side)]
+    if len(meshes) == 1:
+        return meshes[0]
+    starts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes)])[:-1]
+    return TriangleMesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]),
+    )
+
+
+def read_faces(side: Side) -> Polygons:
+    """Read the faces of all parts of a side, numbered through; see `read_polygons`."""
+    found = [read_polygons(mesh_of(part)) for part in parts_of(side)]
+    if len(found) == 1:
+        return found[0]
+
+    vertices, corners, edges = (ranges(side) for ranges in (vertex_ranges, corner_ranges, edge_ranges))
+
+    def stacked(name: str, ranges: list[slice]) -> NDArray[np.int64]:
+        return np.concatenate([getattr(one, name) + own.start for one, own in zip(found, ranges, strict=True)])
+
+    starts = [one.starts[:-1] + own.start for one, own in zip(found, corners, strict=True)]
+    return Polygons(
+        np.concatenate([*starts, [corners[-1].stop]]),
+        stacked("corner_vertices", vertices),
+        stacked("edges", vertices),
+        stacked("corner_edges", edges),
+        stacked("triangle_corners", corners),
+    )
+
+
+def own_positions(side: Side) -> NDArray[np.float64]:
+    """Read the vertices of all parts, each in the space of its own object, (n, 3)."""
+    return np.concatenate([vertex_positions(mesh_of(part)) for part in parts_of(side)]).astype(np.float64)
+
+
+def topology_of(side: Side) -> str:
+    """Return a text that is the same as long as vertices and faces of all parts are numbered and connected alike."""
+    return _digest([topology(mesh_of(part)) for part in parts_of(side)])
+
+
+def positions_of(side: Side) -> str:
+    """Return a text that is the same as long as no vertex of a part moves within its object."""
+    return _digest([position_digest(mesh_of(part)) for part in parts_of(side)])
+
+
+def _digest(texts: list[str]) -> str:
+    if len(texts) == 1:
+        return texts[0]
+    return hashlib.blake2b("\0".join(texts).encode(), digest_size=16).hexdigest()
+
+
+def _ranges(counts: list[int]) -> list[slice]:
+    return [slice(int(start), int(end)) for start, end in pairwise(np.cumsum([0, *counts]))]
+
+
+def _is_part(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> bool:
+    """Tell whether an object is a mesh with faces that is shown."""
+    return obj.type == "MESH" and bool(len(mesh_of(obj).polygons)) and obj.visible_get(view_layer=view_layer)
