@@ -19,6 +19,11 @@ from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints
 from .mesh.triangle_mesh import TriangleMesh
 from .retarget.morphing import in_between
+from .retarget.motion.bone_pairing import BonePairing, pair_bones
+from .retarget.motion.key_reduction import reduced_keys, slopes_of
+from .retarget.motion.motion_transfer import MotionSettings, TransferredMotion, transfer_motion, transfer_motion_steps
+from .retarget.motion.paired_weights import paired_weights
+from .retarget.motion.posed_motion import LocalTransforms, Motion, local_transforms, posed_motion
 from .retarget.rig.fitted_rig import FittedRig
 from .retarget.rig.joint_placement import PlacedJoints, place_joints
 from .retarget.rig.rest_pose import RestPose, is_posed, rest_pose
@@ -46,6 +51,7 @@ from .shapes.surface_distances import distances_to_vertices_steps
 __all__ = [
     "SETUPS",
     "Background",
+    "BonePairing",
     "CarriedUVs",
     "CarriedValues",
     "CarriedWeights",
@@ -61,11 +67,14 @@ __all__ = [
     "HierMatchError",
     "Level",
     "LocalFrames",
+    "LocalTransforms",
     "MatchError",
     "MatchQuality",
     "MatchResult",
     "MatchSettings",
     "MeshError",
+    "Motion",
+    "MotionSettings",
     "PlacedJoints",
     "Polygons",
     "Progress",
@@ -83,6 +92,7 @@ __all__ = [
     "SurfacePoints",
     "Symmetriser",
     "SymmetryResult",
+    "TransferredMotion",
     "TriangleMesh",
     "WrappedSurface",
     "bone_frames",
@@ -106,12 +116,17 @@ __all__ = [
     "in_between",
     "is_posed",
     "kept_in_place",
+    "local_transforms",
     "match",
     "match_steps",
     "nearest_regions",
+    "pair_bones",
+    "paired_weights",
     "place_joints",
     "placed_by_map",
+    "posed_motion",
     "put_in",
+    "reduced_keys",
     "refine_map",
     "refine_map_steps",
     "rest_pose",
@@ -119,9 +134,12 @@ __all__ = [
     "retrieve_steps",
     "row_sums",
     "run",
+    "slopes_of",
     "surface_frames",
     "symmetry_map",
     "symmetry_map_steps",
+    "transfer_motion",
+    "transfer_motion_steps",
     "use_processes",
     "within",
     "wrap_steps",

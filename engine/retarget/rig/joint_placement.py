@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .fitted_rig import FittedRig
     from .skeleton import Skeleton
 
-__all__ = ["PlacedJoints", "place_joints", "root_direction", "standing"]
+__all__ = ["PlacedJoints", "least_turns", "place_joints", "root_direction", "standing"]
 
 _SHORTEST = 0.02
 """Least length of a bone, in units of what its scale makes of its length in the source."""
@@ -219,10 +219,10 @@ def _swung(
 ) -> NDArray[np.float64]:
     """Turn rotations (b, 3, 3) by the least angle so that they take vectors (b, 3) to the direction of others."""
     start = unit_vectors(np.einsum("bij,bj->bi", rotations, before))
-    return _least_turns(start, unit_vectors(after)) @ rotations
+    return least_turns(start, unit_vectors(after)) @ rotations
 
 
-def _least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+def least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
     """Find the rotations by the least angle from unit vectors (b, 3) to others, (b, 3, 3)."""
     # Two reflections: first the start to its negative, then that to the end; the other way round near half a turn.
     cosine = (start * end).sum(axis=1)

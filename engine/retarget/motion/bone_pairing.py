@@ -1,0 +1,388 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which bones of two rigs belong together, by the surface that they move and the joints around which they turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+from scipy.spatial import cKDTree
+
+from ...geometry.procrustes import nearest_rotations
+from ...mesh.unit_vectors import unit_vectors
+from ...runtime.errors import RigError
+from ..rig.joint_placement import least_turns, place_joints, standing
+from ..weights.skin_weights import carried, row_sums
+from .segments import Segments
+from .tree_alignment import aligned
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from ..rig.fitted_rig import FittedRig
+    from ..rig.skeleton import Skeleton
+
+__all__ = ["BonePairing", "pair_bones"]
+
+_SHARES = {"subtree": 0.45, "own": 0.35, "place": 0.2}
+"""How much it counts that two bones move the same with all that hangs on them, and by themselves, and turn around the
+same point: they sum to one."""
+
+_LEAST_SCORE = 0.3
+"""Score from which on two bones may be a pair."""
+
+_LEAST_INSIDE = 0.25
+"""Least part of what the smaller of two bones moves that the other moves as well, for them to be a pair."""
+
+_SECOND_INSIDE = 0.75
+"""The same for one that shares its partner with a better one, in units of what any bone there moves of it: two
+neighbors overlap as well where they meet."""
+
+_LEAST_PLACE = 0.5
+"""How near the joints of two bones have to lie that move nothing by themselves."""
+
+_ROOT_REACH = 0.1
+"""How far the joints of such bones may be apart, in units of the body's largest extent."""
+
+_FIXED = 10.0
+"""What a pair is worth that is given: more than any other choice may gain."""
+
+_STRAY_DIRECTION = np.radians(35.0)
+"""A bone whose direction by the joints is further from that by the map keeps the latter: its joint means another
+place."""
+
+_TRUNK_NEAR_AXES = np.radians(20.0)
+"""Bodies whose rotation against each other is no further from one that takes axes to axes are turned by just that."""
+
+
+@dataclass(frozen=True, eq=False)
+class BonePairing:
+    """Pairs of bones, k of them: a bone may be in several where one rig has more bones than the other.
+
+    Attributes
+    ----------
+    sources, targets : (k,) array of int
+        Numbers of the bones in the source's and in the target's rig, in the target's order.
+    scores : (k,) array of float
+        How well they agree, 0 to 1; several sources of one target share it in this proportion.
+    rotations : (k, 3, 3) array of float
+        How the target's surface around the bone is turned against the source's, both at rest.
+    places : (k, 3) array of float
+        Where the head of the source's bone lies in the target.
+    upright : (3, 3) array of float
+        How the target stands as a whole, turned against the source.
+    """
+
+    sources: NDArray[np.int64]
+    targets: NDArray[np.int64]
+    scores: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    places: NDArray[np.float64]
+    upright: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        count = len(self.sources)
+        shapes = {"targets": (count,), "scores": (count,), "rotations": (count, 3, 3), "places": (count, 3)}
+        for name, shape in shapes.items():
+            if np.shape(getattr(self, name)) != shape:
+                raise RigError(f"{count} pairs of bones need {name} of the shape {shape}.")
+
+    def __len__(self) -> int:
+        return len(self.sources)
+
+    def __repr__(self) -> str:
+        return f"<BonePairing: {len(self)} pairs of {len(set(self.targets.tolist()))} bones of the target>"
+
+
+def pair_bones(
+    rig: FittedRig,
+    source: TriangleMesh,
+    target: TriangleMesh,
+    skeleton: Skeleton,
+    weights: csr_array,
+    *,
+    fixed: Sequence[tuple[int, int]] = (),
+    alone: Sequence[int] = (),
+    frames: NDArray[np.float64] | None = None,
+) -> BonePairing:
+    """Pair the bones of a rig that was fitted into a target with those that the target has itself.
+
+    Of two bones three things are compared: what they move together with all bones that hang on them, what they move by
+    themselves, and where their joints are.  Chains are then aligned as chains, from either side, so that three bones
+    may stand for five.  Bones beside them that move what their parent moves, such as twist bones, and bones that move
+    nothing, stay alone.  Names are not known here.
+
+    Parameters
+    ----------
+    rig : FittedRig
+        The source's rig, a bones, fitted into the target.
+    source, target : TriangleMesh
+        The bodies.
+    skeleton : Skeleton
+        The target's own bones, b.
+    weights : (n_y, b) csr_array of float
+        How much each of them moves each vertex of the target.  If no vertex has any, each bone is taken to move what
+        is nearest to it.
+    fixed : sequence of (int, int)
+        Bones of the source and of the target that are a pair whatever the surface says.
+    alone : sequence of int
+        Bones of the target that get no partner.
+    frames : (k, 3, 3) array of float, optional
+        Rotations that the whole body may be turned by, beside those that take axes to axes: see `standing`.
+
+    Returns
+    -------
+    BonePairing
+        The pairs.
+
+    Raises
+    ------
+    RigError
+        If the arrays do not fit together.
+    """
+    if weights.shape != (target.vertex_count, len(skeleton)):
+        raise RigError(
+            f"{target.vertex_count} vertices and {len(skeleton)} bones need weights of that shape, but got "
+            f"{weights.shape}."
+        )
+    for bone in [*(other for _, other in fixed), *alone]:
+        if not 0 <= bone < len(skeleton):
+            raise RigError(f"The target has {len(skeleton)} bones, so there is no bone {bone}.")
+    if not weights.nnz:
+        weights = nearest_bones(target, skeleton)
+    placed = place_joints(rig, source, _any_normals(rig.skeleton))
+    there = carried(rig.weights, rig.target_to_source)
+    joints = rig.skeleton.parents, placed.heads, placed.tails
+    found = _compared(there, weights, target, (type(skeleton)(*joints), skeleton))
+    gains = _gains(found.scores, fixed, alone)
+    trees = rig.skeleton, skeleton
+    chosen = _chosen(gains, found, trees, {target: source for source, target in fixed})
+    upright = _upright(rig, source, frames)
+    sources, targets = chosen.T
+    worth = found.scores[targets, sources]
+    given = {(int(a), int(b)) for a, b in fixed}
+    worth[[pair in given for pair in zip(sources.tolist(), targets.tolist(), strict=True)]] = 1.0
+    rotations = _swung(placed.rotations, sources, targets, rig.skeleton, skeleton)
+    return BonePairing(sources, targets, worth, rotations, placed.heads[sources], upright)
+
+
+def nearest_bones(mesh: TriangleMesh, skeleton: Skeleton) -> csr_array:
+    """Let each bone move the vertices (n) that are nearest to it: weights (n, b) where there are none."""
+    steps = np.linspace(0.05, 0.95, 12)
+    points = skeleton.heads[:, None] + steps[:, None] * (skeleton.tails - skeleton.heads)[:, None]
+    _, found = cKDTree(points.reshape(-1, 3)).query(mesh.vertices)
+    rows = np.arange(mesh.vertex_count)
+    return csr_array((np.ones(len(rows)), (rows, found // len(steps))), shape=(len(rows), len(skeleton)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Comparison:
+    """All bones of two rigs compared.
+
+    `scores` (b, a), minus infinity for what is no pair; `inside` (b, a), what part of the smaller one both move; and
+    whether the source's (a,) and the target's bones (b,) move anything by themselves.
+    """
+
+    scores: NDArray[np.float64]
+    inside: NDArray[np.float64]
+    moving: tuple[NDArray[np.bool_], NDArray[np.bool_]]
+
+
+def _compared(
+    there: csr_array, weights: csr_array, target: TriangleMesh, trees: tuple[Skeleton, Skeleton]
+) -> _Comparison:
+    """Compare all bones: source and target, both as they lie in the target."""
+    sums = [row_sums(each) for each in (there, weights)]
+    areas = np.where((sums[0] > 0) & (sums[1] > 0), target.vertex_areas, 0.0)
+    shares = [
+        csr_array(diags_array(1 / np.where(total > 0, total, 1)) @ each)
+        for each, total in zip((there, weights), sums, strict=True)
+    ]
+    subtrees = [csr_array(each @ _below(tree)) for each, tree in zip(shares, trees, strict=True)]
+    masses, totals = ([areas @ each for each in pair] for pair in (shares, subtrees))
+    common = _common(shares[1], shares[0], areas)
+    own = _part(common, masses[1][:, None] + masses[0] - common)
+    inside = _part(common, np.minimum(masses[1][:, None], masses[0]))
+    shared = (subtrees[1].T @ (diags_array(areas) @ subtrees[0])).toarray()
+    squares = [areas @ each.power(2) for each in subtrees]
+    whole = _part(shared, squares[1][:, None] + squares[0] - shared)
+    extent = np.ptp(target.vertices, axis=0).max()
+    lengths = [np.linalg.norm(tree.tails - tree.heads, axis=1) for tree in trees]
+    reach = np.maximum((lengths[1][:, None] + lengths[0]) / 2, 0.01 * extent)
+    apart = np.linalg.norm(trees[1].heads[:, None] - trees[0].heads, axis=2)
+    place = np.exp(-((apart / reach) ** 2))
+    scores = _SHARES["subtree"] * whole + _SHARES["own"] * own + _SHARES["place"] * place
+    scores[inside < _LEAST_INSIDE] = -np.inf
+    # Two bones that move nothing by themselves, but something hangs on them: roots.
+    near = np.exp(-((apart / (_ROOT_REACH * extent)) ** 2))
+    roots = _SHARES["subtree"] * whole + (1 - _SHARES["subtree"]) * near
+    moving = masses[0] > 0, masses[1] > 0
+    idle = [~mover & (total > 0) for mover, total in zip(moving, totals, strict=True)]
+    both_idle = idle[1][:, None] & idle[0] & (near >= _LEAST_PLACE)
+    return _Comparison(np.where(both_idle, roots, scores), inside, moving)
+
+
+def _below(tree: Skeleton) -> csr_array:
+    """Say which bones (b,) hang on which, and each on itself: (b, b), a column for each that carries others."""
+    pairs = []
+    for bone in range(len(tree)):
+        above = bone
+        while above >= 0:
+            pairs.append((bone, above))
+            above = int(tree.parents[above])
+    rows, columns = np.array(pairs, np.int64).reshape(-1, 2).T
+    return csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(tree), len(tree)))
+
+
+def _part(some: NDArray[np.float64], of: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Divide, and make it zero where there is nothing."""
+    return np.divide(some, of, out=np.zeros_like(some), where=of > 0)
+
+
+def _common(one: csr_array, other: csr_array, areas: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Area that columns of weights (n, b) and (n, a) have in common, as soft sets: the lesser of both, (b, a)."""
+    result = np.zeros(one.shape[1] * other.shape[1])
+    (first, mine), (second, theirs) = _entries(one), _entries(other)
+    for left in range(first.shape[1]):
+        for right in range(second.shape[1]):
+            values = areas * np.minimum(mine[:, left], theirs[:, right])
+            result += np.bincount(first[:, left] * other.shape[1] + second[:, right], values, len(result))
+    return result.reshape(one.shape[1], -1)
+
+
+def _entries(weights: csr_array) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Columns and values (n, k) of the entries of each row, filled up with zeros in the first column."""
+    counts = np.diff(weights.indptr)
+    rows = np.repeat(np.arange(len(counts)), counts)
+    places = np.arange(weights.nnz) - np.repeat(weights.indptr[:-1], counts)
+    columns, values = (
+        np.zeros((len(counts), counts.max(initial=0)), np.int64),
+        np.zeros((len(counts), counts.max(initial=0))),
+    )
+    columns[rows, places], values[rows, places] = weights.indices, weights.data
+    return columns, values
+
+
+def _gains(scores: NDArray[np.float64], fixed: Sequence[tuple[int, int]], alone: Sequence[int]) -> NDArray[np.float64]:
+    """Find what each pair is worth, (b, a), with those that are given and those that are forbidden."""
+    gains = scores - _LEAST_SCORE
+    for source, target in fixed:
+        gains[target] = -np.inf
+        gains[target, source] = _FIXED
+    gains[list(alone)] = -np.inf
+    return gains
+
+
+def _chosen(
+    gains: NDArray[np.float64],
+    found: _Comparison,
+    trees: tuple[Skeleton, Skeleton],
+    given: dict[int, int],
+) -> NDArray[np.int64]:
+    """Choose the pairs, (k, 2): the target's bones look for partners, and then those of the source that have none."""
+    source_bones, bones = trees
+    forth = aligned(gains, bones, source_bones, found.moving[0])
+    back = aligned(gains.T, source_bones, bones, found.moving[1])
+    pairs = {(int(source), target) for target, source in enumerate(forth) if source >= 0}
+    pairs |= {
+        (source, int(target))
+        for source, target in enumerate(back)
+        if target >= 0 and source not in forth and int(target) not in given
+    }
+    kept = _without_offshoots(pairs, trees, gains, found.inside)
+    kept |= {(source, target) for target, source in given.items()}
+    kept = {(source, target) for source, target in kept if given.get(target, source) == source}
+    return np.array(sorted(kept, key=lambda pair: (pair[1], pair[0])), np.int64).reshape(-1, 2)
+
+
+def _without_offshoots(
+    pairs: set[tuple[int, int]],
+    trees: tuple[Skeleton, Skeleton],
+    gains: NDArray[np.float64],
+    inside: NDArray[np.float64],
+) -> set[tuple[int, int]]:
+    """Leave out bones that share the partner of a better one, unless the chain goes on below them."""
+    for side, tree in enumerate(trees):
+        usual = inside / np.maximum(inside.max(axis=side, keepdims=True), np.finfo(float).tiny)
+        for partner in {pair[1 - side] for pair in pairs}:
+            rivals = [pair for pair in pairs if pair[1 - side] == partner]
+            best = max(rivals, key=lambda pair: gains[pair[1], pair[0]])
+            for pair in rivals:
+                within = usual[pair[1], pair[0]] >= _SECOND_INSIDE and _in_chain(pair, best, pairs, side, tree)
+                if pair != best and not within:
+                    pairs = pairs - {pair}
+    return pairs
+
+
+def _in_chain(
+    pair: tuple[int, int], best: tuple[int, int], pairs: set[tuple[int, int]], side: int, tree: Skeleton
+) -> bool:
+    """Tell whether a bone lies in one chain with a better one, and the chain goes on to bones of other partners."""
+    one, other = pair[side], best[side]
+    lower = one if other in _ancestors(tree, one) else other if one in _ancestors(tree, other) else -1
+    if lower < 0:
+        return False
+    return any(lower in _ancestors(tree, each[side]) and each[1 - side] != pair[1 - side] for each in pairs)
+
+
+def _ancestors(tree: Skeleton, bone: int) -> set[int]:
+    """Bones that a bone hangs on."""
+    found, above = set(), int(tree.parents[bone])
+    while above >= 0:
+        found.add(above)
+        above = int(tree.parents[above])
+    return found
+
+
+def _any_normals(skeleton: Skeleton) -> NDArray[np.float64]:
+    """Give each bone some direction across it, (b, 3)."""
+    along = unit_vectors(skeleton.tails - skeleton.heads)
+    other = np.eye(3)[np.abs(along).argmin(axis=1)]
+    return unit_vectors(other - (other * along).sum(axis=1, keepdims=True) * along)
+
+
+def _upright(rig: FittedRig, source: TriangleMesh, frames: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Find how the target stands: turned by what takes axes to axes, or by one of the frames, if that is near."""
+    middle = standing(rig, source)
+    axes = np.array(
+        [np.eye(3)[list(order)] for order in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (1, 0, 2), (2, 1, 0))]
+    )
+    signs = np.array(np.meshgrid(*[[1, -1]] * 3)).reshape(3, -1).T
+    cubes = (signs[:, None, :, None] * axes).reshape(-1, 3, 3)
+    known = cubes[np.linalg.det(cubes) > 0]
+    if frames is not None and len(frames):
+        known = np.concatenate([known, (np.asarray(frames)[:, None] @ known).reshape(-1, 3, 3)])
+    cosines = (np.einsum("kij,ij->k", known, middle) - 1) / 2
+    return known[cosines.argmax()] if cosines.max() > np.cos(_TRUNK_NEAR_AXES) else middle
+
+
+def _swung(
+    rotations: NDArray[np.float64],
+    sources: NDArray[np.int64],
+    targets: NDArray[np.int64],
+    source_bones: Skeleton,
+    bones: Skeleton,
+) -> NDArray[np.float64]:
+    """Rotations (k, 3, 3) of the pairs: about the bones as the surface is turned, along them as the joints lie.
+
+    Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.
+    """
+    turned = rotations[sources].copy()
+    parts = Segments.of(sources, targets, source_bones, bones)
+    for part in range(len(parts)):
+        below = parts.below(part)
+        if len(below) != 1 or not (parts.single[part] and parts.single[below[0]]):
+            continue
+        row, end = parts.rows[part][0], parts.rows[below[0]][0]
+        directions = [
+            tree.heads[ends[end]] - tree.heads[ends[row]] for tree, ends in ((source_bones, sources), (bones, targets))
+        ]
+        start, goal = unit_vectors(np.stack([turned[row] @ directions[0], directions[1]]))
+        if start @ goal > np.cos(_STRAY_DIRECTION):
+            turned[row] = least_turns(start[None], goal[None])[0] @ turned[row]
+    return nearest_rotations(turned) if len(turned) else turned

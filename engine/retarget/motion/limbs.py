@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Limbs of two bones and what is at their ends, such as legs and arms, found in two paired rigs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..rig.skeleton import Skeleton
+    from .posed_motion import Motion
+    from .segments import Segments
+
+__all__ = ["Limb", "limbs_of"]
+
+_NEAR_GROUND = 0.15
+"""How high the end of a leg may be above the lowest joint at rest, in units of the rig's height."""
+
+_SHORTEST = 0.1
+"""Least length of a limb, in units of the largest extent of the rig: what is shorter is a finger or an ear."""
+
+Joint = tuple[int, bool]
+"""A bone, and whether its tail is meant and not its head."""
+
+
+@dataclass(frozen=True, eq=False)
+class Limb:
+    """A limb: two segments in a row, in both rigs.
+
+    Attributes
+    ----------
+    parts : (int, int)
+        The upper and the lower segment.
+    upper, lower : arrays of int
+        The target's bones in them.
+    source_joints, target_joints : tuple of four joints
+        Where the upper segment begins, the lower one begins and ends, and a further point beyond, such as ankle and
+        ball of a foot; the end twice if there is none.
+    foot : bool
+        Whether it reaches down to the ground in both rigs.
+    source_length, target_length : float
+        Length of both segments together at rest.
+    """
+
+    parts: tuple[int, int]
+    upper: NDArray[np.int64]
+    lower: NDArray[np.int64]
+    source_joints: tuple[Joint, Joint, Joint, Joint]
+    target_joints: tuple[Joint, Joint, Joint, Joint]
+    foot: bool
+    source_length: float
+    target_length: float
+
+    def joints(self, posed: Motion) -> NDArray[np.float64]:
+        """Where the target's upper segment begins, the lower one begins, and ends, (f, 3, 3)."""
+        return np.stack([_place(posed, joint) for joint in self.target_joints[:3]], axis=-2)
+
+    def target_points(self, posed: Motion | Skeleton) -> NDArray[np.float64]:
+        """Where the target's limb ends, and the point beyond, (f, 2, 3) or (2, 3)."""
+        return np.stack([_place(posed, joint) for joint in self.target_joints[2:]], axis=-2)
+
+    def source_points(self, posed: Motion | Skeleton) -> NDArray[np.float64]:
+        """Return the same two of the source."""
+        return np.stack([_place(posed, joint) for joint in self.source_joints[2:]], axis=-2)
+
+
+def _place(posed: Motion | Skeleton, joint: Joint) -> NDArray[np.float64]:
+    ends: NDArray[np.float64] = (posed.tails if joint[1] else posed.heads)[..., joint[0], :]
+    return ends
+
+
+def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: NDArray[np.float64]) -> list[Limb]:
+    """Find the limbs: of each way from a tip up to the trunk the two longest segments in a row that do not branch.
+
+    Parameters
+    ----------
+    segments : Segments
+        What stands for what in the two rigs.
+    source, target : Skeleton
+        Their bones at rest.
+    ups : (2, 3) array of float
+        Directions away from the ground in either's space, of length one.
+
+    Returns
+    -------
+    list of Limb
+        Legs and arms, wings, and whatever else is bent in two.
+    """
+    lowest, heights, extents = [], [], []
+    for tree, bones, up in ((source, segments.sources, ups[0]), (target, segments.targets, ups[1])):
+        used = np.concatenate([np.zeros(0, np.int64), *bones])
+        levels = np.concatenate([tree.heads[used], tree.tails[used]])
+        lowest.append((levels @ up).min(initial=np.inf))
+        heights.append(np.ptp(levels @ up) if len(levels) else 0.0)
+        extents.append(np.ptp(levels, axis=0).max() if len(levels) else 0.0)
+    found: dict[tuple[int, int], Limb] = {}
+    branches = np.bincount(segments.parents[segments.parents >= 0], minlength=len(segments))
+    for tip in np.flatnonzero(branches == 0):
+        way = [int(tip)]
+        while segments.parents[way[-1]] >= 0:
+            way.append(int(segments.parents[way[-1]]))
+        starts = [[(int(bones[part][0]), False) for part in way] for bones in (segments.sources, segments.targets)]
+        ends = [
+            [(int(bones[tip][-1]), True), *begin[:-1]]
+            for bones, begin in ((segments.sources, starts[0]), (segments.targets, starts[1]))
+        ]
+        lengths = np.array(
+            [
+                [np.linalg.norm(_place(tree, a) - _place(tree, b)) for a, b in zip(*each, strict=True)]
+                for tree, *each in ((source, starts[0], ends[0]), (target, starts[1], ends[1]))
+            ]
+        )
+        pairs = [number for number in range(len(way) - 2) if branches[way[number + 1]] == 1]
+        if not pairs:
+            continue
+        low = max(pairs, key=lambda number: (lengths[:, number] + lengths[:, number + 1]).sum())
+        long = lengths[:, low] + lengths[:, low + 1]
+        key = way[low + 1], way[low]
+        if key in found or (long < _SHORTEST * np.array(extents)).any():
+            continue
+        joints = []
+        for side in range(2):
+            end = ends[side][low]
+            beyond = ends[side][low - 1] if low > 0 else end
+            joints.append((starts[side][low + 1], starts[side][low], end, beyond))
+        reach = [
+            min(_place(tree, joint) @ up for joint in each[2:]) - level
+            for tree, each, up, level in zip((source, target), joints, ups, lowest, strict=True)
+        ]
+        foot = all(high < _NEAR_GROUND * height for high, height in zip(reach, heights, strict=True))
+        bones = segments.targets[key[0]], segments.targets[key[1]]
+        found[key] = Limb(key, *bones, joints[0], joints[1], foot, float(long[0]), float(long[1]))
+    return list(found.values())

@@ -1,0 +1,380 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion of one skeleton as motion of another whose bones are paired with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
+
+from ...geometry.procrustes import nearest_rotations
+from ...runtime.errors import RigError
+from ...runtime.progress import Progress, run
+from .contacts import contacts_of, held_shifts
+from .hand_contacts import BodyLine, hand_shifts
+from .limbs import Limb, limbs_of
+from .posed_motion import Motion
+from .segments import Segments
+from .two_bone_ik import bent_limb, needed_drop
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...runtime.progress import Steps
+    from ..rig.skeleton import Skeleton
+    from .bone_pairing import BonePairing
+
+__all__ = ["MotionSettings", "TransferredMotion", "transfer_motion", "transfer_motion_steps"]
+
+_RATIOS = (1e-5, 1e5)
+"""Ratios of sizes outside of these come from rigs without extent; units of a thousand and of one are common."""
+
+_SMOOTH = 0.1
+"""Seconds over which the body goes down where a leg would be too short."""
+
+_ALIKE = 0.2
+"""Part of their length by which two arms differ at most."""
+
+
+@dataclass(frozen=True)
+class MotionSettings:
+    """How motion is transferred.
+
+    Attributes
+    ----------
+    feet : bool
+        Whether feet that stand still in the source stand still in the target.
+    hands : bool
+        Whether hands that touch the body in the source touch it in the target.
+    stride : float
+        How long steps are, in units of what the legs' lengths make of the source's.
+    in_place : bool
+        Whether the way that the target covers on the ground is taken out.
+    rate : float
+        Poses per second.
+    """
+
+    feet: bool = False
+    hands: bool = False
+    stride: float = 1.0
+    in_place: bool = False
+    rate: float = 24.0
+
+
+@dataclass(frozen=True, eq=False)
+class TransferredMotion:
+    """Motion of a target.
+
+    Attributes
+    ----------
+    motion : Motion
+        The poses of all its bones.
+    moved : (b,) array of bool
+        Which of them turn by themselves: those with partners.
+    placed : (b,) array of bool
+        Which also have a place of their own: the topmost ones, and those that hang elsewhere than on what holds them.
+    scale : float
+        How many times as long the target's legs are.
+    """
+
+    motion: Motion
+    moved: NDArray[np.bool_]
+    placed: NDArray[np.bool_]
+    scale: float
+
+
+def transfer_motion(
+    motion: Motion,
+    pairing: BonePairing,
+    target: Skeleton,
+    settings: MotionSettings | None = None,
+    *,
+    ups: NDArray[np.float64] | None = None,
+) -> TransferredMotion:
+    """Transfer motion; see `transfer_motion_steps`."""
+    return run(transfer_motion_steps(motion, pairing, target, settings, ups=ups))
+
+
+def transfer_motion_steps(
+    motion: Motion,
+    pairing: BonePairing,
+    target: Skeleton,
+    settings: MotionSettings | None = None,
+    *,
+    ups: NDArray[np.float64] | None = None,
+) -> Steps[TransferredMotion]:
+    r"""Transfer motion from one skeleton to another, in steps.
+
+    If the source's bone turns by :math:`D` from rest, the target's surface is turned by :math:`M` against the
+    source's around it, both at rest, and the target as a whole by :math:`G`, then the target's bone turns by
+    :math:`G D M^T`: its surface then lies as the source's does, turned by :math:`G`, whatever the rest poses and the
+    axes of the bones are.  Bones without a partner go with what they hang on.  The way of the topmost bones is scaled
+    by the lengths of the legs.
+
+    Parameters
+    ----------
+    motion : Motion
+        The source's poses, f.
+    pairing : BonePairing
+        The pairs.
+    target : Skeleton
+        The target's bones at rest, b.
+    settings : MotionSettings, optional
+        How.
+    ups : (2, 3) array of float, optional
+        Directions away from the ground in the source's and the target's space; z if not given.
+
+    Returns
+    -------
+    TransferredMotion
+        The target's poses.
+
+    Raises
+    ------
+    RigError
+        If there is no pair, or pairs name bones that there are not.
+    """
+    settings = settings or MotionSettings()
+    _check(motion, pairing, target, settings)
+    ups = np.array([[0.0, 0, 1]] * 2) if ups is None else ups / np.linalg.norm(ups, axis=1, keepdims=True)
+    yield Progress(0.0, "Transferring rotations")
+    body = _Body(motion.skeleton, pairing, target, ups)
+    turns = body.turns(motion.turns)
+    yield Progress(0.3, "Posing the bones")
+    paths = body.paths(motion.heads, turns, settings.stride)
+    posed = body.posed(turns, paths)
+    feet = [limb for limb in body.limbs if limb.foot]
+    if settings.feet and feet and len(motion) > 1:
+        yield Progress(0.5, "Keeping the feet")
+        goals, drop = _with_feet(body, motion, posed, feet, settings)
+        paths = {part: path - drop[:, None, None] * ups[1] for part, path in paths.items()}
+        turns = body.bent(turns, paths, feet, goals)
+        posed = body.posed(turns, paths)
+    arms = _arms(body.limbs)
+    if settings.hands and arms:
+        yield Progress(0.75, "Keeping the hands")
+        turns = body.bent(turns, paths, arms, _hand_goals(body, motion, posed, arms))
+        posed = body.posed(turns, paths)
+    if settings.in_place and len(motion) > 1:
+        posed = _in_place(posed, ups[1], np.flatnonzero(body.placed))
+    return TransferredMotion(posed, body.moved, body.placed, body.scale)
+
+
+def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: MotionSettings) -> None:
+    if not len(pairing):
+        raise RigError("No bones of the two rigs are paired. Pair them first.")
+    if pairing.sources.max() >= len(motion.skeleton) or pairing.targets.max() >= len(target):
+        raise RigError("The pairs name bones that the rigs do not have. Pair the bones again.")
+    if not settings.rate > 0 or not settings.stride >= 0:
+        raise RigError("The frame rate must be larger than zero, and the stride must not be negative.")
+
+
+class _Body:
+    """The target's bones, and what moves them."""
+
+    def __init__(self, source: Skeleton, pairing: BonePairing, target: Skeleton, ups: NDArray[np.float64]) -> None:
+        self.source, self.pairing, self.target, self.ups = source, pairing, target, ups
+        self.segments = Segments.of(pairing.sources, pairing.targets, source, target)
+        self.moved = np.zeros(len(target), bool)
+        self.moved[pairing.targets] = True
+        # Of each segment the bones that hang on no other of it.
+        self.tops = [
+            [int(bone) for bone in bones if not set(_ancestors(target, int(bone))) & set(bones.tolist())]
+            for bones in self.segments.targets
+        ]
+        self.placed = np.zeros(len(target), bool)
+        self._holders = target.parents.copy()
+        for part, above in enumerate(self.segments.parents):
+            if above < 0 or not self.segments.carried[part]:
+                self.placed[self.tops[part]] = True
+                self._holders[self.tops[part]] = self.segments.targets[above][-1] if above >= 0 else -1
+        self._order = self._in_order()
+        self.limbs = limbs_of(self.segments, source, target, ups)
+        self.scale = self._scale()
+        self._rise = 0.0
+        # In the pose in which the source rests the target's feet are to be as high as they are in its own.
+        feet = [limb for limb in self.limbs if limb.foot]
+        if feet:
+            resting = self.rest_pose()
+            rises = [(limb.target_points(resting)[0] - limb.target_points(target))[0] @ ups[1] for limb in feet]
+            self._rise = float(np.mean(rises))
+
+    def rest_pose(self) -> Motion:
+        """Pose the target as the source rests."""
+        heads = self.source.heads[None]
+        turns = self.turns(np.tile(np.eye(3), (1, len(self.source), 1, 1)))
+        return self.posed(turns, self.paths(heads, turns, 1.0))
+
+    def turns(self, source_turns: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How the target's bones with partners turn, (f, b, 3, 3); the others are left at rest."""
+        pairing = self.pairing
+        turned = pairing.upright @ source_turns[:, pairing.sources] @ np.swapaxes(pairing.rotations, -1, -2)
+        result = np.tile(np.eye(3), (len(source_turns), len(self.target), 1, 1))
+        order = np.argsort(pairing.targets, kind="stable")
+        bones, starts, counts = np.unique(pairing.targets[order], return_index=True, return_counts=True)
+        result[:, bones] = turned[:, order[starts]]
+        for bone, start, count in zip(bones, starts, counts, strict=True):
+            if count > 1:
+                rows = order[start : start + count]
+                shares = np.maximum(pairing.scores[rows], 1e-3)
+                blended = np.einsum("k,fkij->fij", shares / shares.sum(), turned[:, rows])
+                result[:, bone] = nearest_rotations(blended)
+        return result
+
+    def _scale(self) -> float:
+        """How many times as long the target's legs are; without legs, how many times as large the skeleton is."""
+        feet = [limb for limb in self.limbs if limb.foot]
+        lengths = sum(limb.source_length for limb in feet), sum(limb.target_length for limb in feet)
+        if not feet:
+            points = self.source.heads[self.pairing.sources], self.target.heads[self.pairing.targets]
+            lengths = tuple(float(np.linalg.norm(each - each.mean(axis=0))) for each in points)
+        ratio = lengths[1] / lengths[0] if min(lengths) > 0 else 1.0
+        return float(ratio) if _RATIOS[0] < ratio < _RATIOS[1] else 1.0
+
+    def paths(
+        self, source_heads: NDArray[np.float64], turns: NDArray[np.float64], stride: float
+    ) -> dict[int, NDArray[np.float64]]:
+        """Where the first bones of the segments are that hang on nothing, (f, t, 3) each."""
+        up, pairing, segments = self.ups[1], self.pairing, self.segments
+        paths = {}
+        for part in np.flatnonzero(segments.parents < 0):
+            first, rows = segments.sources[part][0], segments.rows[part]
+            way = self.scale * (source_heads[:, first] - self.source.heads[first]) @ pairing.upright.T
+            way = stride * way + (1 - stride) * (way @ up)[:, None] * up - self._rise * up
+            # The source's joint goes that way, and the target's bones turn around it.
+            joint = pairing.places[rows[np.flatnonzero(pairing.sources[rows] == first)[0]]]
+            offsets = self.target.heads[self.tops[part]] - joint
+            paths[int(part)] = (joint + way)[:, None] + np.einsum("ftij,tj->fti", turns[:, self.tops[part]], offsets)
+        return paths
+
+    def posed(self, turns: NDArray[np.float64], paths: dict[int, NDArray[np.float64]]) -> Motion:
+        """Pose all bones: those without partners go with their parents."""
+        target = self.target
+        full, heads = turns.copy(), np.tile(target.heads, (len(turns), 1, 1))
+        own = {bone: path[:, number] for part, path in paths.items() for number, bone in enumerate(self.tops[part])}
+        for bone in self._order:
+            parent, holder = target.parents[bone], self._holders[bone]
+            if not self.moved[bone] and parent >= 0:
+                full[:, bone] = full[:, parent]
+            if bone in own:
+                heads[:, bone] = own[bone]
+            elif holder >= 0:
+                heads[:, bone] = heads[:, holder] + full[:, holder] @ (target.heads[bone] - target.heads[holder])
+        return Motion(target, full, heads)
+
+    def bent(
+        self,
+        turns: NDArray[np.float64],
+        paths: dict[int, NDArray[np.float64]],
+        limbs: list[Limb],
+        goals: list[NDArray[np.float64]],
+    ) -> NDArray[np.float64]:
+        """Bend limbs so that they end at goals (f, 3); what is beyond stays turned as it was."""
+        posed, result = self.posed(turns, paths), turns.copy()
+        for limb, goal in zip(limbs, goals, strict=True):
+            upper, lower = bent_limb(limb.joints(posed), goal)
+            result[:, limb.upper] = upper[:, None] @ turns[:, limb.upper]
+            result[:, limb.lower] = lower[:, None] @ turns[:, limb.lower]
+        return result
+
+    def beyond(self, part: int) -> list[int]:
+        """All segments that hang on one."""
+        found, layer = [], self.segments.below(part).tolist()
+        while layer:
+            found += layer
+            layer = [below for each in layer for below in self.segments.below(each).tolist()]
+        return found
+
+    def _in_order(self) -> NDArray[np.int64]:
+        """Order the bones, each after its parent and what holds it."""
+        found: list[int] = []
+        left, known = self.target.order.tolist(), {-1}
+        while left:
+            ready = [bone for bone in left if self._holders[bone] in known and self.target.parents[bone] in known]
+            ready = ready or left  # what holds one another in a ring stays in the order of the rig
+            found += ready
+            known.update(ready)
+            left = [bone for bone in left if bone not in known]
+        return np.array(found, np.int64)
+
+
+def _ancestors(tree: Skeleton, bone: int) -> list[int]:
+    found, above = [], int(tree.parents[bone])
+    while above >= 0:
+        found.append(above)
+        above = int(tree.parents[above])
+    return found
+
+
+def _with_feet(
+    body: _Body, motion: Motion, posed: Motion, feet: list[Limb], settings: MotionSettings
+) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
+    """Find where legs are to end so that feet stay where they stand, (f, 3) each, and how much lower the body is."""
+    up, length = body.ups[0], float(np.mean([limb.source_length for limb in feet]))
+    goals, levels = [], body.rest_pose()
+    for limb in feet:
+        points = limb.source_points(motion)
+        touching = contacts_of(points, up, length, settings.rate)
+        heights = body.scale * (points - limb.source_points(body.source)) @ up
+        heights = heights + limb.target_points(levels)[0] @ body.ups[1]
+        shifts = held_shifts(limb.target_points(posed), touching, heights, body.ups[1], settings.rate)
+        goals.append(limb.joints(posed)[:, 2] + shifts)
+    drops = [needed_drop(limb.joints(posed), goal, body.ups[1]) for limb, goal in zip(feet, goals, strict=True)]
+    return goals, _smoothed(np.max(drops, axis=0), settings.rate)
+
+
+def _smoothed(drops: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Make values (f,) smooth, and nowhere less than they were."""
+    span = max(1, round(_SMOOTH * rate))
+    highest = maximum_filter1d(drops, 2 * span + 1, mode="nearest")
+    return np.asarray(uniform_filter1d(highest, 2 * span + 1, mode="nearest"))
+
+
+def _hand_goals(body: _Body, motion: Motion, posed: Motion, arms: list[Limb]) -> list[NDArray[np.float64]]:
+    """Find where arms are to end so that hands are to the body as they are in the source, (f, 3) each."""
+    lines, owners = [], []
+    segments = body.segments
+    for part in range(len(segments)):
+        ends = []
+        for bones, each in ((segments.sources, motion), (segments.targets, posed)):
+            below = segments.below(part)
+            last = each.heads[:, bones[below[0]][0]] if len(below) else each.tails[:, bones[part][-1]]
+            ends.append(np.stack([each.heads[:, bones[part][0]], last], axis=1))
+        lines.append(BodyLine(*ends))
+        owners.append(part)
+    goals = []
+    for limb in arms:
+        own = {*limb.parts, *body.beyond(limb.parts[1])}
+        others = {part for arm in arms if arm is not limb for part in (*arm.parts, *body.beyond(arm.parts[1]))}
+        used = [
+            replace(line, share=0.5 if part in others else 1.0)
+            for part, line in zip(owners, lines, strict=True)
+            if part not in own and part != segments.parents[limb.parts[0]]
+        ]
+        palms = limb.source_points(motion).mean(axis=1), limb.target_points(posed).mean(axis=1)
+        shift = hand_shifts(*palms, used, limb.source_length, body.scale * body.pairing.upright)
+        goals.append(limb.joints(posed)[:, 2] + shift)
+    return goals
+
+
+def _arms(limbs: list[Limb]) -> list[Limb]:
+    """Choose the limbs that come in pairs and are no legs: a neck with a head is none."""
+    free = [limb for limb in limbs if not limb.foot]
+    return [
+        limb
+        for limb in free
+        if any(
+            other is not limb and abs(other.source_length - limb.source_length) < _ALIKE * limb.source_length
+            for other in free
+        )
+    ]
+
+
+def _in_place(posed: Motion, up: NDArray[np.float64], roots: NDArray[np.int64]) -> Motion:
+    """Take out the way along the ground from the first pose to the last."""
+    way = (posed.heads[-1, roots] - posed.heads[0, roots]).mean(axis=0)
+    way = way - (way @ up) * up
+    gone = np.linspace(0, 1, len(posed))[:, None, None] * way
+    return Motion(posed.skeleton, posed.turns, posed.heads - gone)

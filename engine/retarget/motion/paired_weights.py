@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Weights of one skeleton as weights of another whose bones are paired with it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...runtime.errors import RigError
+from ..weights.skin_weights import row_sums
+from .segments import Segments
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..rig.skeleton import Skeleton
+    from .bone_pairing import BonePairing
+
+__all__ = ["paired_weights"]
+
+_WIDTH = 1.0
+"""Over what part of the shorter of two bones weights go over from one to the other at the joint between them."""
+
+_ELSEWHERE = 0.25
+"""How far apart the same joint of two chains may be, in units of the shorter bone there: further ones cut the chains in
+other places."""
+
+
+def paired_weights(
+    weights: csr_array,
+    vertices: NDArray[np.float64],
+    pairing: BonePairing,
+    source_bones: Skeleton,
+    bones: Skeleton,
+    *,
+    sums: bool = True,
+) -> csr_array:
+    """Hand the weights of a source's bones to those of a target's that stand for them.
+
+    Where several bones of the target stand for one or more of the source, the vertices are shared out along the chain
+    by where they lie; where one stands for several, it gets their sum.  What a bone without a partner moves goes to
+    the nearest one above it that has one, or else to the nearest below.
+
+    Parameters
+    ----------
+    weights : (n, a) csr_array of float
+        Weights of the source's bones at the target's vertices, carried across the map.
+    vertices : (n, 3) array of float
+        Where these are, at rest.
+    pairing : BonePairing
+        The pairs.
+    source_bones, bones : Skeleton
+        The bones, a and b, either in its own space.
+    sums : bool
+        Whether vertices keep the sum of their weights; else what has no partner at all is left out.
+
+    Returns
+    -------
+    (n, b) csr_array of float
+        Weights of the target's bones.
+
+    Raises
+    ------
+    RigError
+        If nothing is paired, or the arrays do not fit together.
+    """
+    if weights.shape != (len(vertices), len(source_bones)):
+        raise RigError(
+            f"Weights of {len(vertices)} vertices and {len(source_bones)} bones are needed, but got {weights.shape}."
+        )
+    if not len(pairing):
+        raise RigError("No bones of the two rigs are paired. Pair them first.")
+    segments = Segments.of(pairing.sources, pairing.targets, source_bones, bones)
+    owners = _owners(segments, source_bones)
+    parts: list[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]] = []
+    columns = weights.tocsc()
+    for members, chain in _chains(segments, pairing, bones):
+        own = np.flatnonzero(np.isin(owners, members))
+        moved = np.asarray(columns[:, own].sum(axis=1)).ravel()
+        rows = np.flatnonzero(moved > 0)
+        shares = _along(vertices[rows], chain, bones) if len(chain) > 1 else np.ones((len(rows), 1))
+        for number, bone in enumerate(chain):
+            parts.append((rows, np.full(len(rows), bone), moved[rows] * shares[:, number]))
+    rows, places, values = (np.concatenate(each) for each in zip(*parts, strict=True))
+    handed = csr_array((values, (rows, places)), shape=(len(vertices), len(bones)))
+    handed.eliminate_zeros()
+    if sums:
+        totals = row_sums(handed)
+        factors = np.divide(row_sums(weights), totals, out=np.zeros_like(totals), where=totals > 0)
+        handed.data *= np.repeat(factors, np.diff(handed.indptr))
+    return handed
+
+
+def _chains(segments: Segments, pairing: BonePairing, bones: Skeleton) -> list[tuple[list[int], NDArray[np.int64]]]:
+    """Put segments in a row together that are cut in other places in the target: their numbers, and the target's bones.
+
+    Three bones of a spine may each stand for one or two of five, whose joints are not those of the three.
+    """
+    joined = np.arange(len(segments))
+    for part, above in enumerate(segments.parents):
+        if above < 0 or len(segments.below(int(above))) != 1 or segments.single[[part, above]].all():
+            continue
+        first, last = segments.targets[part][0], segments.targets[above][-1]
+        row = segments.rows[part][pairing.sources[segments.rows[part]] == segments.sources[part][0]][0]
+        lengths = [np.linalg.norm(bones.tails[bone] - bones.heads[bone]) for bone in (first, last)]
+        if np.linalg.norm(pairing.places[row] - bones.heads[first]) > _ELSEWHERE * min(lengths):
+            joined[joined == joined[part]] = joined[above]
+    chains = []
+    for number in np.unique(joined):
+        parts = np.flatnonzero(joined == number).tolist()
+        members = np.concatenate([segments.targets[part] for part in parts])
+        chains.append((parts, bones.order[np.isin(bones.order, members)]))
+    return chains
+
+
+def _owners(segments: Segments, tree: Skeleton) -> NDArray[np.int64]:
+    """For each bone of the source (a,) the segment that gets what it moves; -1 if there is none above nor below."""
+    owners = np.full(len(tree), -1)
+    for part, members in enumerate(segments.sources):
+        owners[members] = part
+    for bone in tree.order:
+        if owners[bone] < 0 and tree.parents[bone] >= 0:
+            owners[bone] = owners[tree.parents[bone]]
+    for bone in tree.order[::-1]:  # a root without a partner: its first child has the next best one
+        parent = tree.parents[bone]
+        if parent >= 0 and owners[parent] < 0:
+            owners[parent] = owners[bone]
+    return owners
+
+
+def _along(points: NDArray[np.float64], chain: NDArray[np.int64], bones: Skeleton) -> NDArray[np.float64]:
+    """Share points (n, 3) out along a chain of bones (c,): they go over smoothly from one to the next, (n, c)."""
+    joints = np.concatenate([bones.heads[chain], bones.tails[chain[-1]][None]])
+    steps = np.diff(joints, axis=0)
+    squares = np.maximum((steps**2).sum(axis=1), np.finfo(float).tiny)
+    lengths = np.sqrt(squares)
+    offsets = points[:, None] - joints[:-1]
+    shares = np.einsum("ncd,cd->nc", offsets, steps) / squares
+    nearest = joints[:-1] + shares.clip(0, 1)[:, :, None] * steps
+    closest = np.linalg.norm(points[:, None] - nearest, axis=2).argmin(axis=1)
+    # The place along the whole chain, measured from its start; beyond its ends nothing goes over.
+    starts = np.append(0, np.cumsum(lengths))
+    rows = np.arange(len(points))
+    place = starts[closest] + shares[rows, closest].clip(0, 1) * lengths[closest]
+    result = np.ones((len(points), len(chain)))
+    for joint in range(1, len(chain)):
+        width = max(_WIDTH * min(lengths[joint - 1], lengths[joint]), np.finfo(float).tiny)
+        gone = ((place - starts[joint]) / width + 0.5).clip(0, 1)
+        gone = gone * gone * (3 - 2 * gone)
+        result[:, :joint] *= (1 - gone)[:, None]
+        result[:, joint:] *= gone[:, None]
+    return result / result.sum(axis=1, keepdims=True)

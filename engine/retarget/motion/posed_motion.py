@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A skeleton in motion: how every bone is turned and where it is, from its own transforms and back to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...geometry.procrustes import nearest_rotations
+from ...runtime.errors import RigError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..rig.skeleton import Skeleton
+
+__all__ = ["LocalTransforms", "Motion", "local_transforms", "posed_motion"]
+
+_SCALED = 1e-5
+"""From what difference from one on the scale of a bone counts."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Poses of a skeleton, f of them, in the skeleton's space.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+        The bones at rest, b.
+    turns : (f, b, 3, 3) array of float
+        How each bone is turned from rest.
+    heads : (f, b, 3) array of float
+        Where its head is.
+    """
+
+    skeleton: Skeleton
+    turns: NDArray[np.float64]
+    heads: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        count = len(self.skeleton)
+        if self.turns.shape[1:] != (count, 3, 3) or self.heads.shape != (*self.turns.shape[:2], 3):
+            raise RigError(
+                f"The motion of {count} bones needs a rotation and a place for each of them in each pose, but got "
+                f"arrays of the shapes {self.turns.shape} and {self.heads.shape}."
+            )
+        if not (np.isfinite(self.turns).all() and np.isfinite(self.heads).all()):
+            raise RigError("The motion has a pose with a number that is not finite.")
+
+    def __len__(self) -> int:
+        return len(self.turns)
+
+    def __repr__(self) -> str:
+        return f"<Motion: {len(self)} poses of {len(self.skeleton)} bones>"
+
+    @property
+    def tails(self) -> NDArray[np.float64]:
+        """Where the tails of the bones are, (f, b, 3)."""
+        along = self.skeleton.tails - self.skeleton.heads
+        return self.heads + np.einsum("fbij,bj->fbi", self.turns, along)
+
+
+@dataclass(frozen=True, eq=False)
+class LocalTransforms:
+    """Poses as a rig stores them: the transform of each bone against its parent.
+
+    Attributes
+    ----------
+    rotations : (f, b, 3, 3) array of float
+        In the axes of the bone at rest.
+    locations : (f, b, 3) array of float
+        In the same axes.
+    """
+
+    rotations: NDArray[np.float64]
+    locations: NDArray[np.float64]
+
+
+def posed_motion(skeleton: Skeleton, rest: NDArray[np.float64], basis: NDArray[np.float64]) -> Motion:
+    """Pose a skeleton: forward kinematics.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        The bones at rest, b.
+    rest : (b, 4, 4) array of float
+        Axes and head of each at rest.
+    basis : (f, b, 4, 4) array of float
+        What each is transformed by in its own axes: scale is handed on to children as well.
+
+    Returns
+    -------
+    Motion
+        The poses.
+    """
+    posed = np.empty_like(basis)
+    inverse = np.linalg.inv(rest)
+    for bone in skeleton.order:
+        parent = skeleton.parents[bone]
+        own = rest[bone] @ basis[:, bone]
+        posed[:, bone] = own if parent < 0 else posed[:, parent] @ (inverse[parent] @ own)
+    turns = posed[..., :3, :3] @ inverse[:, :3, :3]
+    scaled = np.abs(np.linalg.norm(turns, axis=-2) - 1).max(axis=-1) > _SCALED
+    if scaled.any():
+        turns[scaled] = nearest_rotations(turns[scaled])
+    return Motion(skeleton, turns, posed[..., :3, 3].copy())
+
+
+def local_transforms(
+    motion: Motion, axes: NDArray[np.float64], inherits: NDArray[np.bool_] | None = None
+) -> LocalTransforms:
+    """Find the transforms of the bones against their parents: the inverse of `posed_motion`.
+
+    Parameters
+    ----------
+    motion : Motion
+        The poses.
+    axes : (b, 3, 3) array of float
+        Axes of the bones at rest, as columns.
+    inherits : (b,) array of bool, optional
+        Which bones turn with their parents; all if not given.
+
+    Returns
+    -------
+    LocalTransforms
+        The transforms.
+    """
+    skeleton = motion.skeleton
+    rotations, locations = np.empty_like(motion.turns), np.empty_like(motion.heads)
+    for bone, parent in enumerate(skeleton.parents):
+        carrier, place = np.eye(3), skeleton.heads[bone]
+        if parent >= 0:
+            carrier = motion.turns[:, parent]
+            offset = skeleton.heads[bone] - skeleton.heads[parent]
+            place = motion.heads[:, parent] + carrier @ offset
+        moved = motion.heads[:, bone] - place
+        locations[:, bone] = np.einsum("...ji,...j->...i", carrier @ axes[bone], moved)
+        if parent >= 0 and inherits is not None and not inherits[bone]:
+            carrier = np.eye(3)
+        rotations[:, bone] = np.swapaxes(carrier @ axes[bone], -1, -2) @ motion.turns[:, bone] @ axes[bone]
+    return LocalTransforms(rotations, locations)

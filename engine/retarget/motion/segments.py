@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Segments of a body: bones of two rigs that stand for one another, and which segment hangs on which."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..rig.skeleton import Skeleton
+
+__all__ = ["Segments"]
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Bones that are connected by pairs, s groups of them: one bone each, or a spine of three and its five.
+
+    Attributes
+    ----------
+    rows : tuple of (r,) arrays of int
+        Pairs of each segment.
+    sources, targets : tuple of arrays of int
+        Its bones in either rig, parents before children.
+    parents : (s,) array of int
+        The segment on which it hangs in the target, or, where the target's bones hang elsewhere, such as feet that
+        only constraints hold at the legs, in the source; -1 for none.
+    carried : (s,) array of bool
+        Whether its bones in the target hang there in truth.
+    """
+
+    rows: tuple[NDArray[np.int64], ...]
+    sources: tuple[NDArray[np.int64], ...]
+    targets: tuple[NDArray[np.int64], ...]
+    parents: NDArray[np.int64]
+    carried: NDArray[np.bool_]
+
+    @classmethod
+    def of(
+        cls, sources: NDArray[np.int64], targets: NDArray[np.int64], source_bones: Skeleton, bones: Skeleton
+    ) -> Segments:
+        """Find the segments of pairs of bones (k,)."""
+        if not len(sources):
+            return cls((), (), (), np.zeros(0, np.int64), np.zeros(0, bool))
+        size = len(source_bones) + len(bones)
+        links = csr_array((np.ones(len(sources)), (sources, len(source_bones) + targets)), shape=(size, size))
+        _, labels = connected_components(links, directed=False)
+        _, part_of_row = np.unique(labels[sources], return_inverse=True)
+        rows = tuple(np.flatnonzero(part_of_row == part) for part in range(part_of_row.max() + 1))
+        members = [
+            tuple(_in_order(tree, ends[each]) for each in rows)
+            for tree, ends in ((source_bones, sources), (bones, targets))
+        ]
+        above = [_above(tree, parts) for tree, parts in zip((source_bones, bones), members, strict=True)]
+        parents, truly = above[1].copy(), np.ones(len(rows), bool)
+        for part, wished in enumerate(above[0]):
+            if wished >= 0 and wished not in _chain(above[1], part) and part not in _chain(parents, int(wished)):
+                parents[part], truly[part] = wished, False
+        return cls(rows, members[0], members[1], parents, truly)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __repr__(self) -> str:
+        return f"<Segments: {len(self)} of {sum(len(part) for part in self.targets)} bones>"
+
+    @property
+    def single(self) -> NDArray[np.bool_]:
+        """Whether a segment is one bone in either rig, (s,)."""
+        return np.array([len(part) == 1 for part in self.rows], bool)
+
+    def below(self, part: int) -> NDArray[np.int64]:
+        """Segments that hang directly on one."""
+        return np.flatnonzero(self.parents == part)
+
+
+def _in_order(tree: Skeleton, bones: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Bones, each once, parents before children."""
+    return tree.order[np.isin(tree.order, bones)]
+
+
+def _above(tree: Skeleton, parts: tuple[NDArray[np.int64], ...]) -> NDArray[np.int64]:
+    """For each part of a tree the nearest other part that its first bone hangs on, -1 for none."""
+    owner = np.full(len(tree), -1)
+    for part, bones in enumerate(parts):
+        owner[bones] = part
+    result = np.full(len(parts), -1)
+    for part, bones in enumerate(parts):
+        bone = int(tree.parents[bones[0]])
+        while bone >= 0 and owner[bone] in (-1, part):
+            bone = int(tree.parents[bone])
+        result[part] = owner[bone] if bone >= 0 else -1
+    return _without_loops(result)
+
+
+def _without_loops(parents: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Cut parents that lead back to where one came from: parts may cross one another."""
+    for part in range(len(parents)):
+        if part in _chain(parents, part):
+            parents[part] = -1
+    return parents
+
+
+def _chain(parents: NDArray[np.int64], part: int) -> list[int]:
+    """Parts above one, until the top or until they repeat."""
+    found: list[int] = []
+    above = int(parents[part])
+    while above >= 0 and above not in found:
+        found.append(above)
+        above = int(parents[above])
+    return found

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bones paired by the surface, whatever they are called and however many there are."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_array
+
+from engine import BonePairing, RigError, TriangleMesh
+from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, renamed
+from tests.shapes import rotation
+
+
+def check_right(pairing, source, target):
+    """Every pair does common work, and bones of the target that do some have a partner."""
+    pairs = list(zip(pairing.sources, pairing.targets, strict=True))
+    assert [(source.names[a], target.names[b]) for a, b in pairs if not source.origins[a] & target.origins[b]] == []
+    assert [name for b, name in enumerate(target.names) if target.origins[b] and b not in pairing.targets] == []
+
+
+@pytest.mark.parametrize("make", [lambda body: renamed(body.rig), fine_rig, coarse_rig])
+@pytest.mark.parametrize("rest", [{}, HANGING])
+def test_bones_are_paired_without_names_in_any_rest_pose(someone, paired, make, rest):
+    body = at_rest_in(someone, rest)
+    rig = make(body)
+    pairing = paired(body, rig)
+    check_right(pairing, someone.rig, rig)
+    assert ((pairing.scores > 0.3) & (pairing.scores <= 1 + 1e-9)).all()
+    assert np.allclose(pairing.upright, np.eye(3))
+
+
+def test_of_the_same_rig_each_bone_is_its_own_partner_and_nothing_is_turned(someone, paired):
+    pairing = paired(someone, someone.rig)
+    assert (pairing.sources == np.arange(len(someone.rig.names))).all()
+    assert (pairing.sources == pairing.targets).all()
+    assert np.allclose(pairing.rotations, np.eye(3), atol=1e-6)
+    assert np.allclose(pairing.places, someone.rig.skeleton.heads, atol=1e-4)
+    assert pairing.scores.min() > 0.99
+
+
+def test_twist_bones_and_controls_stay_alone(someone, paired):
+    rig = fine_rig(someone)
+    alone = {name for number, name in enumerate(rig.names) if number not in paired(someone, rig).targets}
+    assert alone == {"X_root", "X_foot_ik.L", "X_foot_ik.R", "X_forearm_twist.L", "X_forearm_twist.R"}
+
+
+def test_the_rest_pose_is_seen_by_the_surface(someone, paired):
+    body = at_rest_in(someone, HANGING)
+    pairing = paired(body, body.rig)
+    arm = someone.rig.names.index("upper_arm.L")
+    wanted = rotation(HANGING["upper_arm.L"], np.linalg.norm(HANGING["upper_arm.L"]))
+    apart = wanted.T @ pairing.rotations[pairing.targets == arm][0]
+    assert np.trace(apart) > 1 + 2 * np.cos(np.radians(4))
+
+
+def test_a_body_that_faces_elsewhere_is_turned_as_a_whole(someone, paired):
+    turn = rotation([0, 0, 1], np.pi / 2)
+    rig = renamed(someone.rig)
+    skeleton = type(rig.skeleton)(rig.skeleton.parents, rig.skeleton.heads @ turn.T, rig.skeleton.tails @ turn.T)
+    rig = type(rig)(rig.names, skeleton, rig.weights, rig.origins)
+    body = Person(TriangleMesh(someone.mesh.vertices @ turn.T, someone.mesh.triangles), rig)
+    pairing = paired(body, rig)
+    check_right(pairing, someone.rig, rig)
+    assert np.allclose(pairing.upright, turn)
+
+
+def test_given_pairs_and_bones_left_alone_are_respected(someone, paired):
+    names = someone.rig.names
+    hand, foot, head = (names.index(name) for name in ("hand.L", "foot.R", "head"))
+    pairing = paired(someone, someone.rig, fixed=[(hand, foot)], alone=[head])
+    assert pairing.sources[pairing.targets == foot].tolist() == [hand]
+    assert pairing.scores[pairing.targets == foot] == 1
+    assert head not in pairing.targets
+    others = [bone for bone in range(len(names)) if bone not in {hand, foot, head}]
+    assert all(bone in pairing.sources[pairing.targets == bone] for bone in others)
+
+
+def test_a_rig_without_weights_is_paired_by_where_its_bones_are(someone, paired):
+    body = at_rest_in(someone, HANGING)
+    rig = renamed(body.rig)
+    bare = type(rig)(rig.names, rig.skeleton, csr_array(rig.weights.shape), rig.origins)
+    pairing = paired(body, bare)
+    limbs = [b for b, origin in enumerate(rig.origins) if origin & {"upper_arm.L", "forearm.R", "thigh.L", "shin.R"}]
+    for bone in limbs:
+        assert any(someone.rig.origins[a] & rig.origins[bone] for a in pairing.sources[pairing.targets == bone])
+
+
+def test_what_does_not_fit_together_is_refused(someone, paired):
+    rig = renamed(someone.rig)
+    with pytest.raises(RigError, match="need weights of that shape"):
+        paired(someone, type(rig)(rig.names, rig.skeleton, csr_array((3, 3)), rig.origins))
+    with pytest.raises(RigError, match="there is no bone 99"):
+        paired(someone, rig, alone=[99])
+    with pytest.raises(RigError, match="need scores of the shape"):
+        BonePairing(*np.zeros((2, 1), int), np.zeros(2), np.zeros((1, 3, 3)), np.zeros((1, 3)), np.eye(3))

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Feet that stand."""
+
+import numpy as np
+
+from engine.retarget.motion.contacts import contacts_of, held_shifts
+
+UP = np.array([0.0, 0.0, 1.0])
+RATE = 30
+
+
+def stepping():
+    """Ankle and ball of a foot that stands for a second, steps forward, and stands again: (f, 2, 3)."""
+    stand, swing = 30, 15
+    x = np.concatenate([np.zeros(stand), 0.7 * np.linspace(0, 1, swing), np.full(stand, 0.7)])
+    z = np.concatenate([np.zeros(stand), 0.15 * np.sin(np.pi * np.linspace(0, 1, swing)), np.zeros(stand)])
+    ball = np.stack([x, 0 * x, z], axis=1)
+    return np.stack([ball + np.array([-0.1, 0, 0.08]), ball], axis=1)
+
+
+def test_standing_is_low_and_slow_and_swinging_is_not():
+    touching = contacts_of(stepping(), UP, 0.9, RATE)
+    assert touching[:28].all()
+    assert touching[47:].all()
+    assert not touching[33:42].any()
+
+
+def test_units_and_the_frame_rate_do_not_matter():
+    points = stepping()
+    expected = contacts_of(points, UP, 0.9, RATE)
+    assert (contacts_of(100 * points, UP, 90, RATE) == expected).all()
+    assert (contacts_of(points[::2], UP, 0.9, RATE / 2)[2:13] == expected[::2][2:13]).all()
+
+
+def test_a_foot_that_slides_is_held_while_it_stands_and_let_go_smoothly():
+    points = stepping()
+    touching = contacts_of(points, UP, 0.9, RATE)
+    sliding = points + 0.002 * np.arange(len(points))[:, None, None] * [1, 0.5, 0]
+    shifts = held_shifts(sliding, touching, sliding @ UP, UP, RATE)
+    held = sliding + shifts[:, None]
+    for part in (slice(0, 28), slice(47, None)):
+        assert np.ptp(held[part, 1], axis=0).max() < 1e-9
+    assert np.abs(np.diff(shifts, axis=0)).max() < 0.02
+    assert np.abs(shifts[:28]).max() < 0.035  # to the middle of where it was
+
+
+def test_the_height_is_the_one_wanted():
+    points = stepping()
+    touching = contacts_of(points, UP, 0.9, RATE)
+    shifts = held_shifts(points + 0.05 * UP, touching, points @ UP, UP, RATE)
+    assert np.allclose((points[:28, 1] + 0.05 * UP + shifts[:28]) @ UP, 0, atol=1e-3)
+
+
+def test_from_heel_to_ball_nothing_jumps():
+    points = stepping()
+    touching = np.zeros((len(points), 2), bool)
+    touching[:20, 0] = touching[15:30, 1] = True
+    sliding = points + 0.002 * np.arange(len(points))[:, None, None] * [1, 0, 0]
+    shifts = held_shifts(sliding, touching, sliding @ UP, UP, RATE)
+    assert np.abs(np.diff(shifts[:30], axis=0)).max() < 0.0025
+
+
+def test_what_never_stands_is_not_shifted():
+    points = stepping()
+    assert not held_shifts(points, np.zeros((len(points), 2), bool), points @ UP, UP, RATE).any()

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion that goes from one rig to another: the mesh ends up where the truth is."""
+
+import numpy as np
+import pytest
+
+from engine import BonePairing, MotionSettings, RigError, Skeleton, transfer_motion
+from tests.people import HANGING, at_rest_in, coarse_rig, fine_rig, moved, renamed, skinned
+from tests.shapes import rotation
+
+
+@pytest.fixture(scope="module")
+def wild(someone):
+    """Random turns of all bones, and a random way."""
+    random = np.random.default_rng(1)
+    angles = {name: 0.3 * random.normal(size=(3, 3)) for name in someone.rig.names}
+    return moved(someone.rig, angles, random.normal(size=(3, 3)))
+
+
+def error(someone, body, rig, motion, found):
+    """Mean distance of the vertices from where the plain rig takes them, by the height."""
+    apart = skinned(body.mesh.vertices, rig, found.motion) - someone.posed(motion)
+    return np.linalg.norm(apart, axis=2).mean() / someone.height
+
+
+def test_with_other_names_and_another_order_every_vertex_is_where_it_was(someone, paired, wild):
+    rig = renamed(someone.rig)
+    found = transfer_motion(wild, paired(someone, rig), rig.skeleton)
+    assert error(someone, someone, rig, wild, found) < 1e-6
+    assert np.isclose(found.scale, 1)
+    assert found.moved.all()
+    assert found.placed.sum() == 1
+
+
+@pytest.mark.parametrize(("make", "most"), [(fine_rig, 0.01), (coarse_rig, 0.02)])
+def test_with_more_or_fewer_bones_the_body_is_nearly_there(someone, paired, wild, make, most):
+    rig = make(someone)
+    assert error(someone, someone, rig, wild, transfer_motion(wild, paired(someone, rig), rig.skeleton)) < most
+
+
+def test_another_rest_pose_makes_no_difference(someone, paired, wild):
+    body = at_rest_in(someone, HANGING)
+    rig = renamed(body.rig)
+    found = transfer_motion(wild, paired(body, rig), rig.skeleton)
+    assert error(someone, body, rig, wild, found) < 0.01
+
+
+def test_a_target_of_other_size_that_faces_elsewhere_goes_its_way(someone, paired, wild):
+    pairing, turn = paired(someone, someone.rig), rotation([0, 0, 1], np.pi / 2)
+    tree = someone.rig.skeleton
+    large = Skeleton(tree.parents, 3 * tree.heads @ turn.T, 3 * tree.tails @ turn.T)
+    rotations = turn @ pairing.rotations
+    pairing = BonePairing(
+        pairing.sources, pairing.targets, pairing.scores, rotations, 3 * pairing.places @ turn.T, turn
+    )
+    found = transfer_motion(wild, pairing, large)
+    assert np.isclose(found.scale, 3)
+    assert np.allclose(found.motion.heads, 3 * wild.heads @ turn.T, atol=1e-4)
+    assert np.allclose(found.motion.turns, turn @ wild.turns @ turn.T, atol=1e-6)
+
+
+def walk(person, count=48, rate=24):
+    """Motion of a walk in which the lower foot stands exactly where it is, and that foot's bone in each pose, (f,)."""
+    phase = 2 * np.pi * np.arange(count) / rate
+    angles = {}
+    for side, shift in (("L", 0), ("R", np.pi)):
+        swing, lift = 0.4 * np.sin(phase + shift), 0.6 * np.cos(phase + shift).clip(0)
+        angles[f"thigh.{side}"], angles[f"shin.{side}"] = (np.outer(each, [1, 0, 0]) for each in (swing, lift))
+        angles[f"foot.{side}"] = -angles[f"thigh.{side}"] - angles[f"shin.{side}"]
+    toes = [person.rig.names.index(f"toe.{side}") for side in "LR"]
+    places = moved(person.rig, angles).heads[:, toes]
+    lower = places[:, :, 2].argmin(axis=1)
+    steps = np.diff(places, axis=0)[np.arange(count - 1), lower[1:]]
+    ways = -np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    ways[:, 2] = person.rig.skeleton.heads[toes[0], 2] - places[np.arange(count), lower, 2]
+    return moved(person.rig, angles, ways), np.array(toes)[lower]
+
+
+def slide(heads, standing):
+    """How far feet move at most while they stand."""
+    starts = np.flatnonzero(np.append(True, standing[1:] != standing[:-1]))
+    runs = zip(starts, np.append(starts[1:], len(standing)), strict=True)
+    return max(np.ptp(heads[a:b, standing[a]], axis=0).max() for a, b in runs if b - a > 3)
+
+
+def stretched(person, legs=1.3):
+    """The person's bones with longer legs, and pairs of all."""
+    tree = person.rig.skeleton
+    lengthen = [points * [1, 1, legs] for points in (tree.heads, tree.tails)]
+    target = Skeleton(tree.parents, *lengthen)
+    numbers = np.arange(len(tree))
+    same = np.tile(np.eye(3), (len(tree), 1, 1))
+    return target, BonePairing(numbers, numbers, np.ones(len(tree)), same, target.heads, np.eye(3))
+
+
+def test_feet_do_not_slide_on_longer_legs(someone):
+    motion, standing = walk(someone)
+    target, pairing = stretched(someone)
+    settings = {"rate": 24.0}
+    assert slide(motion.heads, standing) < 1e-9
+    free = transfer_motion(motion, pairing, target, MotionSettings(**settings))
+    held = transfer_motion(motion, pairing, target, MotionSettings(feet=True, **settings))
+    assert slide(free.motion.heads, standing) > 0.002
+    assert slide(held.motion.heads, standing) < 0.001
+    toes = held.motion.heads[np.arange(len(motion)), standing, 2]
+    assert np.ptp(toes) < 0.005  # they stay on the ground as well
+    lengths = np.linalg.norm(target.tails - target.heads, axis=1)
+    assert np.allclose(np.linalg.norm(held.motion.tails - held.motion.heads, axis=2), lengths)
+
+
+def test_feet_that_stand_already_are_left_alone(someone):
+    motion, _ = walk(someone)
+    _, pairing = stretched(someone, 1.0)
+    tree = someone.rig.skeleton
+    found = transfer_motion(motion, pairing, tree, MotionSettings(feet=True))
+    assert np.abs(found.motion.heads - motion.heads).max() < 0.005
+
+
+def test_stride_and_place(someone):
+    motion, _ = walk(someone)
+    _, pairing = stretched(someone, 1.0)
+    tree = someone.rig.skeleton
+    ways = {}
+    for name, settings in {"usual": {}, "half": {"stride": 0.5}, "none": {"in_place": True}}.items():
+        heads = transfer_motion(motion, pairing, tree, MotionSettings(**settings)).motion.heads[:, 0]
+        ways[name] = heads[-1] - heads[0]
+    assert np.allclose(ways["half"][:2], ways["usual"][:2] / 2)
+    assert np.allclose(ways["none"][:2], 0, atol=1e-9)
+    assert np.allclose([way[2] for way in ways.values()], ways["usual"][2])
+
+
+def test_hands_on_the_body_stay_on_it_with_longer_arms(someone):
+    names, tree = list(someone.rig.names), someone.rig.skeleton
+    # Both hands on the hips.
+    angles = {}
+    for side, sign in (("L", 1), ("R", -1)):
+        angles[f"upper_arm.{side}"] = [[0, 0.7 * sign, 0]]
+        angles[f"forearm.{side}"] = [[0, 1.6 * sign, 0]]
+    motion = moved(someone.rig, angles)
+    wide = Skeleton(tree.parents, tree.heads * [1.3, 1, 1], tree.tails * [1.3, 1, 1])
+    numbers = np.arange(len(tree))
+    same = np.tile(np.eye(3), (len(tree), 1, 1))
+    pairing = BonePairing(numbers, numbers, np.ones(len(tree)), same, wide.heads, np.eye(3))
+    hand = names.index("hand.L")
+    middle = names.index("hips")
+    wanted = motion.heads[0, hand] - motion.heads[0, middle]
+    errors = []
+    for hands in (False, True):
+        heads = transfer_motion(motion, pairing, wide, MotionSettings(hands=hands)).motion.heads[0]
+        errors.append(np.linalg.norm(heads[hand] - heads[middle] - wanted))
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_what_makes_no_motion_is_refused(someone, wild):
+    tree = someone.rig.skeleton
+    _, pairing = stretched(someone)
+    none = np.zeros(0, int)
+    empty = BonePairing(none, none, np.zeros(0), np.zeros((0, 3, 3)), np.zeros((0, 3)), np.eye(3))
+    with pytest.raises(RigError, match="No bones of the two rigs are paired"):
+        transfer_motion(wild, empty, tree)
+    with pytest.raises(RigError, match="name bones that the rigs do not have"):
+        transfer_motion(wild, pairing, Skeleton(tree.parents[:3], tree.heads[:3], tree.tails[:3]))
+    with pytest.raises(RigError, match="frame rate"):
+        transfer_motion(wild, pairing, tree, MotionSettings(rate=0))
