@@ -171,16 +171,17 @@ def _rows(shape: Shape, points: SurfacePoints) -> NDArray[np.float64]:
 
 def _seen_directly(to_reflection: SurfaceMap, source: TriangleMesh) -> SurfaceMap:
     """Turn a map to the reflection of the source into one to the source."""
-    return SurfaceMap(reflected_points(source, to_reflection.points), to_reflection.confidence, source.vertex_count)
+    return replace(to_reflection, points=reflected_points(source, to_reflection.points))
 
 
 def _at_landmarks(
     found: SurfaceMap, image: TriangleMesh, vertices: NDArray[np.int64], partners: NDArray[np.int64]
 ) -> SurfaceMap:
     """Name the images of landmarks by the very vertices that were given, and trust them."""
-    confidence = found.confidence.copy()
-    confidence[vertices] = 1
-    return SurfaceMap(placed_at_vertices(found.points, image, vertices, partners), confidence, image.vertex_count)
+    confidence, has_partner = found.confidence.copy(), found.has_partner.copy()
+    confidence[vertices], has_partner[vertices] = 1, True
+    points = placed_at_vertices(found.points, image, vertices, partners)
+    return replace(found, points=points, confidence=confidence, has_partner=has_partner)
 
 
 def _mirrors(x: Shape, y: Shape, start: LandmarkStart) -> bool:
@@ -280,4 +281,5 @@ def _on_original(found: WholeMap, y: PreparedSurface) -> SurfaceMap:
     """Name a map of all vertices by the triangles of the original mesh, excluded ones counted."""
     triangles = y.kept_triangles[found.points.triangles]
     points = SurfacePoints.from_barycentric(y.original, triangles, found.points.barycentric)
-    return SurfaceMap(points, found.confidence, y.original.vertex_count)
+    # What has no partner is trusted nowhere, and all else at least a little.
+    return SurfaceMap(points, found.confidence, y.original.vertex_count, found.confidence > 0)

@@ -24,6 +24,7 @@ __all__ = [
     "assess_maps",
     "map_confidence",
     "of_covered_part",
+    "overlap_sentence",
     "trip_confidence",
     "with_pieces",
 ]
@@ -37,6 +38,9 @@ _TRUSTED_STRETCH = 1.0
 _WHOLE = 0.995
 """Part of a surface that must have a partner for nothing to be missed: a hand of a person is two hundredths, and
 fingertips that another body has not are no more than this."""
+
+_NEARLY_WHOLE = 0.95
+"""Part of one of two surfaces that overlap from which on it is a part of the other one."""
 
 _FEW = 0.02
 """Part of a mesh in pieces without a counterpart up to which nothing is said: eyes, teeth and buttons."""
@@ -248,10 +252,25 @@ def _difference(quality: MatchQuality) -> str:
 
 def _without_partner(quality: MatchQuality) -> str:
     """Say which of the shapes has more that the other lacks."""
+    return _missing(quality.source_coverage, quality.coverage)
+
+
+def _missing(source: float, target: float) -> str:
+    """Say what part of the source has a partner, or of the target: of the one that has more that the other lacks."""
     missing = "parts of one shape seem to be missing on the other."
-    if quality.coverage <= quality.source_coverage:
-        return f"Only {_percentage(quality.coverage)} of the target is reached: {missing}"
-    return f"Only {_percentage(quality.source_coverage)} of the source has a partner: {missing}"
+    if target <= source:
+        return f"Only {_percentage(target)} of the target is reached: {missing}"
+    return f"Only {_percentage(source)} of the source has a partner: {missing}"
+
+
+def overlap_sentence(shares: tuple[float, float], *, credible: bool) -> str:
+    """Say what part of the source and of the target is shared, and whether that can be relied on."""
+    if not credible:
+        return "It is not clear what the shapes share: do not trust the map; add landmarks, or cut them alike."
+    if max(shares) >= _NEARLY_WHOLE:
+        return _missing(*shares)
+    source, target = (_percentage(share) for share in shares)
+    return f"The shapes overlap: {source} of the source and {target} of the target have a partner."
 
 
 def _percentage(part: float) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .result import MatchResult
     from .shape_matching import MatchTask
 
-__all__ = ["matched_with_pieces_steps"]
+__all__ = ["has_limbs", "matched_with_pieces_steps"]
 
 _ALIKE = 0.1
 """By how much the main parts may differ, as parts of their bodies, for the pieces to be matched one by one at first."""
@@ -40,6 +40,11 @@ _ALL = 0.99
 
 _FIRST, _JOINED = 0.4, 0.05
 """Parts of the work that are done when pieces are matched one by one, and that joining those of a body takes."""
+
+
+def has_limbs(x: Shape, y: Shape) -> bool:
+    """Say whether either of two bodies has limbs that are pieces of their own."""
+    return any(bool(separate_limbs(shape.surface.cleaned).any()) for shape in (x, y))
 
 
 def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tuple[MatchResult, Shape, Shape]]:

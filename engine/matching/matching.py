@@ -16,8 +16,9 @@ from ..runtime.progress import Progress, Steps, run, within
 from ..runtime.worker import call_helpers
 from ..shapes.prepared_surface import prepared_steps
 from ..shapes.shape import Shape
-from .joined_match import matched_with_pieces_steps
-from .partial_match import has_border, part_matched_steps
+from .joined_match import has_limbs, matched_with_pieces_steps
+from .overlap.overlap_match import CREDIBLE, overlap_match_steps
+from .partial_match import border_length, has_border, part_matched_steps
 from .shape_matching import MatchTask, matched_steps
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     from ..mesh.triangle_mesh import TriangleMesh
     from ..shapes.prepared_surface import PreparedSurface
+    from .overlap.overlap_match import OverlapMatch
     from .result import MatchResult
 
     _Unprepared = tuple[TriangleMesh, str, NDArray[np.bool_] | None]
@@ -34,6 +36,18 @@ __all__ = ["match", "match_steps"]
 _FIRST, _FIRST_OF_CLOSED = 0.45, 0.95
 """Part of the work after which surfaces have been matched as they are, if one of them may be a part of the other, and
 if they are closed."""
+
+_CUT = 0.4
+"""Length of its border, in sqrt(area), from which on much may have been cut off a surface: around a thigh."""
+
+_SHARED = 0.95
+"""Part of either surface that is shared from which on all of them is matched: their sizes hardly differ."""
+
+_OVERLAP, _FIRST_AFTER = 0.35, 0.6
+"""Parts of the work after which it is known what surfaces share, and then how they match as they are."""
+
+_HOPELESS = 0.1
+"""Confidence up to which a match of surfaces as they are is not worth more than one of what they might share."""
 
 _SMALL = 8000
 """Vertices up to which a mesh is prepared sooner than it is sent."""
@@ -116,12 +130,45 @@ def match_steps(
     x, y = yield from within(_shapes_steps((source, target), excluded), 0.0, 0.06)
     if not settings.dense:
         result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
+    elif landmarks is None and (border_length(x) > _CUT or border_length(y) > _CUT) and not has_limbs(x, y):
+        result = yield from within(_overlapping_steps(x, y, task), 0.06, 1.0)
     else:
         end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
-        result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.06, end)
-        result = yield from within(part_matched_steps(result, x, y, task), end, 1.0)
+        result = yield from within(_whole_steps(x, y, task, end), 0.06, 1.0)
     yield Progress(1.0, "Done")
     return task.clock.noted(result)
+
+
+def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float) -> Steps[MatchResult]:
+    """Match surfaces as they are, which takes that part of the work, and again if something is missing."""
+    result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.0, end)
+    return (yield from within(part_matched_steps(result, x, y, task), end, 1.0))
+
+
+def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
+    """Match surfaces of which much may have been cut off: what they share first, and all of them if that is unclear."""
+    overlap = yield from within(overlap_match_steps(x, y, task), 0.0, _OVERLAP)
+    if overlap is not None and overlap.credibility >= CREDIBLE and min(overlap.shares) < _SHARED:
+        return overlap.result
+    try:
+        if border_length(x) > _CUT and border_length(y) > _CUT:
+            # Neither shows all of the other: no piece of one is to be looked for.
+            result, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _OVERLAP, 1.0)
+        else:
+            result = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _OVERLAP, 1.0)
+    except MatchError:
+        if overlap is None:
+            raise
+        return overlap.result
+    return _better(result, overlap)
+
+
+def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:
+    """Choose between surfaces as they are and what they share: the more credible, or what claims least."""
+    if overlap is None or overlap.result.quality is None or result.quality is None:
+        return result
+    known = result.quality.confidence
+    return result if known > max(overlap.result.quality.confidence, _HOPELESS) else overlap.result
 
 
 def _shapes_steps(

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .result import MatchResult
     from .shape_matching import MatchTask
 
-__all__ = ["has_border", "part_matched_steps"]
+__all__ = ["border_length", "has_border", "part_matched_steps"]
 
 _LEAST_BORDER = 0.1
 """Length of its border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
@@ -52,11 +52,16 @@ _FOUND = 0.45
 """Part of the work after which these pieces are known."""
 
 
-def has_border(shape: Shape) -> bool:
-    """Say whether something may have been cut off a surface, which is open there."""
+def border_length(shape: Shape) -> float:
+    """Measure the border of a surface, in sqrt(area)."""
     mesh = shape.mesh
     ends = mesh.vertices[mesh.boundary_edges]
-    return float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()) > _LEAST_BORDER * shape.scale
+    return float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()) / shape.scale
+
+
+def has_border(shape: Shape) -> bool:
+    """Say whether something may have been cut off a surface, which is open there."""
+    return border_length(shape) > _LEAST_BORDER
 
 
 def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +28,11 @@ _FLAT = 1e-9
 """Mapped triangles whose area is a smaller part of their longest side squared have no side to be seen from."""
 
 
+def _everywhere() -> NDArray[np.bool_]:
+    """Stand for one truth value for each vertex, all true."""
+    return np.ones(0, bool)
+
+
 @dataclass(frozen=True, eq=False)
 class SurfaceMap:
     """A map of every vertex of one mesh, the domain, to a point on another, the image.
@@ -42,16 +47,21 @@ class SurfaceMap:
         How far each may be trusted, 0 to 1.
     image_vertex_count : int
         Number of vertices of the image.
+    has_partner : (n,) array of bool, optional
+        Whether each has a counterpart on the image at all; by default all have.  One without goes to the point that
+        follows from what is around it, with confidence zero.
 
     Raises
     ------
     MatchError
-        If the confidence is not one number from 0 to 1 for each vertex, or a point is not on such an image.
+        If the confidence is not one number from 0 to 1 for each vertex, a point is not on such an image, or there is
+        not one truth value for each vertex.
     """
 
     points: SurfacePoints
     confidence: NDArray[np.float64]
     image_vertex_count: int
+    has_partner: NDArray[np.bool_] = field(default_factory=_everywhere)
 
     def __post_init__(self) -> None:
         confidence = np.asarray(self.confidence, np.float64)
@@ -67,14 +77,28 @@ class SurfaceMap:
                 f"A map to a mesh of {self.image_vertex_count} vertices has a point at vertex {self.corners.max()}: "
                 "its points are on another mesh."
             )
-        object.__setattr__(self, "confidence", confidence)
+        partners = np.asarray(self.has_partner, bool)
+        if not partners.size:
+            partners = np.ones(len(self.points), bool)
+        if partners.shape != (len(self.points),):
+            raise MatchError(
+                f"A map of {len(self.points)} vertices needs one truth value for each that says whether it has a "
+                f"partner, but got an array of the shape {partners.shape}."
+            )
+        object.__setattr__(self, "confidence", np.where(partners, confidence, 0.0))
+        object.__setattr__(self, "has_partner", partners)
 
     @classmethod
     def from_points(
-        cls, image: TriangleMesh, points: SurfacePoints, confidence: NDArray[np.float64] | None = None
+        cls,
+        image: TriangleMesh,
+        points: SurfacePoints,
+        confidence: NDArray[np.float64] | None = None,
+        has_partner: NDArray[np.bool_] | None = None,
     ) -> SurfaceMap:
         """Make a map from points (n,) on the image; trusted everywhere if no confidence (n,) is given."""
-        return cls(points, np.ones(len(points)) if confidence is None else confidence, image.vertex_count)
+        trusted = np.ones(len(points)) if confidence is None else confidence
+        return cls(points, trusted, image.vertex_count, _everywhere() if has_partner is None else has_partner)
 
     @classmethod
     def from_barycentric(
@@ -83,9 +107,11 @@ class SurfaceMap:
         triangles: NDArray[np.int64],
         barycentric: NDArray[np.float64],
         confidence: NDArray[np.float64] | None = None,
+        has_partner: NDArray[np.bool_] | None = None,
     ) -> SurfaceMap:
         """Make a map from triangles (n,) of the image and barycentric coordinates (n, 3) there."""
-        return cls.from_points(image, SurfacePoints.from_barycentric(image, triangles, barycentric), confidence)
+        points = SurfacePoints.from_barycentric(image, triangles, barycentric)
+        return cls.from_points(image, points, confidence, has_partner)
 
     @classmethod
     def identity(cls, mesh: TriangleMesh) -> SurfaceMap:
@@ -184,7 +210,8 @@ class SurfaceMap:
         Returns
         -------
         SurfaceMap
-            The map from A to C, whose confidence is the product of both.
+            The map from A to C, whose confidence is the product of both.  A vertex has a partner if it has one on B,
+            and that has one on C.
 
         Raises
         ------
@@ -202,7 +229,8 @@ class SurfaceMap:
         found = search.walk(self.transfer(other.positions), starts)
         # Rounding may leave an interpolated one above one.
         confidence = np.minimum(self.confidence * self.transfer(other.confidence), 1)
-        return SurfaceMap.from_barycentric(image, found.triangles, found.barycentric, confidence)
+        partners = self.has_partner & self.transfer(other.has_partner)
+        return SurfaceMap.from_barycentric(image, found.triangles, found.barycentric, confidence, partners)
 
     def edge_stretch(self, domain: TriangleMesh, image: TriangleMesh) -> NDArray[np.float64]:
         """Measure how the map stretches each edge of the domain.

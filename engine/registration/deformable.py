@@ -17,11 +17,12 @@ from .normal_equations import NormalEquations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+    from scipy.sparse import csr_array
 
     from ..geometry.laplacian import LaplaceBeltrami
     from ..mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["DeformableSurface"]
+__all__ = ["DeformableSurface", "heat_curvatures"]
 
 _HEAT_STEPS = 3
 """Implicit steps in which heat spreads."""
@@ -107,20 +108,42 @@ class DeformableSurface:
 
     @cached_property
     def curvatures(self) -> NDArray[np.float64]:
-        r"""Mean curvature at several scales, smoothed by heat.
+        """Mean curvature at two scales, positive where the surface bulges outwards, (n, 2); see `heat_curvatures`."""
+        return heat_curvatures(self._laplace.stiffness, self.mass, self.vertices, self.normals, _CURVATURE_TIMES)
 
-        Returns
-        -------
-        (n, 2) array of float
-            :math:`\sqrt{t} \, e^{-t \Delta} H`, positive where the surface bulges outwards; without unit.
-        """
-        # The stiffness applied to the positions is the mean curvature normal, integrated over each vertex's area.
-        integrated = np.einsum("nd,nd->n", self._laplace.stiffness @ self.vertices, self.normals) / 2
-        smoothed = []
-        for time in _CURVATURE_TIMES:
-            factor = symmetric_factor(diags_array(self.mass) + time / _HEAT_STEPS * self._laplace.stiffness)
-            heat = factor.solve(integrated)
-            for _ in range(_HEAT_STEPS - 1):
-                heat = factor.solve(self.mass * heat)
-            smoothed.append(np.sqrt(time) * heat)
-        return np.stack(smoothed, axis=1)
+
+def heat_curvatures(
+    stiffness: csr_array,
+    mass: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    times: tuple[float, ...],
+) -> NDArray[np.float64]:
+    r"""Mean curvature at several scales, smoothed by heat.
+
+    Parameters
+    ----------
+    stiffness : (n, n) csr_array of float
+        Stiffness matrix of the surface.
+    mass : (n,) array of float
+        Area of each vertex.
+    vertices, normals : (n, 3) array of float
+        Positions and unit normals, in the unit of length that belongs to these areas.
+    times : tuple of k floats
+        How long heat spreads, in that unit squared.
+
+    Returns
+    -------
+    (n, k) array of float
+        :math:`\sqrt{t} \, e^{-t \Delta} H`, positive where the surface bulges outwards; without unit.
+    """
+    # The stiffness applied to the positions is the mean curvature normal, integrated over each vertex's area.
+    integrated = np.einsum("nd,nd->n", stiffness @ vertices, normals) / 2
+    smoothed = []
+    for time in times:
+        factor = symmetric_factor(diags_array(mass) + time / _HEAT_STEPS * stiffness)
+        heat = factor.solve(integrated)
+        for _ in range(_HEAT_STEPS - 1):
+            heat = factor.solve(mass * heat)
+        smoothed.append(np.sqrt(time) * heat)
+    return np.stack(smoothed, axis=1)

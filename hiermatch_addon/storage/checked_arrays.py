@@ -64,7 +64,12 @@ class CheckedArrays:
         confidence = self.numbers(f"{name}_confidence", (count,))
         if ((confidence < 0) | (confidence > 1)).any():
             raise ValueError(f"{name}_confidence is not between 0 and 1")
-        return VertexMap(corners.astype(np.int32), weights.astype(np.float32), confidence.astype(np.float32))
+        has_partner = np.ones(count, bool)
+        if f"{name}_partner" in self._arrays:  # which there is if some have none
+            has_partner = self.numbers(f"{name}_partner", (count,)) != 0
+        return VertexMap(
+            corners.astype(np.int32), weights.astype(np.float32), confidence.astype(np.float32), has_partner
+        )
 
     def _barycentric(self, name: str, count: int) -> NDArray[np.float64]:
         weights = self.numbers(name, (count, 3))

@@ -186,6 +186,8 @@ def _arrays(match: MatchFile) -> dict[str, NDArray[Any]]:
                 arrays[f"{start}{name}_corners"] = vertex_map.corners
                 arrays[f"{start}{name}_weights"] = vertex_map.weights
                 arrays[f"{start}{name}_confidence"] = vertex_map.confidence
+                if not vertex_map.has_partner.all():
+                    arrays[f"{start}{name}_partner"] = vertex_map.has_partner.astype(np.int32)
     return arrays
 
 

@@ -65,11 +65,14 @@ class VertexMap:
         Barycentric coordinates of its place between them.
     confidence : (n,) array of float32
         How far it may be trusted, 0 to 1.
+    has_partner : (n,) array of bool
+        Whether it has a counterpart on the other mesh at all.
     """
 
     corners: NDArray[np.int32]
     weights: NDArray[np.float32]
     confidence: NDArray[np.float32]
+    has_partner: NDArray[np.bool_]
 
     @classmethod
     def of(cls, surface_map: SurfaceMap) -> VertexMap:
@@ -78,6 +81,7 @@ class VertexMap:
             surface_map.corners.astype(np.int32),
             surface_map.barycentric.astype(np.float32),
             surface_map.confidence.astype(np.float32),
+            surface_map.has_partner,
         )
 
     @classmethod
@@ -91,12 +95,18 @@ class VertexMap:
                 return None
             values.append(np.concatenate(found))
         *corners, weights, confidence = values
-        return cls(np.stack(corners, axis=1), weights, confidence)
+        partners = read_values(mesh, _partner_name(name), "INT")
+        # Where it is not said, as by matches of earlier versions, all have one.
+        has_partner = np.ones(len(weights), bool) if partners is None else partners != 0
+        return cls(np.stack(corners, axis=1), weights, confidence, has_partner)
 
     def attributes(self, name: str) -> dict[str, NDArray[np.float32] | NDArray[np.int32]]:
         """Return the values of each attribute that keeps the map under a name."""
         values = (*self.corners.T, self.weights, self.confidence)
-        return {attribute: value for (attribute, _), value in zip(_attributes(name), values, strict=True)}
+        kept = {attribute: value for (attribute, _), value in zip(_attributes(name), values, strict=True)}
+        if not self.has_partner.all():
+            kept[_partner_name(name)] = self.has_partner.astype(np.int32)
+        return kept
 
     def to(self, image: TriangleMesh) -> SurfaceMap:
         """Make the map again.
@@ -113,7 +123,7 @@ class VertexMap:
         if not (inside and known and (total > 0).all() and np.isfinite(total).all()):
             raise MeshError("The attributes of the stored map hold numbers that no match has written. Match again.")
         points = place_points(image, self.corners.astype(np.int64), weights / total)
-        return SurfaceMap.from_points(image, points, self.confidence.astype(np.float64))
+        return SurfaceMap.from_points(image, points, self.confidence.astype(np.float64), self.has_partner)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,3 +197,8 @@ def _attributes(name: str) -> tuple[tuple[str, str], ...]:
     """List name and type of the attributes that keep a map."""
     corners = tuple((f"{name} Vertex {number}", "INT") for number in (1, 2, 3))
     return (*corners, (f"{name} Weights", "FLOAT_VECTOR"), (f"{name} Confidence", "FLOAT"))
+
+
+def _partner_name(name: str) -> str:
+    """Name the attribute that says which vertices have a partner, which there is if some have none."""
+    return f"{name} Partner"

@@ -6,13 +6,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
-from ...mesh.surface_map import SurfaceMap
 from ..quality import of_covered_part
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ...mesh.surface_map import SurfaceMap
     from ...mesh.triangle_mesh import TriangleMesh
     from ..quality import MatchQuality
 
@@ -64,9 +64,9 @@ def with_piece_only(maps: Maps, covered: NDArray[np.bool_], share: float, *, of_
         return maps
     quality = of_covered_part(quality, share, of_source=of_source)
     if of_source:
-        there = SurfaceMap(there.points, there.confidence * covered, there.image_vertex_count)
+        there = replace(there, has_partner=there.has_partner & covered)
     else:
-        back = SurfaceMap(back.points, back.confidence * covered, back.image_vertex_count)
+        back = replace(back, has_partner=back.has_partner & covered)
     return replace(maps, source_to_target=there, target_to_source=back, quality=quality)
 
 
@@ -78,7 +78,7 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: NDArray[np.in
     mesh : TriangleMesh
         The original mesh.
     found : SurfaceMap or None
-        The map from it, with confidence zero where there is no partner.
+        The map from it, with confidence zero also where it has no partner.
     needed : (k,) array of int
         Vertices that have to be among them, as far as there are such.
 
@@ -89,7 +89,7 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: NDArray[np.in
     """
     if found is None:
         return None
-    covered = found.confidence > 0
+    covered = found.has_partner & (found.confidence > 0)
     existing = needed[(needed >= 0) & (needed < len(covered))]
     if not covered[existing].all() or share_of(mesh, covered) > 1 - _LEAST_LEFT:
         return None

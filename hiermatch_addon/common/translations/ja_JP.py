@@ -45,6 +45,7 @@ MESSAGES: Final[dict[str, str]] = {
     "How far the dense map can be trusted, in a sentence; empty if there is none": (
         "密なマップをどこまで信頼できるかを一文で示します。マップがなければ空です"
     ),
+    "Overlap": "重なり",
     "Confidence": "信頼度",
     "How far the dense map can be trusted as a whole": "密なマップ全体をどこまで信頼できるか",
     "Out of Date": "期限切れ",
@@ -530,6 +531,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Show corresponding places in the same color": "対応する場所を同じ色で表示します",
     "Show how much lengths differ, from dark blue (none) to yellow": (
         "長さがどれだけ異なるかを、暗い青(差なし)から黄で表示します"
+    ),
+    "Show in blue what has a counterpart on the other mesh, and in grey what has none": (
+        "もう一方のメッシュに対応する場所があるところを青、ないところをグレーで表示します"
     ),
     "Show how far the dense map can be trusted, from dark red to white (fully)": (
         "密なマップをどこまで信頼できるかを、暗い赤から白(完全に)で表示します"
@@ -1208,6 +1212,12 @@ MESSAGES: Final[dict[str, str]] = {
     'Click on a place of "{0}" or "{1}"': "「{0}」か「{1}」の場所をクリック",
     'Click on the corresponding place of "{0}"': "「{0}」の対応する場所をクリック",
     "Only {0} of the target is reached: {1}": "ターゲットの{0}にしか届いていません。{1}",
+    "The shapes overlap: {0} of the source and {1} of the target have a partner.": (
+        "形状は一部で重なっています。ソースの{0}とターゲットの{1}に対応する場所があります。"
+    ),
+    "It is not clear what the shapes share: do not trust the map; add landmarks, or cut them alike.": (
+        "形状のどこが共通なのかはっきりしません。このマップは信頼せず、ランドマークを追加するか、同じように切り取ってください。"
+    ),
     "Only {0} of the source has a partner: {1}": "ソースの{0}にしか対応する場所がありません。{1}",
     "Separate pieces, {0} of a mesh, have no counterpart on the other: check where they went.": (
         "メッシュの{0}を占める独立したパーツに、もう一方のメッシュで対応するパーツがありません。行き先を確認してください。"
@@ -1370,10 +1380,6 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "The match of {0} has no dense map to refine. Match them again with Dense Map on.": (
         "{0}のマッチングには改良する密なマップがありません。密なマップをオンにしてもう一度マッチングしてください。"
-    ),
-    'The match of "{0}" and "{1}" has no dense map that could carry checks. Match them again with Dense Map on.': (
-        "「{0}」と「{1}」のマッチングには市松模様を運ぶ密なマップがありません。密なマップをオンにしてもう一度"
-        "マッチングしてください。"
     ),
     (
         '"{0}" carries no colors called "{1}". Match again with {2} on under Output, and for confidence with '

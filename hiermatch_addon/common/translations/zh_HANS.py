@@ -39,6 +39,7 @@ MESSAGES: Final[dict[str, str]] = {
     "How far the dense map can be trusted, in a sentence; empty if there is none": (
         "用一句话说明稠密映射的可信程度；没有映射时为空"
     ),
+    "Overlap": "重叠",
     "Confidence": "置信度",
     "How far the dense map can be trusted as a whole": "稠密映射整体的可信程度",
     "Out of Date": "已过期",
@@ -446,6 +447,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Show the meshes as before": "按原来的样子显示网格",
     "Show corresponding places in the same color": "用相同颜色显示对应位置",
     "Show how much lengths differ, from dark blue (none) to yellow": "显示长度的差异，从深蓝（无差异）到黄色",
+    "Show in blue what has a counterpart on the other mesh, and in grey what has none": (
+        "用蓝色显示在另一个网格上有对应部分的地方，用灰色显示没有的地方"
+    ),
     "Show how far the dense map can be trusted, from dark red to white (fully)": (
         "显示稠密映射的可信程度，从深红到白色（完全可信）"
     ),
@@ -1000,6 +1004,12 @@ MESSAGES: Final[dict[str, str]] = {
     'Click on a place of "{0}" or "{1}"': "点击“{0}”或“{1}”上的一处",
     'Click on the corresponding place of "{0}"': "点击“{0}”上的对应位置",
     "Only {0} of the target is reached: {1}": "只覆盖了目标的 {0}：{1}",
+    "The shapes overlap: {0} of the source and {1} of the target have a partner.": (
+        "两个形状部分重叠：源的 {0} 和目标的 {1} 有对应位置。"
+    ),
+    "It is not clear what the shapes share: do not trust the map; add landmarks, or cut them alike.": (
+        "不清楚两个形状共有哪些部分：请不要信任该映射；请添加地标，或把它们裁成相同的部分。"
+    ),
     "Only {0} of the source has a partner: {1}": "源只有 {0} 有对应位置：{1}",
     "Separate pieces, {0} of a mesh, have no counterpart on the other: check where they went.": (
         "占网格 {0} 的独立部件在另一个网格上没有对应部件：请检查它们的去向。"
@@ -1120,9 +1130,6 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "The match of {0} has no dense map to refine. Match them again with Dense Map on.": (
         "{0} 的匹配没有可改进的稠密映射。请启用稠密映射重新匹配。"
-    ),
-    'The match of "{0}" and "{1}" has no dense map that could carry checks. Match them again with Dense Map on.': (
-        "“{0}”和“{1}”的匹配没有可传递棋盘格的稠密映射。请启用稠密映射重新匹配。"
     ),
     (
         '"{0}" carries no colors called "{1}". Match again with {2} on under Output, and for confidence with '

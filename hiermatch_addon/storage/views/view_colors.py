@@ -12,7 +12,10 @@ from .colors import NEUTRAL
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["check_size", "checked", "region_colors"]
+__all__ = ["check_size", "checked", "overlap_colors", "region_colors"]
+
+_SHARED = np.array([0.25, 0.55, 0.9])
+"""Blue (sRGB) of what has a partner."""
 
 _GOLDEN = (np.sqrt(5) - 1) / 2
 """Hues that are so far apart from one to the next never meet, however many there are."""
@@ -35,6 +38,11 @@ _DARK, _LIGHT = 0.35, 0.5
 
 _RAMP = 3.0
 """How steep the border of a check is."""
+
+
+def overlap_colors(has_partner: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Give vertices (n,) sRGB colours, (n, 3): blue if they have a partner, `NEUTRAL` grey if not."""
+    return np.where(has_partner[:, None], _SHARED, NEUTRAL)
 
 
 def region_colors(regions: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from ..contents import Content
 from ..stored_match import StoredMatch
 from ..vertex_maps import StoredMaps, map_name
 from . import colors
-from .view_colors import check_size, checked, region_colors
+from .view_colors import check_size, checked, overlap_colors, region_colors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,6 +34,7 @@ VIEW_ITEMS: Final = (
     ("MATCH", "Match Colors", "Show corresponding places in the same color"),
     ("DISTORTION", "Distortion", "Show how much lengths differ, from dark blue (none) to yellow"),
     ("CONFIDENCE", "Confidence", "Show how far the dense map can be trusted, from dark red to white (fully)"),
+    ("OVERLAP", "Overlap", "Show in blue what has a counterpart on the other mesh, and in grey what has none"),
     ("REGIONS", "Regions", "Show each vertex in the color of the nearest matched point"),
     ("CHECKER", "Checker", "Show checks on the source, and where the dense map takes them on the target"),
 )
@@ -43,10 +44,11 @@ _ENDINGS: Final = {
     "MATCH": "Match",
     "DISTORTION": "Distortion",
     "CONFIDENCE": "Confidence",
+    "OVERLAP": "Overlap Colors",
     "REGIONS": "Regions",
     "CHECKER": "Checker",
 }
-_MADE: Final = ("REGIONS", "CHECKER")
+_MADE: Final = ("OVERLAP", "REGIONS", "CHECKER")
 """Views that a match does not write."""
 
 
@@ -77,7 +79,8 @@ def prepare_view(context: bpy.types.Context, halves: tuple[Half, Half], view: st
         if view in _MADE and (stale := half.staleness()):
             raise ObjectError(stale)
     if view in _MADE:
-        shades = _regions(context, halves) if view == "REGIONS" else _checks(context, halves)
+        make = {"OVERLAP": _overlap, "REGIONS": _regions, "CHECKER": _checks}[view]
+        shades = make(context, halves)
         contents = [Content(colors={name: colors.opaque(colors.to_linear(shade))}) for shade in shades]
         for half, content in zip(halves, contents, strict=True):
             writing.check_names(half.obj, content, half.prefix)
@@ -182,14 +185,27 @@ def _regions(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDA
     return region_colors(one), region_colors(other)
 
 
-def _checks(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Colour both meshes by checks on the source, in the order of the halves."""
+def _overlap(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Colour both meshes by what has a partner on the other, in the order of the halves."""
+    maps = _needed_maps(context, halves)
+    own, other = (overlap_colors(found.has_partner) for found in (maps.source_to_target, maps.target_to_source))
+    return _as_asked(halves, (own, other))
+
+
+def _needed_maps(context: bpy.types.Context, halves: tuple[Half, Half]) -> MapPair:
+    """Read the dense maps, see `_maps`; that there are none is an error."""
     maps = _maps(context, halves)
     if maps is None:
         raise ObjectError(
-            f'The match of "{halves[0].obj.name}" and "{halves[1].obj.name}" has no dense map that could carry checks. '
-            "Match them again with Dense Map on."
+            f'The match of "{halves[0].obj.name}" and "{halves[1].obj.name}" has no dense map. '
+            "Match them with Dense Map on."
         )
+    return maps
+
+
+def _checks(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Colour both meshes by checks on the source, in the order of the halves."""
+    maps = _needed_maps(context, halves)
     places = maps.source.vertices
     size = check_size(places, float(np.median(maps.source.edge_lengths)))
     shades = colors.match_colors(places, maps.source.vertex_areas)

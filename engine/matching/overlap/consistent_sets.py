@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sets of candidates that go together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .oriented_patches import OrientedPatches
+    from .patch_candidates import Candidates
+
+__all__ = ["PLANS", "ConsistentSet", "Plan", "consistent_sets"]
+
+_ROUNDS = 5
+"""Rounds of the power iteration."""
+
+_WEAK, _LEAST_SHARE = 0.08, 0.15
+"""Support below which a candidate is dropped in a round; and share, of that of the best, below which it is not of the
+set."""
+
+_LEAST = 4
+"""Candidates in a set at least."""
+
+_COMMON, _APART = 0.4, 0.12
+"""Part of the smaller of two sets that must be in both for them to be compared, and median length of the path between
+their places from which on they are different."""
+
+_TIE = 1e-9
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How sets are looked for.
+
+    Attributes
+    ----------
+    radius : float
+        Length of paths from its seed that a set extends over.
+    seeds, most : int
+        How many candidates are tried as seeds, and how many sets, none like another, are kept.
+    """
+
+    radius: float
+    seeds: int
+    most: int
+
+
+PLANS = Plan(0.25, 400, 50), Plan(0.4, 300, 40), Plan(np.inf, 150, 12)
+"""Small sets find what little two surfaces share, and need not know how bodies are posed; large ones are clearer."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConsistentSet:
+    """Candidates that go together, one at most for each place of the first surface.
+
+    Attributes
+    ----------
+    members : (k,) array of int
+        Their numbers.
+    weights : (k,) array of float
+        How much each is supported by the others, at most 1.
+    """
+
+    members: NDArray[np.int64]
+    weights: NDArray[np.float32]
+
+
+def consistent_sets(
+    candidates: Candidates,
+    together: NDArray[np.float32],
+    patches: tuple[OrientedPatches, OrientedPatches],
+    shares: NDArray[np.float64],
+    plan: Plan,
+) -> list[ConsistentSet]:
+    """Find sets of candidates that go together, by power iterations from single ones.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        The candidates, k.
+    together : (k, k) array of float
+        How well each two go together.
+    patches : pair of OrientedPatches
+        The places of the two surfaces.
+    shares : (s,) array of float
+        Part of the first surface that each of its places stands for.
+    plan : Plan
+        How many, and how large.
+
+    Returns
+    -------
+    list of ConsistentSet
+        The best supported first; no two of them take the same places to about the same places.
+    """
+    first, share = candidates.first, shares.astype(np.float32)
+    near = patches[0].between < plan.radius
+    of_places = _Places(first)
+    support = ((near[first][:, of_places.numbers] * share[of_places.numbers]) * of_places.best(together).T).sum(axis=1)
+    within: dict[int, tuple[NDArray[np.int64], NDArray[np.float32], _Places]] = {}
+    found: list[tuple[float, ConsistentSet]] = []
+    for seed in np.argsort(-support, kind="stable")[: plan.seeds]:
+        place = int(first[seed])
+        if place not in within:
+            indices = np.flatnonzero(near[place][first])
+            # Row by row is far faster than all entries at once.
+            block = together if len(indices) == len(first) else together.take(indices, axis=0).take(indices, axis=1)
+            within[place] = indices, block, _Places(first[indices])
+        indices, block, places = within[place]
+        own = int(np.searchsorted(indices, seed))
+        grown = _grown(block, places, own, share[first[indices]])
+        if grown is not None:
+            strength, members, weights = grown
+            found.append((strength, ConsistentSet(indices[members], weights)))
+    found.sort(key=lambda pair: -pair[0])
+    return _distinct([each for _, each in found], candidates, patches, plan.most)
+
+
+def _grown(
+    block: NDArray[np.float32], places: _Places, seed: int, share: NDArray[np.float32]
+) -> tuple[float, NDArray[np.int64], NDArray[np.float32]] | None:
+    """Grow a set from a seed: its strength, members and their weights; None if it stays too small."""
+    weights = block[seed].copy()
+    weights[seed] = 1
+    for _ in range(_ROUNDS):
+        kept = np.flatnonzero(places.is_best(weights) & (weights > 0))
+        amounts = weights[kept] * share[kept]
+        support = amounts @ block[kept] / max(float(amounts.sum()), _TIE)
+        weights = support * (support > _WEAK)
+        weights /= max(float(weights.max()), _TIE)
+    kept = np.flatnonzero(places.is_best(weights) & (weights > _LEAST_SHARE))
+    if len(kept) < _LEAST:
+        return None
+    amounts = weights[kept] * share[kept]
+    strength = float(amounts @ block[np.ix_(kept, kept)] @ amounts / max(float(amounts.sum()), _TIE))
+    return strength, kept, weights[kept]
+
+
+def _distinct(
+    sets: list[ConsistentSet], candidates: Candidates, patches: tuple[OrientedPatches, OrientedPatches], most: int
+) -> list[ConsistentSet]:
+    """Keep the first of sets that are alike, so many at most."""
+    between = patches[1].between
+    kept: list[ConsistentSet] = []
+    taken: list[NDArray[np.int64]] = []
+    for each in sets:
+        images = np.full(len(patches[0]), -1)
+        images[candidates.first[each.members]] = candidates.second[each.members]
+        if not any(_are_alike(images, other, between) for other in taken):
+            kept.append(each)
+            taken.append(images)
+        if len(kept) == most:
+            break
+    return kept
+
+
+def _are_alike(images: NDArray[np.int64], others: NDArray[np.int64], between: NDArray[np.float64]) -> bool:
+    """Say whether two sets take what they share to about the same places, (s,) each, -1 for none."""
+    both = (images >= 0) & (others >= 0)
+    if both.sum() < _COMMON * min((images >= 0).sum(), (others >= 0).sum()):
+        return False
+    return bool(np.median(between[images[both], others[both]]) < _APART)
+
+
+class _Places:
+    """Candidates in the order of their places, to find the best of each."""
+
+    def __init__(self, places: NDArray[np.int64]) -> None:
+        self.numbers, self._starts = np.unique(places, return_index=True)
+        self._of = np.repeat(np.arange(len(self.numbers)), np.diff(np.append(self._starts, len(places))))
+
+    def best(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Largest of the values (k, ...) of each place."""
+        largest: NDArray[np.float32] = np.maximum.reduceat(values, self._starts, axis=0)
+        return largest
+
+    def is_best(self, values: NDArray[np.float32]) -> NDArray[np.bool_]:
+        """Say whether each value, (k,), is the largest of its place."""
+        largest: NDArray[np.bool_] = values >= self.best(values)[self._of] - _TIE
+        return largest

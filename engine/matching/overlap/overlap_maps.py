@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What two surfaces share, and how it corresponds, in full resolution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import diags_array
+from scipy.spatial import cKDTree
+
+from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.parallel_map import shared_steps
+from ...runtime.progress import Progress, within
+from .overlap_score import shared_area
+from .overlap_search import CoarsePair, overlap_fits_steps
+from .part_registration import FINE, TURNED, Landmarks, placed, register_parts
+from .part_surface import PartSurface
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...runtime.progress import Steps
+    from .overlap_search import ScoredFit
+    from .part_registration import Fit
+
+__all__ = ["Overlap", "overlap_steps"]
+
+_COARSE = 800
+"""Vertices of the coarse surfaces."""
+
+_LEAST_MEMBERS = 8
+"""Vertices of a coarse overlap at least."""
+
+_TRIP = 0.1
+"""Distance, in units of length, between a point with a partner and where both maps bring it, at most."""
+
+_OUTLINE = 3e-4
+"""How long what has a partner by both registrations spreads, in units of area, to have a smooth outline."""
+
+_ROTATION_RADIUS, _TETHER = 0.06, 1e-9
+"""Over what distance rotations of the coarse surface are averaged, in units of length; what keeps systems regular."""
+
+_HOLD = 3.0
+"""How much the coarse surface counts when the fine one is placed by it: for a surface of a thousand vertices."""
+
+_COMMON, _OTHER = 0.3, 0.12
+"""Part of the smaller of two overlaps that both must have, and median distance of the images, in units of length, up to
+which they say the same."""
+
+_NO_RIVAL = 20.0
+"""Difference of scores that is said where no other way was found."""
+
+_LABEL = "Fitting what the surfaces share"
+
+
+@dataclass(frozen=True, eq=False)
+class Overlap:
+    """What two surfaces share: n and n' vertices.
+
+    Attributes
+    ----------
+    positions : pair of arrays of float, (n, 3) and (n', 3)
+        Where the vertices of each lie on the other, in the coordinates of that one's mesh.
+    images : pair of arrays of int, (n,) and (n',)
+        The vertex of the other surface that is most like each.
+    members : pair of arrays of bool, (n,) and (n',)
+        Which vertices have a partner.
+    score : float
+        How credible the best way is, see `overlap_score`.
+    margin : float
+        By how much the best other way is less credible.
+    agreement : float
+        Area of what has a partner by both registrations, as a part of that by either.
+    area : float
+        Area of what is shared, as a part of that of the larger surface.
+    """
+
+    positions: tuple[NDArray[np.float64], NDArray[np.float64]]
+    images: tuple[NDArray[np.int64], NDArray[np.int64]]
+    members: tuple[NDArray[np.bool_], NDArray[np.bool_]]
+    score: float
+    margin: float
+    agreement: float
+    area: float
+
+
+def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0) -> Steps[Overlap | None]:
+    """Find what two surfaces share, and how that corresponds.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The surfaces: connected manifolds, of some thousand vertices, each of which may show only a part of a body.
+    scale : float
+        How many units of length of the source a unit of the target is.
+
+    Returns
+    -------
+    Overlap or None
+        The most credible way; None if nothing is shared by both registrations.
+
+    Notes
+    -----
+    Surroundings of points are compared where both surfaces show them.  Alike ones that go together, by their distances
+    and rotations, say how one surface may be laid onto the other; each such way is followed by a registration of coarse
+    surfaces, in which what has no partner does not count; and the most credible is followed in full resolution, both
+    ways.  What both registrations give a partner has one.
+    """
+    unit = float(np.sqrt(max(source.area, target.area * scale**2)))
+    lengths = unit, unit / scale
+    centres = source.vertices.mean(axis=0), target.vertices.mean(axis=0)
+    surfaces = tuple(
+        PartSurface(TriangleMesh((mesh.vertices - centre) / length, mesh.triangles))
+        for mesh, centre, length in zip((source, target), centres, lengths, strict=True)
+    )
+    first = yield from within(surfaces[0].proxy_steps(_COARSE), 0.0, 0.02)
+    second = yield from within(surfaces[1].proxy_steps(_COARSE), 0.02, 0.04)
+    pair = CoarsePair((surfaces[0], surfaces[1]), (first, second))
+    ways = yield from within(shared_steps(_one_way_steps, pair, (False, True)), 0.04, 0.85)
+    found = sorted(((each, back) for back, way in enumerate(ways) for each in way), key=lambda either: -either[0].score)
+    if not found:
+        return None
+    best, back = found[0]
+    rivals = [each.score for each, other in found[1:] if _differ(pair.coarse, _side(best, back), _side(each, other))]
+    margin = best.score - rivals[0] if rivals else _NO_RIVAL
+    turned = pair.turned() if back else pair
+    fits = yield from within(_fine_fits_steps(turned, best.fit), 0.85, 1.0)
+    if fits is None:
+        return None
+    members, agreement = _members_of_both(turned.surfaces, fits)
+    if not (members[0].any() and members[1].any()):
+        return None
+    area = shared_area(*turned.coarse, best.fit)
+    order = slice(None, None, -1 if back else 1)
+    positions, images = (
+        (fits[0].positions, fits[1].positions)[order],
+        (fits[0].there.images, fits[1].there.images)[order],
+    )
+    return Overlap(
+        (positions[0] * lengths[1] + centres[1], positions[1] * lengths[0] + centres[0]),
+        (images[0], images[1]),
+        members if not back else members[::-1],
+        best.score,
+        float(margin),
+        agreement,
+        area,
+    )
+
+
+def _one_way_steps(pair: CoarsePair, back: bool) -> Steps[list[ScoredFit]]:  # noqa: FBT001 -- an item of `shared_steps`
+    """Lay one surface onto the other, or the other way round."""
+    return (yield from overlap_fits_steps(pair.turned() if back else pair))
+
+
+_Side = tuple["NDArray[np.int64]", "NDArray[np.bool_]"]
+
+
+def _side(scored: ScoredFit, back: int) -> _Side:
+    """Return what a fit says of the first surface: the image of each vertex, and which have one."""
+    fit = scored.fit
+    return (fit.back.images, fit.members_back) if back else (fit.there.images, fit.members)
+
+
+def _differ(coarse: tuple[PartSurface, PartSurface], first: _Side, second: _Side) -> bool:
+    """Say whether two maps of the first coarse surface lead to different places."""
+    both = first[1] & second[1]
+    if both.sum() < _COMMON * min(first[1].sum(), second[1].sum()):
+        return True
+    places = coarse[1].vertices
+    apart = np.linalg.norm(places[first[0][both]] - places[second[0][both]], axis=1)
+    return bool(len(apart) and np.median(apart) > _OTHER)
+
+
+def _fine_fits_steps(pair: CoarsePair, fit: Fit) -> Steps[tuple[Fit, Fit] | None]:
+    """Follow a registration of coarse surfaces in full resolution, and register the other surface to the first."""
+    source, target = pair.surfaces
+    coarse, other = pair.coarse
+    there = _fine_fit(source, target, coarse, fit.positions)
+    yield Progress(0.4, _LABEL)
+    known = np.flatnonzero(fit.members_back)
+    if len(known) < _LEAST_MEMBERS:
+        return None
+    images = fit.back.images[known]
+    marks = Landmarks(known, coarse.vertices[images], other.mass[known])
+    positions, marks = placed(other, marks, fit.rotations[images].transpose(0, 2, 1), other.paths(known))
+    back = register_parts(other, coarse, positions, TURNED, marks=marks)
+    yield Progress(0.6, _LABEL)
+    reverse = _fine_fit(target, source, other, back.positions)
+    yield Progress(1.0, _LABEL)
+    return there, reverse
+
+
+def _fine_fit(source: PartSurface, target: PartSurface, coarse: PartSurface, positions: NDArray[np.float64]) -> Fit:
+    """Register a surface from where the coarse one that stands for it is."""
+    weights = np.zeros(source.count)
+    weights[coarse.ids] = _HOLD * np.sqrt(1000 * source.area / source.count)
+    right = np.zeros((source.count, 3))
+    right[coarse.ids] = weights[coarse.ids, None] * positions
+    elastic = source.elastic
+    rotations = coarse.elastic.rotations(positions, _ROTATION_RADIUS)[
+        cKDTree(coarse.vertices).query(source.vertices)[1]
+    ]
+    factor = symmetric_factor(elastic.stiffness + diags_array(weights + _TETHER))
+    return register_parts(source, target, factor.solve(elastic.pull(rotations) + right), FINE)
+
+
+def _members_of_both(
+    surfaces: tuple[PartSurface, PartSurface], fits: tuple[Fit, Fit]
+) -> tuple[tuple[NDArray[np.bool_], NDArray[np.bool_]], float]:
+    """Say which vertices of either surface have a partner by both registrations, and how far these agree."""
+    said = (fits[0].members, fits[1].members_back), (fits[1].members, fits[0].members_back)
+    images = fits[0].there.images, fits[1].there.images
+    members = []
+    for number, (surface, (own, others)) in enumerate(zip(surfaces, said, strict=True)):
+        there, back = images[number], images[1 - number]
+        home = np.linalg.norm(surface.vertices[back[there]] - surface.vertices, axis=1) < _TRIP
+        mean = (own.astype(np.float64) + others) / 2
+        members.append(surface.smoothed(mean * home, _OUTLINE) > 1 / 2)
+    own, others = said[0]
+    either = float(surfaces[0].mass @ (own | others))
+    agreement = float(surfaces[0].mass @ members[0]) / either if either else 0.0
+    return (members[0], members[1]), agreement

@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Match two surfaces that may share only a part of what they show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import expit
+
+from ...dense.components.component_maps import follow_steps
+from ...dense.missing_parts import round_trips
+from ...dense.quality import MatchQuality, overlap_sentence, trip_confidence
+from ...geometry.sampling import FarthestPointSampler
+from ...hierarchical.sparse_result import CoarseMatch, Level
+from ...mesh.connectivity.adjacency import neighbour_means
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.surface_points import SurfacePoints
+from ...registration.prolongation import lift_steps
+from ...runtime.progress import Progress, within
+from ..result import MatchResult
+from .overlap_maps import overlap_steps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from ...runtime.progress import Steps
+    from ...shapes.shape import Shape
+    from ..shape_matching import MatchTask
+    from .overlap_maps import Overlap
+
+__all__ = ["CREDIBLE", "OverlapMatch", "credibility", "overlap_match_steps"]
+
+CREDIBLE = 0.5
+"""Credibility from which on an overlap is more likely right than not."""
+
+_SCORE, _MARGIN, _AGREEMENT, _AREA = (2.5, 0.6), (1.4, 0.35), (0.6, 0.06), (0.2, 0.04)
+"""Of what an overlap is judged by, the value at which it is believed as often as not if all else is clear, and by how
+much more or less that changes: see the attributes of `Overlap`."""
+
+_SIZES = 2.5
+"""Ratio of the sizes of two surfaces, in the units they are given in, from which on these are not the same unit."""
+
+_SCALES = 1.0, 1 / 1.3, 1.3
+"""What is tried then: ratios of sizes, as many as make both surfaces as large as each other."""
+
+_LEAST_POINTS = 4
+"""Points at least that are shown of an overlap."""
+
+_LABEL = "Mapping every vertex"
+
+
+@dataclass(frozen=True, eq=False)
+class OverlapMatch:
+    """A match of what two surfaces share.
+
+    Attributes
+    ----------
+    result : MatchResult
+        The match.
+    credibility : float
+        How likely it is right as a whole, 0 to 1.
+    shares : pair of float
+        Part of the area of the main part of the source, and of the target, that is shared.
+    """
+
+    result: MatchResult
+    credibility: float
+    shares: tuple[float, float]
+
+
+def credibility(overlap: Overlap) -> float:
+    """Estimate how likely an overlap is right as a whole, 0 to 1."""
+    known = overlap.score, overlap.margin, overlap.agreement, overlap.area
+    limits = _SCORE, _MARGIN, _AGREEMENT, _AREA
+    return float(np.prod([expit((value - half) / spread) for value, (half, spread) in zip(known, limits, strict=True)]))
+
+
+def overlap_match_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[OverlapMatch | None]:
+    """Match what two surfaces share.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The source and the target.
+    task : MatchTask
+        What is wanted; landmarks do not count.
+
+    Returns
+    -------
+    OverlapMatch or None
+        The match: vertices outside of the overlap have no partner, and no confidence.  None if no overlap was found.
+    """
+    overlap = yield from within(_found_steps(x, y), 0.0, 0.8)
+    task.clock.lap("overlap")
+    if overlap is None:
+        return None
+    likely = credibility(overlap)
+    lifted = []
+    for number, (own, other) in enumerate(((x, y), (y, x))):
+        lifting = _lifted_steps(own, other, overlap.positions[number], overlap.images[number])
+        lifted.append((yield from within(lifting, 0.8 + 0.06 * number, 0.86 + 0.06 * number)))
+    main = x.surface.cleaned.mesh, y.surface.cleaned.mesh
+    known = _on_main(x, overlap.members[0]), _on_main(y, overlap.members[1])
+    shared = _Shared(main, (lifted[0], lifted[1]), known, likely)
+    forward = yield from within(_whole_map_steps((x, y), shared, 0), 0.92, 0.95)
+    backward = yield from within(_whole_map_steps((y, x), shared, 1), 0.95, 0.98)
+    quality = _quality(shared, overlap.margin)
+    task.clock.lap("lift")
+    yield Progress(0.98, _LABEL)
+    result = _result((x, y), overlap, task, (forward, backward), quality)
+    return OverlapMatch(result, likely, shared.shares)
+
+
+def _found_steps(x: Shape, y: Shape) -> Steps[Overlap | None]:
+    """Find what two surfaces share: in the units they are given in, if that can be, or in the most credible ones."""
+    ratio = x.scale / y.scale
+    scales = [1.0] if 1 / _SIZES < ratio < _SIZES else [ratio * scale for scale in _SCALES]
+    found = []
+    for number, scale in enumerate(scales):
+        begin, end = ((number + i) / len(scales) for i in (0, 1))
+        overlap = yield from within(overlap_steps(x.mesh, y.mesh, scale), begin, end)
+        if overlap is not None:
+            found.append(overlap)
+    return max(found, key=credibility, default=None)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shared:
+    """What two surfaces share, in full resolution.
+
+    Attributes
+    ----------
+    meshes : pair of TriangleMesh
+        The main parts, n and n' vertices.
+    maps : pair of SurfacePoints
+        For each vertex of either its point on the other.
+    known : pair of arrays of bool, (n,) and (n',)
+        Which have a partner.
+    likely : float
+        How likely all of it is right.
+    """
+
+    meshes: tuple[TriangleMesh, TriangleMesh]
+    maps: tuple[SurfacePoints, SurfacePoints]
+    known: tuple[NDArray[np.bool_], NDArray[np.bool_]]
+    likely: float
+
+    @property
+    def shares(self) -> tuple[float, float]:
+        """Part of the area of either that is shared."""
+        source, target = (
+            float(mesh.vertex_areas @ known) / mesh.area for mesh, known in zip(self.meshes, self.known, strict=True)
+        )
+        return source, target
+
+    def trips(self, here: int) -> NDArray[np.float64]:
+        """Distance between each vertex of one surface and where both maps bring it, in sqrt(area)."""
+        trips: NDArray[np.float64] = round_trips(self.meshes[here], self.maps[here], self.maps[1 - here])
+        return trips / np.sqrt(self.meshes[here].area)
+
+    def trust(self, here: int) -> NDArray[np.float64]:
+        """How far the image of each vertex of one surface can be trusted: no more than all of it."""
+        confidence = neighbour_means(self.meshes[here], trip_confidence(self.trips(here)))
+        return self.likely * self.known[here] * np.clip(confidence, 0, 1)
+
+
+def _lifted_steps(
+    own: Shape, other: Shape, positions: NDArray[np.float64], images: NDArray[np.int64]
+) -> Steps[SurfacePoints]:
+    """Map every vertex of the main part of one surface to that of the other."""
+    surface, image = own.surface, other.surface
+    ends = surface.cleaned.mesh, surface.proxy, positions, image.cleaned.mesh
+    return (yield from lift_steps(*ends, target_proxy=image.proxy, proxy_map=images, search=image.dense_search))
+
+
+def _on_main(shape: Shape, members: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Carry truth values (k,) of what is matched to the vertices of the main part."""
+    proxy = shape.surface.proxy
+    if proxy.is_identity:
+        return members
+    points = proxy.points
+    shares = np.einsum("nc,nc->n", points.barycentric, members[points.corners].astype(np.float64))
+    return shares > 1 / 2
+
+
+def _whole_map_steps(pair: tuple[Shape, Shape], shared: _Shared, here: int) -> Steps[SurfaceMap]:
+    """Extend the map of one main part, with its confidence and which vertices have a partner, to all of its mesh."""
+    x, y = pair
+    followed = yield from follow_steps(x.surface.cleaned, y.surface.cleaned, shared.maps[here])
+    confidence = followed.confidence * shared.trust(here)[followed.surroundings]
+    triangles = y.surface.kept_triangles[followed.points.triangles]
+    partners = shared.known[here][followed.surroundings]
+    return SurfaceMap.from_barycentric(y.original, triangles, followed.points.barycentric, confidence, partners)
+
+
+def _quality(shared: _Shared, margin: float) -> MatchQuality:
+    """Measure what is shared."""
+    (source, target), known = shared.meshes, shared.known[0]
+    areas = source.vertex_areas * known
+    total = max(float(areas.sum()), np.finfo(float).tiny)
+    found = SurfaceMap.from_points(target, shared.maps[0])
+    shown = source.triangle_areas * known[source.triangles].all(axis=1)
+    orientation = float(shown @ found.face_orientations(source, target)) / max(float(shown.sum()), np.finfo(float).tiny)
+    # In one unit of length: parts have no sizes of their own.
+    stretch = found.edge_stretch(source, target) * np.sqrt(target.area / source.area)
+    usable = known[source.edges].all(axis=1) & np.isfinite(stretch) & (stretch > 0)
+    weights = np.square(source.edge_lengths[usable])
+    distortion = float(weights @ np.abs(np.log(stretch[usable]))) / max(float(weights.sum()), np.finfo(float).tiny)
+    confidence = float(areas @ shared.trust(0)) / total * max(orientation, 0.0)
+    disagreement = float(areas @ shared.trips(0)) / total
+    credible = shared.likely >= CREDIBLE
+    sentence = overlap_sentence(shared.shares, credible=credible)
+    # What is not likely right has no partner as likely as not.
+    shares = [share * (1.0 if credible else shared.likely) for share in shared.shares]
+    numbers = orientation, distortion, shares[1], disagreement, margin, confidence
+    return MatchQuality(*numbers, sentence, source_coverage=shares[0])
+
+
+def _result(
+    pair: tuple[Shape, Shape],
+    overlap: Overlap,
+    task: MatchTask,
+    maps: tuple[SurfaceMap, SurfaceMap],
+    quality: MatchQuality,
+) -> MatchResult:
+    """Show the map by points that are spread over what is shared."""
+    (x, y), (forward, backward) = pair, maps
+    settings = task.settings
+    members = np.flatnonzero(overlap.members[0])
+    vertices = _spread(x, members, settings.points)
+    own = x.vertices[vertices]
+    images = SurfacePoints.from_barycentric(y.original, forward.triangles[own], forward.barycentric[own])
+    ends = y.surface.mesh_vertices(images.nearest_vertices) if _on_main_part(y, images) else overlap.images[0][vertices]
+    unit = max(x.scale, y.scale)
+    differences = (x.solver.distances(vertices)[:, vertices] - y.solver.distances(ends)[:, ends]) / unit
+    squares = np.where(np.isfinite(differences), np.square(differences), 0.0)
+    distortion = settings.quadratic_weight * float(squares.sum())
+    first = min(settings.coarse_points, len(vertices))
+    coarse = settings.quadratic_weight * float(squares[:first, :first].sum())
+    return MatchResult(
+        source_points=SurfacePoints.at_vertices(x.original, own),
+        target_points=images,
+        distortion=distortion,
+        linear=0.0,
+        quadratic=float(squares.sum()),
+        point_distortion=np.sqrt(squares.sum(axis=1) / max(len(vertices) - 1, 1)),
+        orientation=quality.orientation,
+        levels=(Level(len(vertices), 0, distortion, images),),
+        coarse=CoarseMatch(own[:first], images.nearest_vertices[:first], first, coarse, 0.0, proven=False, nodes=0),
+        mirrored=None,
+        source_distances=None,
+        target_distances=None,
+        notes=tuple(note for shape in (x, y) for note in shape.surface.cleaned.notes),
+        seconds=dict(task.clock.laps),
+        source_to_target=forward,
+        target_to_source=backward,
+        quality=quality,
+    )
+
+
+def _on_main_part(shape: Shape, points: SurfacePoints) -> bool:
+    """Say whether all points lie on the main part of a mesh."""
+    return bool((shape.surface.cleaned.vertex_parts[points.nearest_vertices] == 0).all())
+
+
+def _spread(shape: Shape, members: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Take some of the vertices (k,) of a surface, far from each other; they may be in several pieces."""
+    graph = shape.solver.graph
+    centre = shape.mesh.vertices[members].mean(axis=0)
+    first = members[int(np.square(shape.mesh.vertices[members] - centre).sum(axis=1).argmax())]
+    sampler = FarthestPointSampler(graph, int(first))
+    inside = np.zeros(shape.mesh.vertex_count, bool)
+    inside[members] = True
+    sampler.distances[~inside] = -1.0
+    sampler.extend(max(min(count, len(members)), min(_LEAST_POINTS, len(members))))
+    return np.array(sampler.samples)

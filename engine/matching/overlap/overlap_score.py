@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How credible it is that two surfaces overlap as a registration has it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .part_registration import Fit
+    from .part_surface import PartSurface
+
+__all__ = ["overlap_score", "shared_area"]
+
+_GAP, _STRAIN, _CURVATURE, _INNER, _AREA = (
+    (-4.0, 0.003, 0.0205),
+    (-4.5, 0.03, 0.315),
+    (-2.1, 0.01, 0.1),
+    (-2.7, 0.5, 7.7),
+    (1.9, 0.0, 0.49),
+)
+"""What counts, each as a weight of the logarithm of the sum of the value and a constant by another: the mean distance
+that is left, elastic energy by area, mean difference of curvatures, length of the outline of the overlap that is at no
+cut, and area of the overlap, in units of length."""
+
+_BIAS = -3.0
+"""Chosen so that registrations of score zero are right as often as not, if there is no other evidence."""
+
+_AT_CUT = 0.05
+"""Distance to where a surface was cut up to which an outline ends there."""
+
+_LEAST_AREA = 0.01
+
+
+def shared_area(source: PartSurface, target: PartSurface, fit: Fit) -> float:
+    """Return the area of the overlap, the mean of that on both surfaces."""
+    return float(source.mass @ fit.members + target.mass @ fit.members_back) / 2
+
+
+def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
+    """Compare registrations: larger is more credible.
+
+    The overlap of two parts of a body ends where one of them was cut off.  The true one is closely matched, hardly
+    strained, and has no other outline.
+    """
+    here, there = source.mass * fit.members, target.mass * fit.members_back
+    both = max(float(here.sum() + there.sum()), np.finfo(float).tiny)
+    differences = (
+        np.abs(source.curvatures - target.curvatures[fit.there.images]).mean(axis=1),
+        np.abs(target.curvatures - source.curvatures[fit.back.images]).mean(axis=1),
+    )
+    inner = _inner_outline(source, target, fit.members, fit.there.images)
+    inner += _inner_outline(target, source, fit.members_back, fit.back.images)
+    values = (
+        float(here @ fit.there.gaps + there @ fit.back.gaps) / both,
+        float(fit.energies @ fit.members) / max(float(here.sum()), np.finfo(float).tiny),
+        float(here @ differences[0] + there @ differences[1]) / both,
+        inner,
+        max(shared_area(source, target, fit), _LEAST_AREA),
+    )
+    terms = zip((_GAP, _STRAIN, _CURVATURE, _INNER, _AREA), values, strict=True)
+    return _BIAS + sum(weight * float(np.log((value + more) / unit)) for (weight, more, unit), value in terms)
+
+
+def _inner_outline(
+    surface: PartSurface, other: PartSurface, members: NDArray[np.bool_], images: NDArray[np.int64]
+) -> float:
+    """Length of the outline of the overlap on a surface that is inside of both, about."""
+    edges = surface.mesh.edges
+    ends = members[edges]
+    crossing = edges[ends[:, 0] != ends[:, 1]]
+    inside = np.where(members[crossing[:, 0]], crossing[:, 0], crossing[:, 1])
+    return float((other.border_distances[images[inside]] >= _AT_CUT).sum()) * surface.spacing

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The most credible ways in which one surface may overlap with another, on coarse surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...runtime.progress import Progress, within
+from .consistent_sets import PLANS, consistent_sets
+from .oriented_patches import oriented_patches
+from .overlap_score import overlap_score
+from .part_registration import FAST, REST, Landmarks, placed, register_parts
+from .patch_candidates import compatibilities, patch_candidates
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from ...runtime.progress import Steps
+    from .consistent_sets import ConsistentSet
+    from .part_registration import Fit
+    from .part_surface import PartSurface
+
+__all__ = ["CoarsePair", "ScoredFit", "overlap_fits_steps"]
+
+_PATCHES = 160, 300
+"""Patches of the surface that is laid onto the other, and of that one."""
+
+_REGROWN, _POLISHED, _KEPT = 6, 5, 8
+"""How many of the best fits are grown again, are registered once more, and are returned."""
+
+_SAME = 0.05
+"""Median distance of the vertices in either overlap, in units of length, up to which two fits are the same."""
+
+_BAD_GAP, _BAD_STRAIN, _STRAIN_SMOOTHING = 0.02, 0.25, 4e-4
+"""Distance to its match, and elastic energy by area, that are as bad as each other; and how long the latter spreads."""
+
+_LEAST_MEMBERS = 16
+"""Vertices in an overlap from which on it is grown again."""
+
+_BEYOND = 0.03
+"""How much sooner than from other landmarks a fit grows again from its better half, whose vertices lie close."""
+
+_LABEL = "Looking for what the surfaces share"
+
+
+@dataclass(frozen=True, eq=False)
+class CoarsePair:
+    """Two surfaces, and coarse ones that stand for them.
+
+    Attributes
+    ----------
+    surfaces, coarse : pair of PartSurface
+        In full resolution, and coarse.
+    """
+
+    surfaces: tuple[PartSurface, PartSurface]
+    coarse: tuple[PartSurface, PartSurface]
+
+    def turned(self) -> CoarsePair:
+        """Return the pair the other way round."""
+        return CoarsePair(self.surfaces[::-1], self.coarse[::-1])
+
+
+@dataclass(frozen=True, eq=False)
+class ScoredFit:
+    """A registration of coarse surfaces, and how credible it is, see `overlap_score`."""
+
+    fit: Fit
+    score: float
+
+
+def overlap_fits_steps(pair: CoarsePair) -> Steps[list[ScoredFit]]:
+    """Lay the first surface of a pair onto the second in many ways, and return the most credible ones, best first."""
+    source, target = pair.coarse
+    yield Progress(0.0, _LABEL)
+    starts = yield from within(_starts_steps(pair), 0.0, 0.3)
+    fits = []
+    for number, (positions, marks, from_marks) in enumerate(starts):
+        fits.append(
+            _scored(source, target, register_parts(source, target, positions, FAST, marks=marks, from_marks=from_marks))
+        )
+        yield Progress(0.3 + 0.55 * (number + 1) / len(starts), _LABEL)
+    best = _distinct(fits, _REGROWN)
+    for number, each in enumerate(list(best)):
+        best.append(_regrown(source, target, each))
+        yield Progress(0.85 + 0.07 * (number + 1) / _REGROWN, _LABEL)
+    for number, each in enumerate(_distinct(best, _POLISHED)):
+        best.append(_scored(source, target, register_parts(source, target, each.fit.positions, REST)))
+        yield Progress(0.92 + 0.08 * (number + 1) / _POLISHED, _LABEL)
+    return _distinct(best, _KEPT)
+
+
+_Start = tuple["NDArray[np.float64]", Landmarks, "NDArray[np.float64] | None"]
+
+
+def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
+    """Place the first coarse surface by sets of patches that go together."""
+    here, there = pair.surfaces
+    coarse = pair.coarse[0]
+    patches = oriented_patches(here, _PATCHES[0]), oriented_patches(there, _PATCHES[1])
+    yield Progress(0.2, _LABEL)
+    candidates = patch_candidates(*patches)
+    together = compatibilities(candidates, pair.surfaces, patches)
+    yield Progress(0.5, _LABEL)
+    shares = np.bincount(patches[0].paths.argmin(axis=0), here.mass, len(patches[0])) / here.area
+    nearest = cKDTree(coarse.vertices).query(here.vertices[patches[0].vertices])[1]
+    starts: list[_Start] = []
+    for number, plan in enumerate(PLANS):
+        sets: list[ConsistentSet] = consistent_sets(candidates, together, patches, shares, plan)
+        for each in sets:
+            first, second = candidates.first[each.members], candidates.second[each.members]
+            paths = patches[0].paths[first][:, coarse.ids]
+            marks = Landmarks(nearest[first], there.vertices[patches[1].vertices[second]], each.weights)
+            positions, marks = placed(coarse, marks, candidates.rotations[each.members], paths)
+            starts.append((positions, marks, paths.min(axis=0) if np.isfinite(plan.radius) else None))
+        yield Progress(0.5 + (number + 1) / (2 * len(PLANS)), _LABEL)
+    return starts
+
+
+def _scored(source: PartSurface, target: PartSurface, fit: Fit) -> ScoredFit:
+    return ScoredFit(fit, overlap_score(source, target, fit))
+
+
+def _distinct(fits: Iterable[ScoredFit], most: int) -> list[ScoredFit]:
+    """Keep the best of fits that are the same, so many at most, best first."""
+    kept: list[ScoredFit] = []
+    for each in sorted(fits, key=lambda fit: -fit.score):
+        if len(kept) == most:
+            break
+        if not any(_are_same(each.fit, other.fit) for other in kept):
+            kept.append(each)
+    return kept
+
+
+def _are_same(first: Fit, second: Fit) -> bool:
+    """Say whether two registrations bring what overlaps to the same places."""
+    either = first.members | second.members
+    apart = np.linalg.norm(first.positions[either] - second.positions[either], axis=1)
+    return not len(apart) or float(np.median(apart)) <= _SAME
+
+
+def _regrown(source: PartSurface, target: PartSurface, scored: ScoredFit) -> ScoredFit:
+    """Register again from the half of the overlap that fits best."""
+    fit = scored.fit
+    if fit.members.sum() < _LEAST_MEMBERS:
+        return scored
+    strain = source.smoothed(fit.energies / source.mass, _STRAIN_SMOOTHING)
+    bad = fit.there.gaps / _BAD_GAP + np.maximum(strain, 0) / _BAD_STRAIN
+    good = np.flatnonzero(fit.members & (bad <= np.median(bad[fit.members])))
+    paths = source.paths(good)
+    marks = Landmarks(good, target.vertices[fit.there.images[good]], source.mass[good])
+    positions, marks = placed(source, marks, fit.rotations[good], paths)
+    from_marks = paths.min(axis=0) + _BEYOND
+    return _scored(source, target, register_parts(source, target, positions, FAST, marks=marks, from_marks=from_marks))

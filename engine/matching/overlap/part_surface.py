@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surface that may show only a part of a body, in a unit that it shares with the other one."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+
+from ...geometry.laplacian import laplace_beltrami
+from ...geometry.sampling import farthest_point_sampling
+from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.closest_points import ClosestPoints
+from ...registration.deformable import heat_curvatures
+from ...registration.elastic import ElasticSurface
+from ...shapes.proxy import proxy_steps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from scipy.sparse.linalg import SuperLU
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from ...runtime.progress import Steps
+
+__all__ = ["PartSurface", "summed_rows"]
+
+_PINHOLE = 0.08
+"""Length of a loop of the border, in sqrt(area) of the surface, up to which nothing was cut off there: it is a hole."""
+
+_CURVATURE_TIMES = 6e-4, 2e-3
+"""How long the mean curvature is smoothed by heat, in units of area."""
+
+_UNREACHED = 9.0
+"""Distance to the border, in units of length, where there is none: farther than any surface of unit area is wide."""
+
+
+class PartSurface:
+    """A surface and what is needed to find what it shares with another one.
+
+    All lengths are in one unit for both surfaces: parts have no sizes of their own to be compared in.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface, connected, in that unit, n vertices.
+    ids : (n,) array of int, optional
+        For each vertex the one that it stands for on the surface that this is a proxy of; by default itself.
+
+    Attributes
+    ----------
+    vertices, normals : (n, 3) array of float
+        Positions and unit normals.
+    mass : (n,) array of float
+        Area of each vertex.
+    """
+
+    is_sent_once = True
+    """See `sharing.shared_steps`."""
+
+    def __init__(self, mesh: TriangleMesh, ids: NDArray[np.int64] | None = None) -> None:
+        self.mesh = mesh
+        self.ids = np.arange(mesh.vertex_count) if ids is None else ids
+        self.vertices, self.normals = mesh.vertices, mesh.vertex_normals
+        self._laplace = laplace_beltrami(mesh)
+        self.mass = self._laplace.mass
+        self.area = float(self.mass.sum())
+        self._factors: dict[float, SuperLU] = {}
+
+    def __getstate__(self) -> dict[str, object]:
+        """Leave out the factors, which cannot be sent."""
+        return {**self.__dict__, "_factors": {}}
+
+    def proxy_steps(self, vertices: int) -> Steps[PartSurface]:
+        """Make a coarse surface of about so many vertices that stands for this one."""
+        proxy = yield from proxy_steps(self.mesh, vertices)
+        return PartSurface(proxy.mesh, proxy.vertices)
+
+    @property
+    def count(self) -> int:
+        """Number of vertices."""
+        return len(self.vertices)
+
+    @property
+    def spacing(self) -> float:
+        """Distance between neighbouring vertices, about."""
+        return float(np.sqrt(self.area / self.count))
+
+    @cached_property
+    def search(self) -> ClosestPoints:
+        """Search for points of the surface; its triangles serve all searches on it."""
+        return ClosestPoints(self.mesh)
+
+    @cached_property
+    def elastic(self) -> ElasticSurface:
+        """Its resistance to deformation."""
+        return ElasticSurface(self.vertices, self._laplace)
+
+    @cached_property
+    def curvatures(self) -> NDArray[np.float64]:
+        """Mean curvature at two scales, without unit, (n, 2); see `heat_curvatures`."""
+        return heat_curvatures(self._laplace.stiffness, self.mass, self.vertices, self.normals, _CURVATURE_TIMES)
+
+    @cached_property
+    def graph(self) -> csr_array:
+        """Lengths of the edges, in both directions, (n, n)."""
+        first, second = self.mesh.edges.T
+        ends = np.concatenate([first, second]), np.concatenate([second, first])
+        return csr_array((np.tile(self.mesh.edge_lengths, 2), ends), shape=(self.count,) * 2)
+
+    @cached_property
+    def border(self) -> NDArray[np.bool_]:
+        """Vertices (n,) at which something may have been cut off: those of loops of the border that are no pinholes."""
+        edges = self.mesh.boundary_edges
+        cut = np.zeros(self.count, bool)
+        if len(edges):
+            graph = coo_array((np.ones(len(edges)), edges.T), shape=(self.count,) * 2)
+            loops = connected_components(graph, directed=False)[1][edges[:, 0]]
+            lengths = np.linalg.norm(self.vertices[edges[:, 0]] - self.vertices[edges[:, 1]], axis=1)
+            cut[edges[np.bincount(loops, lengths)[loops] > _PINHOLE * np.sqrt(self.area)]] = True
+        return cut
+
+    @cached_property
+    def border_distances(self) -> NDArray[np.float64]:
+        """Distance of each vertex to where the surface was cut, (n,); `_UNREACHED` where it was not."""
+        if not self.border.any():
+            return np.full(self.count, _UNREACHED)
+        return np.minimum(self.nearest_path(np.flatnonzero(self.border)), _UNREACHED)
+
+    def paths(self, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Lengths of the shortest paths from vertices (k,) to all, (k, n); infinite where there is none."""
+        lengths: NDArray[np.float64] = dijkstra(self.graph, indices=vertices)
+        return lengths
+
+    def nearest_path(self, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Length of the shortest path from any of some vertices (k,) to each, (n,)."""
+        lengths: NDArray[np.float64] = dijkstra(self.graph, indices=vertices, min_only=True)
+        return lengths
+
+    def samples(self, count: int) -> NDArray[np.int64]:
+        """Take vertices far from each other, at most so many, that do not depend on the order of the vertices."""
+        if self.border.any():
+            start = int(self.border_distances.argmax())
+        else:
+            centre = self.mass @ self.vertices / self.area
+            start = int(np.square(self.vertices - centre).sum(axis=1).argmax())
+        return farthest_point_sampling(self.graph, min(count, self.count), start)
+
+    def smoothed(self, values: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        """Let values (n, ...) at the vertices spread like heat for a time, in units of area."""
+        if time not in self._factors:
+            self._factors[time] = symmetric_factor(diags_array(self.mass) + time * self._laplace.stiffness)
+        flat = values.reshape(self.count, -1)
+        return self._factors[time].solve(self.mass[:, None] * flat).reshape(values.shape)
+
+    def largest_piece(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Keep of the chosen vertices (n,) those of the connected piece with the largest area."""
+        edges = self.mesh.edges[chosen[self.mesh.edges].all(axis=1)]
+        graph = coo_array((np.ones(len(edges)), edges.T), shape=(self.count,) * 2)
+        pieces = connected_components(graph, directed=False)[1]
+        areas = np.bincount(pieces, self.mass * chosen)
+        return chosen & (pieces == areas.argmax())
+
+
+def summed_rows(numbers: NDArray[np.int64], rows: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """Sum the rows (k, d) of each number, (count, d)."""
+    return np.stack([np.bincount(numbers, column, count) for column in rows.T], axis=1)
