@@ -211,7 +211,9 @@ def _add_mapped_steps(prepared: tuple[Content, Content], maps: MapPair, prefix: 
         if kinds.confidence:
             shades = colors.confidence_colors(sides.source_to_target.confidence)
             content.colors[f"{prefix} Confidence"] = colors.opaque(colors.to_linear(shades))
-    if not (maps.source_to_target.has_partner.all() and maps.target_to_source.has_partner.all()):
+    if kinds.vertex_groups and not (
+        maps.source_to_target.has_partner.all() and maps.target_to_source.has_partner.all()
+    ):
         for content, found in zip(prepared, (maps.source_to_target, maps.target_to_source), strict=True):
             shared = np.flatnonzero(found.has_partner)
             content.groups[f"{prefix} Overlap"] = shared, np.ones(len(shared))

@@ -52,6 +52,18 @@ def test_what_comes_back_is_what_was_there(dense_pair, exported, suffix):
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_has_no_partner_travels_too(dense_pair, tmp_path, suffix):
+    match = collect_match(*dense_pair)
+    alone = np.arange(len(match.maps.of_source.weights)) % 2 == 0
+    maps = replace(match.maps, of_source=replace(match.maps.of_source, has_partner=~alone))
+    path = tmp_path / f"match.{suffix}"
+    save_match(replace(match, maps=maps), path)
+    found = load_match(path).maps
+    assert (found.of_source.has_partner == ~alone).all()
+    assert found.of_target.has_partner.all()
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
 def test_the_other_answer_travels_too(dense_pair, tmp_path, suffix):
     bpy.ops.hiermatch.flip(object="Source")
     path = tmp_path / f"flipped.{suffix}"

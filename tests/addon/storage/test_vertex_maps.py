@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
@@ -58,6 +60,17 @@ def test_attributes_keep_the_map_in_single_precision(pair, meshes, maps, kept):
         assert found.positions == pytest.approx(expected.positions, abs=1e-5)
         assert found.barycentric.sum(axis=1) == pytest.approx(1, abs=1e-12)
         assert found.confidence == pytest.approx(expected.confidence, abs=1e-6)
+
+
+def test_what_has_no_partner_is_kept_and_of_older_matches_all_have_one(pair, meshes, maps):
+    alone = np.arange(meshes[0].vertex_count) % 3 == 0
+    kept = StoredMaps.of(replace(maps[0], has_partner=~alone), maps[1])
+    write(pair, kept)
+    assert "HM Map Partner" not in pair[1].data.attributes
+    back = StoredMaps.read(pair[0].data, pair[1].data, "HM Map")
+    assert same(back.of_source, kept.of_source)
+    assert (back.between(*meshes).source_to_target.has_partner == ~alone).all()
+    assert back.of_target.has_partner.all()
 
 
 def test_the_way_back_is_the_other_map(meshes, kept):

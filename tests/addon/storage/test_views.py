@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.scene.mesh_io import add_values
 from hiermatch.hiermatch_addon.storage.views.view_colors import check_size, checked, region_colors
 from hiermatch.hiermatch_addon.storage.views.views import VIEW_ITEMS, attribute_of
 
@@ -103,6 +104,16 @@ class TestViews:
         colors = {tuple(color) for color in source.tolist()}
         assert len(colors) == 24
         assert {tuple(color) for color in target.tolist()} <= colors
+
+    def test_the_overlap_is_blue_where_there_is_a_partner(self, dense_pair):
+        data = dense_pair[0].data
+        alone = np.arange(len(data.vertices)) < 40
+        add_values(data, "HM Map Partner", (~alone).astype(np.int32))
+        show("OVERLAP")
+        source, target = (values_of(obj.data.attributes["HM Overlap Colors"]).reshape(-1, 4) for obj in dense_pair)
+        assert (source[alone, 0] == source[alone, 2]).all()
+        assert (source[~alone, 2] > 2 * source[~alone, 0]).all()
+        assert (target[:, 2] > 2 * target[:, 0]).all()
 
     def test_checks_are_light_and_dark_on_both(self, dense_pair):
         show("CHECKER")

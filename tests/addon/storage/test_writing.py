@@ -13,9 +13,10 @@ from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.scene import mesh_io
 from hiermatch.hiermatch_addon.storage import writing
 from hiermatch.hiermatch_addon.storage.contents import UNREACHED, Content, contents
+from hiermatch.hiermatch_addon.storage.vertex_maps import MapPair
 from hiermatch.hiermatch_addon.storage.views import colors
 
-from tests.addon.scenes import add_pair, made_up_result, mesh_snapshot, values_of, weights_of
+from tests.addon.scenes import add_pair, made_up_maps, made_up_result, mesh_snapshot, values_of, weights_of
 
 
 @pytest.fixture
@@ -94,6 +95,23 @@ def test_names_stay_in_order_beyond_a_thousand(result):
         SimpleNamespace(vertex_groups=True, match_colors=False, distortion=False, confidence=False),
     )
     assert [*content.groups][998:] == ["HM.999", "HM.1000", "HM.1001"]
+
+
+@pytest.mark.parametrize("some_alone", [True, False])
+def test_a_group_holds_what_has_a_partner_if_not_all_has(pair, result, some_alone):
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    meshes = [mesh_io.read_mesh(obj, depsgraph, use_modifiers=False) for obj in pair]
+    there, back = made_up_maps(*meshes)
+    alone = (np.arange(len(there)) < 5) & some_alone
+    maps = MapPair(*meshes, replace(there, has_partner=~alone), back)
+    kinds = SimpleNamespace(vertex_groups=True, match_colors=False, distortion=False, confidence=False)
+    source, target = contents(result, "HM", kinds, maps)
+    assert ("HM Overlap" in source.groups) == ("HM Overlap" in target.groups) == some_alone
+    if some_alone:
+        vertices, weights = source.groups["HM Overlap"]
+        np.testing.assert_array_equal(vertices, np.arange(5, len(there)))
+        assert (weights == 1).all()
+        assert len(target.groups["HM Overlap"][0]) == len(back)
 
 
 def test_colours_and_values(pair, result):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Maps between surfaces: what they carry over, how they follow one another, and what is measured of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -144,6 +146,29 @@ def test_confidence_multiplies(flat, other_flat):
     first = onto(flat, other_flat, confidence=np.linspace(0, 1, flat.vertex_count))
     second = onto(other_flat, flat, confidence=np.full(other_flat.vertex_count, 0.5))
     np.testing.assert_allclose(first.then(second, flat).confidence, first.confidence / 2)
+
+
+def test_all_have_a_partner_unless_it_is_said(flat, other_flat):
+    assert onto(flat, other_flat).has_partner.all()
+    none = np.zeros(flat.vertex_count, bool)
+    alone = replace(onto(flat, other_flat), has_partner=none)
+    assert not alone.has_partner.any()
+    assert (alone.confidence == 0).all()
+
+
+def test_a_vertex_has_a_partner_if_all_of_its_way_has(flat, other_flat):
+    left = flat.vertices[:, 0] < 0.4
+    first = replace(onto(flat, other_flat), has_partner=left)
+    second = onto(other_flat, flat)
+    upper = second.transfer(flat.vertices[:, 1]) > 0.5
+    way = first.then(replace(second, has_partner=upper), flat)
+    np.testing.assert_array_equal(way.has_partner, left & upper[first.nearest_vertices])
+    assert (way.confidence[~way.has_partner] == 0).all()
+
+
+def test_partners_are_checked(flat, other_flat):
+    with pytest.raises(MatchError, match="one truth value for each"):
+        replace(onto(flat, other_flat), has_partner=np.ones(3, bool))
 
 
 def test_maps_must_meet(fine, coarse, flat):
