@@ -38,7 +38,7 @@ from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
 from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
 from .retarget.weights.skin_weights import carried as carry_weights
-from .retarget.weights.skin_weights import row_sums
+from .retarget.weights.skin_weights import row_sums, with_rows
 from .retarget.weights.weight_transfer import CarriedWeights, Columns, carry_weights_steps, put_in
 from .retarget.wrapping import WrappedSurface, kept_in_place, wrap_steps
 from .runtime.background import Background, called_steps
@@ -141,6 +141,7 @@ __all__ = [
     "transfer_motion",
     "transfer_motion_steps",
     "use_processes",
+    "with_rows",
     "within",
     "wrap_steps",
 ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from ...engine import Columns, carry_weights_steps, put_in, row_sums
+from ...engine import Columns, carry_weights_steps, put_in, row_sums, with_rows
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
@@ -108,6 +108,7 @@ class WeightTransfer:
             passage.pair.target_to_source,
             telling=task.telling if task.telling.any() else None,
             fill=settings.fill,
+            fill_alone=settings.alone == "FILL",
         )
         self._torn = carried.torn
         self._result = put_in(
@@ -120,6 +121,9 @@ class WeightTransfer:
             limit=settings.limit,
             normalise=settings.normalise,
         )
+        alone = np.flatnonzero(~passage.pair.target_to_source.has_partner)
+        if settings.alone == "LEAVE" and len(alone):
+            self._result = with_rows(self._result, alone, csr_array(task.before[alone]))
 
     def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the groups."""

@@ -82,6 +82,7 @@ def carry_weights_steps(
     *,
     telling: NDArray[np.bool_] | None = None,
     fill: bool = True,
+    fill_alone: bool = False,
 ) -> Steps[CarriedWeights]:
     """Carry weights across a map.
 
@@ -100,6 +101,8 @@ def carry_weights_steps(
     fill : bool
         Whether vertices that the map tears away from their neighbours take the weights around them, and small parts
         move as one whose counterparts do.
+    fill_alone : bool
+        Whether vertices that have no partner on the source take the weights around them, too.
 
     Yields
     ------
@@ -122,6 +125,8 @@ def carry_weights_steps(
         torn = torn_vertices(bones, target_to_source, parts, source)
         yield Progress(0.5, "Filling in weights")
         result = filled(result, ~torn, parts)
+    if fill_alone:
+        result = filled(result, target_to_source.has_partner, parts)
     if parts.seams:
         result = csr_array((parts.mean_over(np.ones(len(torn), bool)) @ result)[parts.welded])
     return CarriedWeights(result, torn)

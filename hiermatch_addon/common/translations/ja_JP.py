@@ -673,6 +673,18 @@ MESSAGES: Final[dict[str, str]] = {
         "マップが頂点を隣から引き離した場所では、表面に沿って周囲のウェイトを使います。また、目のような小さな独"
         "立部分は、ソースでそうなら一体として動くようにします"
     ),
+    "Without Counterpart": "対応のない場所",
+    "Follow the Map": "マップに従う",
+    (
+        "What vertices get that have no counterpart on the source, as Show > Overlap tells: where the target shows "
+        "more of a body than the source"
+    ): (
+        "ソースに対応する場所がない頂点（「表示 > 重なり」でわかります）をどうするか。ターゲットがソースより体の"
+        "多くの部分を含む場合に使います"
+    ),
+    "The weights of the nearest place that the map leads to": "マップが指す最も近い場所のウェイト",
+    "The weights of the vertices around them that have a counterpart": "周囲の、対応のある頂点のウェイト",
+    "Their weights stay as they are": "ウェイトはそのまま",
     "Mark Rejected": "除外をマーク",
     (
         "Write a color attribute that shows in red which vertices were torn away from their neighbors, so that "

@@ -562,6 +562,15 @@ MESSAGES: Final[dict[str, str]] = {
         "Where the map tears vertices away from their neighbors, take the weights from around them along the "
         "surface; and let small loose parts move as one, such as eyes, if they do on the source"
     ): "在映射将顶点与相邻顶点撕开之处，沿表面取用周围的权重；眼睛之类的松散小部件若在源上整体移动，则保持整体移动",
+    "Without Counterpart": "没有对应部分处",
+    "Follow the Map": "遵循映射",
+    (
+        "What vertices get that have no counterpart on the source, as Show > Overlap tells: where the target shows "
+        "more of a body than the source"
+    ): "在源上没有对应部分的顶点得到什么，重叠视图会显示它们：用于目标比源显示了身体更多部分之处",
+    "The weights of the nearest place that the map leads to": "映射所指最近处的权重",
+    "The weights of the vertices around them that have a counterpart": "其周围有对应部分的顶点的权重",
+    "Their weights stay as they are": "其权重保持不变",
     "Mark Rejected": "标记被弃用处",
     (
         "Write a color attribute that shows in red which vertices were torn away from their neighbors, so that "

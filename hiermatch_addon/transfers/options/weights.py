@@ -34,6 +34,9 @@ class WeightSettings:
     fill : bool
         Whether vertices that the map tears away from their neighbours take the weights around them, and small loose
         parts move as one.
+    alone : str
+        What vertices without a counterpart get: "MAP", the weights of where the map has them; "FILL", those of the
+        vertices around them that have one; "LEAVE", nothing new.
     mark : bool
         Whether a color attribute shows these vertices.
     prefix : str
@@ -47,6 +50,7 @@ class WeightSettings:
     limit: int = 0
     clean: float = 0.001
     fill: bool = True
+    alone: str = "MAP"
     mark: bool = False
     prefix: str = "HM"
 
@@ -111,6 +115,17 @@ class WeightOptions:
             "along the surface; and let small loose parts move as one, such as eyes, if they do on the source",
             default=True,
         ),
+        "weight_alone": _props.EnumProperty(
+            name="Without Counterpart",
+            description="What vertices get that have no counterpart on the source, as Show > Overlap tells: where the "
+            "target shows more of a body than the source",
+            items=[
+                ("MAP", "Follow the Map", "The weights of the nearest place that the map leads to"),
+                ("FILL", "Fill", "The weights of the vertices around them that have a counterpart"),
+                ("LEAVE", "Leave Out", "Their weights stay as they are"),
+            ],
+            default="MAP",
+        ),
         "weight_mark": _props.BoolProperty(
             name="Mark Rejected",
             description="Write a color attribute that shows in red which vertices were torn away from their neighbors, "
@@ -127,6 +142,7 @@ class WeightOptions:
         weight_limit: int
         weight_clean: float
         weight_fill: bool
+        weight_alone: str
         weight_mark: bool
 
 
@@ -140,6 +156,7 @@ def weight_settings(options: WeightOptions, prefix: str = "") -> WeightSettings:
         limit=options.weight_limit,
         clean=options.weight_clean,
         fill=options.weight_fill,
+        alone=options.weight_alone,
         mark=options.weight_mark,
         prefix=prefix or WeightSettings.prefix,
     )

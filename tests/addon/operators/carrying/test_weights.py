@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
@@ -59,6 +61,20 @@ def torn_passage(source, target):
     back = SurfaceMap.from_barycentric(mesh, triangles, barycentric)
     pair = MapPair(mesh, passage.pair.target, passage.pair.source_to_target, back)
     return Passage(pair), leg
+
+
+def test_what_has_no_counterpart_stays_as_it_is_if_wanted(pair):
+    source, target = pair
+    passage = true_passage(source, target)
+    alone = passage.pair.target.vertices[:, 0] < 0
+    back = replace(passage.pair.target_to_source, has_partner=~alone)
+    passage = replace(passage, pair=replace(passage.pair, target_to_source=back))
+    carry(source, target, passage, alone="LEAVE")
+    found = dense(target)
+    assert (found[alone] == 0).all()
+    np.testing.assert_allclose(found[~alone].sum(axis=1), 1, atol=1e-5)
+    carry(source, target, passage, alone="MAP")
+    np.testing.assert_allclose(dense(target).sum(axis=1), 1, atol=1e-5)
 
 
 def test_all_weights_arrive_in_the_order_of_the_source(pair):

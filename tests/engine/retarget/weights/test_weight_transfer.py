@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from engine import SurfaceMap, TriangleMesh, run
+from engine import SurfaceMap, SurfacePoints, TriangleMesh, run
 from engine.retarget.weights.skin_weights import carried, row_differences, row_sums
 from engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
 from tests.engine.retarget.weights.test_weight_rejection import broken
@@ -39,6 +39,20 @@ def test_torn_vertices_are_filled_in_and_told():
     both = csr_array(np.concatenate([np.ones((mesh.vertex_count, 1)), mask.toarray()], axis=1))
     told = run(carry_weights_steps(both, mesh, mesh, surface_map, telling=np.array([True, False])))
     assert not told.torn.any()
+
+
+def test_what_has_no_partner_takes_the_weights_around_it_if_wanted():
+    vertices, triangles, rest = creature(0.0, 9)
+    mesh, weights = TriangleMesh(vertices, triangles), creature_weights(rest)
+    alone = np.abs(rest[:, 0] - 1.15) < 0.1  # a part of the head, where the map leads to the tail
+    wrong = np.where(alone, int(rest[:, 0].argmin()), np.arange(mesh.vertex_count))
+    back = SurfaceMap(SurfacePoints.at_vertices(mesh, wrong), np.ones(len(wrong)), mesh.vertex_count, ~alone)
+    plain, filled = (
+        run(carry_weights_steps(weights, mesh, mesh, back, fill=False, fill_alone=wanted)).weights
+        for wanted in (False, True)
+    )
+    assert row_differences(filled, weights)[alone].mean() < row_differences(plain, weights)[alone].mean() / 2
+    np.testing.assert_allclose(filled.toarray()[~alone], plain.toarray()[~alone], atol=1e-12)
 
 
 @pytest.mark.parametrize("fill", [False, True])
