@@ -73,13 +73,13 @@ def bind(target: Side, armature: bpy.types.Object, source: Side) -> list[str]:
         part.parent = armature
         part.matrix_parent_inverse = armature.matrix_world.inverted_safe()
     notes = []
-    for other, names in others.items():
+    for rig, names in others.items():
         notes.append(
-            f'{listed(names)} is moved by the armature "{other}" as well. Remove that Armature modifier unless both '
+            f'{listed(names)} is moved by the armature "{rig}" as well. Remove that Armature modifier unless both '
             "are meant to move it."
         )
-    for parent, names in parents.items():
-        notes.append(f'{listed(names)} keeps its parent "{parent}".')
+    for kept, names in parents.items():
+        notes.append(f'{listed(names)} keeps its parent "{kept}".')
     return notes
 
 

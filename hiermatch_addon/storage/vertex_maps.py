@@ -19,6 +19,7 @@ from ..scene.character import parts_of
 from ..scene.mesh_io import read_values
 
 if TYPE_CHECKING:
+    import bpy
     from numpy.typing import NDArray
 
     from ...engine import TriangleMesh
@@ -95,9 +96,7 @@ class VertexMap:
                 return None
             values.append(np.concatenate(found))
         *corners, weights, confidence = values
-        partners = read_values(mesh, _partner_name(name), "INT")
-        # Where it is not said, as by matches of earlier versions, all have one.
-        has_partner = np.ones(len(weights), bool) if partners is None else partners != 0
+        has_partner = np.concatenate([_read_partners(mesh, name) for mesh in meshes])
         return cls(np.stack(corners, axis=1), weights, confidence, has_partner)
 
     def attributes(self, name: str) -> dict[str, NDArray[np.float32] | NDArray[np.int32]]:
@@ -124,6 +123,12 @@ class VertexMap:
             raise MeshError("The attributes of the stored map hold numbers that no match has written. Match again.")
         points = place_points(image, self.corners.astype(np.int64), weights / total)
         return SurfaceMap.from_points(image, points, self.confidence.astype(np.float64), self.has_partner)
+
+
+def _read_partners(mesh: bpy.types.Mesh, name: str) -> NDArray[np.bool_]:
+    """Read which vertices of a part have a counterpart: all, where it is not said, as by matches of earlier versions."""
+    partners = read_values(mesh, _partner_name(name), "INT")
+    return np.ones(len(mesh.vertices), bool) if partners is None else partners != 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -67,7 +67,7 @@ def test_what_has_no_partner_is_kept_and_of_older_matches_all_have_one(pair, mes
     kept = StoredMaps.of(replace(maps[0], has_partner=~alone), maps[1])
     write(pair, kept)
     assert "HM Map Partner" not in pair[1].data.attributes
-    back = StoredMaps.read(pair[0].data, pair[1].data, "HM Map")
+    back = StoredMaps.read(*pair, "HM Map")
     assert same(back.of_source, kept.of_source)
     assert (back.between(*meshes).source_to_target.has_partner == ~alone).all()
     assert back.of_target.has_partner.all()
