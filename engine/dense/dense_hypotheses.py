@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +28,7 @@ from .rigid_maps import rigid_maps
 from .spectral_domain import MapDomain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -54,6 +53,7 @@ _DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct
 _RETURNED = {1: 4, -1: 2}  # most hypotheses that keep the orientation, and that mirror it
 _HOPELESS = 3.0  # excess of the score over the best of the same orientation
 _ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
+_ROUGH = "matching"  # origin of what functional maps have not refined
 _ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
 
 
@@ -76,43 +76,48 @@ class LandmarkStart:
     origin: str = "landmarks"
 
 
+class Extension:
+    """The map of a hypothesis between all vertices: made when it is asked for, as many hypotheses never are.
+
+    Parameters
+    ----------
+    known : PointMaps, optional
+        The map, if it is known already.
+    """
+
+    def __init__(self, known: PointMaps | None = None) -> None:
+        self.known = known
+
+    def steps(self, domains: tuple[MapDomain, MapDomain], points: PointMaps) -> Steps[PointMaps]:
+        """Make the map of that between the fine samples, unless it is known."""
+        if self.known is None:
+            self.known = yield from _between_all_vertices_steps(*domains, points)
+        return self.known
+
+
 @dataclass(frozen=True, eq=False)
-class MapHypothesis:
-    """A dense map that may be the true one.
+class MapHypothesis(MapLead):
+    """A dense map that may be the true one: a lead between the fine samples, of a pair of surfaces.
 
     Attributes
     ----------
     domains : pair of MapDomain
         The surfaces.
-    points : PointMaps
-        The map between their fine samples.
-    score : float
-        Smaller is more credible; comparable between hypotheses of one pair.
-    orientation : float
-        From -1 (mirrored everywhere) to 1 (kept everywhere).
-    terms : mapping of str to float
-        The parts of the score, and what else was measured; see `map_scores`.
-    origin : str
-        Where it started: ``"extremities"``, ``"rigid"``, or the origin of a `LandmarkStart`.
+    extension : Extension
+        The map between all vertices.
     """
 
     domains: tuple[MapDomain, MapDomain]
-    points: PointMaps
-    score: float
-    orientation: float
-    terms: Mapping[str, float]
-    origin: str
+    extension: Extension
 
-    @cached_property
+    @property
     def images(self) -> PointMaps:
-        """The map between all vertices: extended when it is asked for, as many hypotheses never are."""
-        return run(_between_all_vertices_steps(*self.domains, self.points))
+        """The map between all vertices."""
+        return run(self.images_steps())
 
     def images_steps(self) -> Steps[PointMaps]:
-        """Extend the map to all vertices in short steps; the result is kept as `images`."""
-        if "images" not in self.__dict__:
-            self.__dict__["images"] = yield from _between_all_vertices_steps(*self.domains, self.points)
-        return self.images
+        """Extend the map to all vertices in short steps; the result is kept."""
+        return self.extension.steps(self.domains, self.points)
 
     @property
     def images_on_y(self) -> NDArray[np.int64]:
@@ -128,6 +133,11 @@ class MapHypothesis:
     def isometric_defect(self) -> float:
         """How far the map is from keeping all distances; below 0.1 where it is nearly an isometry."""
         return self.terms["commutator"]
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether it is a matching of extremities as it is, see `unrefined_hypotheses_steps`."""
+        return self.origin == _ROUGH
 
     @property
     def is_doubtful(self) -> bool:
@@ -241,7 +251,7 @@ def _best_unrefined_steps(domains: tuple[MapDomain, MapDomain], way: int) -> Ste
     best: tuple[MapLead, FunctionalMaps] | None = None
     for number, points in enumerate(proposed):
         maps = _smooth_maps(x, y, points)
-        lead = _assessed(x, y, _between_fine(x, y, maps), "matching")
+        lead = _assessed(x, y, _between_fine(x, y, maps), _ROUGH)
         if lead.orientation > 0 and (best is None or lead.score < best[0].score):
             best = lead, maps
         yield Progress(0.5 + 0.5 * (number + 1) / len(proposed), "Comparing maps")
@@ -313,10 +323,7 @@ def hypothesis_of(
     domains: tuple[MapDomain, MapDomain], lead: MapLead, images: PointMaps | None = None
 ) -> MapHypothesis:
     """Make a hypothesis of a lead, with its map between all vertices if that is known already."""
-    hypothesis = MapHypothesis(domains, lead.points, lead.score, lead.orientation, lead.terms, lead.origin)
-    if images is not None:
-        hypothesis.__dict__["images"] = images
-    return hypothesis
+    return MapHypothesis(lead.points, lead.score, lead.orientation, lead.terms, lead.origin, domains, Extension(images))
 
 
 def _keeping_leads_steps(x: MapDomain, y: MapDomain, searched: RoughSearch | None) -> Steps[list[MapLead]]:

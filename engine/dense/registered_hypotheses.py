@@ -170,7 +170,7 @@ class Follower:
         """Follow up several hypotheses between the same domains; see `steps`."""
         if not hypotheses:
             return []
-        items = [(_lead_of(hypothesis), hypothesis.__dict__.get("images")) for hypothesis in hypotheses]
+        items = [(_lead_of(hypothesis), hypothesis.extension.known) for hypothesis in hypotheses]
         found = yield from shared_steps(_followed_steps, (self, *hypotheses[0].domains), items)
         return [Candidate(hypothesis, *rest) for hypothesis, rest in zip(hypotheses, found, strict=True)]
 

@@ -7,22 +7,44 @@ The add-on's properties mirror these fields by name, label, description and rang
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..runtime.errors import SettingsError
 
-__all__ = ["SETUPS", "MatchSettings"]
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+__all__ = ["SETUPS", "MatchSettings", "check_ranges", "choice", "setting"]
 
 
-def _setting(default: float, label: str, minimum: float, maximum: float, description: str) -> Any:  # noqa: ANN401
+def setting(default: float, label: str, minimum: float, maximum: float, description: str) -> Any:  # noqa: ANN401
     """Declare a numeric field with all that an interface needs to show it."""
     metadata = {"label": label, "description": description, "minimum": minimum, "maximum": maximum}
     return field(default=default, metadata=metadata)
 
 
-def _choice(default: str, label: str, description: str, choices: dict[str, tuple[str, str]]) -> Any:  # noqa: ANN401
+def choice(default: str, label: str, description: str, choices: dict[str, tuple[str, str]]) -> Any:  # noqa: ANN401
     """Declare a field that takes one of several words, each with its label and description."""
     return field(default=default, metadata={"label": label, "description": description, "choices": choices})
+
+
+def check_ranges(settings: DataclassInstance) -> None:
+    """Check all values of settings against what their fields declare.
+
+    Raises
+    ------
+    SettingsError
+        If a number is out of its range, or a word none of its choices.
+    """
+    for own in fields(settings):
+        value, about = getattr(settings, own.name), own.metadata
+        if "choices" in about:
+            if value not in about["choices"]:
+                raise SettingsError(f"{about['label']} is {value!r}, but must be one of {list(about['choices'])}.")
+        elif "minimum" in about and not about["minimum"] <= value <= about["maximum"]:
+            raise SettingsError(
+                f"{about['label']} is {value}, but must lie between {about['minimum']} and {about['maximum']}."
+            )
 
 
 @dataclass(frozen=True)
@@ -38,14 +60,14 @@ class MatchSettings:
         If a value is out of its range or contradicts another.
     """
 
-    points: int = _setting(64, "Points", 3, 1024, "How many points of the source are matched at the finest level")
-    coarse_points: int = _setting(
+    points: int = setting(64, "Points", 3, 1024, "How many points of the source are matched at the finest level")
+    coarse_points: int = setting(
         10, "Coarse Points", 3, 24, "How many points are matched exactly, by branch and bound, before all others"
     )
-    coarse_candidates: int = _setting(
+    coarse_candidates: int = setting(
         24, "Coarse Candidates", 3, 100, "How many points of the target the coarse points may be matched to"
     )
-    solver: str = _choice(
+    solver: str = choice(
         "hierarchical",
         "Solver",
         "How the points are matched",
@@ -74,7 +96,7 @@ class MatchSettings:
             "vertices (hierarchical solver without a dense map)",
         },
     )
-    metric: str = _choice(
+    metric: str = choice(
         "geodesic",
         "Metric",
         "What distances between points of a surface are kept",
@@ -86,14 +108,14 @@ class MatchSettings:
             ),
         },
     )
-    diffusion_time: float = _setting(
+    diffusion_time: float = setting(
         0.0,
         "Diffusion Time",
         0.0,
         10.0,
         "How long heat spreads for diffusion distances, in units of the surface area; 0 chooses by the shape",
     )
-    descriptor: str = _choice(
+    descriptor: str = choice(
         "histogram",
         "Descriptor",
         "By what a point is recognised, beside its distances to the other points",
@@ -107,7 +129,7 @@ class MatchSettings:
             ),
         },
     )
-    comparison: str = _choice(
+    comparison: str = choice(
         "earth_mover",
         "Comparison",
         "How histograms are compared",
@@ -116,7 +138,7 @@ class MatchSettings:
             "bin_to_bin": ("Bin to Bin", "The difference in each bin by itself"),
         },
     )
-    constraint: str = _choice(
+    constraint: str = choice(
         "injective",
         "Constraint",
         "How points and candidates of the coarse step are to correspond",
@@ -125,20 +147,20 @@ class MatchSettings:
             "bijective": ("Bijective", "As many candidates as points, and each is used"),
         },
     )
-    linear_weight: float = _setting(
+    linear_weight: float = setting(
         1.0, "Descriptor Weight", 0.0, 1000.0, "How much the differences of descriptors count"
     )
-    quadratic_weight: float = _setting(
+    quadratic_weight: float = setting(
         1.0, "Distance Weight", 0.0, 1000.0, "How much the differences of distances between points count"
     )
-    neighbourhood: int = _setting(
+    neighbourhood: int = setting(
         20,
         "Neighbourhood",
         2,
         200,
         "Among how many of the target samples around its present match each point looks for a better one",
     )
-    samples: int = _setting(
+    samples: int = setting(
         256,
         "Samples",
         16,
@@ -146,7 +168,7 @@ class MatchSettings:
         "How many samples of each surface describe it; the points are matched to the samples of the target. "
         "With a dense map three quarters as many are taken, and at least twice as many as points",
     )
-    hypotheses: int = _setting(
+    hypotheses: int = setting(
         6,
         "Hypotheses",
         1,
@@ -154,18 +176,18 @@ class MatchSettings:
         "How many distinct coarse matchings are followed up before the best is chosen. "
         "Nearly symmetric shapes have several that are almost equally good. With a dense map half as many are taken",
     )
-    histogram_bins: int = _setting(
+    histogram_bins: int = setting(
         32, "Histogram Bins", 4, 256, "Number of bins of the distance histograms that describe a point"
     )
-    eigenfunctions: int = _setting(6, "Eigenfunctions", 2, 10, "How many of the lowest eigenfunctions describe a point")
-    eigenpairs: int = _setting(
+    eigenfunctions: int = setting(6, "Eigenfunctions", 2, 10, "How many of the lowest eigenfunctions describe a point")
+    eigenpairs: int = setting(
         100,
         "Eigenpairs",
         10,
         500,
         "How many eigenpairs of the Laplace-Beltrami operator make up diffusion distances and kernel signatures",
     )
-    node_limit: int = _setting(
+    node_limit: int = setting(
         100_000,
         "Search Limit",
         1,
@@ -174,15 +196,7 @@ class MatchSettings:
     )
 
     def __post_init__(self) -> None:
-        for setting in fields(self):
-            value, about = getattr(self, setting.name), setting.metadata
-            if "choices" in about:
-                if value not in about["choices"]:
-                    raise SettingsError(f"{about['label']} is {value!r}, but must be one of {list(about['choices'])}.")
-            elif "minimum" in about and not about["minimum"] <= value <= about["maximum"]:
-                raise SettingsError(
-                    f"{about['label']} is {value}, but must lie between {about['minimum']} and {about['maximum']}."
-                )
+        check_ranges(self)
         if self.coarse_candidates < self.coarse_points:
             raise SettingsError(
                 f"{self.coarse_points} Coarse Points need at least as many Coarse Candidates, "

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..dense.components.masked_maps import share_of, with_piece_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, is_less_alike
-from ..repair.clean_surface import StandIn
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
 from ..shapes.enclosing_surface import with_limbs_steps
@@ -175,7 +174,7 @@ def _cut_steps(shape: Shape, covered: NDArray[np.bool_], name: str) -> Steps[Sha
         used[mesh.triangles[kept]] = True
         excluded |= ~used
     cut = yield from within(Shape.steps(mesh, name, excluded=excluded), 0.0, 0.7)
-    if not isinstance(shape.surface.cleaned.main, StandIn):
+    if shape.surface.cleaned.stand_in is None:
         return cut
     return (yield from within(with_limbs_steps(cut, name, np.arange(mesh.vertex_count)), 0.7, 1.0))
 

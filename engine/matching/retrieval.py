@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..geometry.squared_differences import squared_differences
-from ..hierarchical.descriptors import distance_histograms, earth_movers_distance
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.sampled_pair import Pair
-from ..hierarchical.settings import MatchSettings
+from ..hierarchical.settings import MatchSettings, check_ranges, setting
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.background import can_go_beside
@@ -33,12 +32,6 @@ __all__ = ["Retrieval", "RetrievalSettings", "RetrievedMatch", "retrieve", "retr
 _LEVELS = (np.arange(64) + 0.5) / 64  # at which the quantiles of distances are taken
 
 
-def _setting(default: int, label: str, minimum: int, maximum: int, description: str) -> Any:  # noqa: ANN401
-    """Declare a numeric field with all that an interface needs to show it."""
-    metadata = {"label": label, "description": description, "minimum": minimum, "maximum": maximum}
-    return field(default=default, metadata=metadata)
-
-
 @dataclass(frozen=True)
 class RetrievalSettings:
     """Settings of `retrieve`.
@@ -53,21 +46,18 @@ class RetrievalSettings:
         If a value is out of its range or contradicts another.
     """
 
-    matched: int = _setting(
+    matched: int = setting(
         8, "Matched Shapes", 1, 10_000, "How many shapes are matched: those that look best by their distances alone"
     )
-    points: int = _setting(40, "Points", 3, 256, "How many points of the query are matched to each of these shapes")
-    samples: int = _setting(200, "Samples", 16, 4096, "Among how many samples of a shape the points are matched")
-    signature_samples: int = _setting(
+    points: int = setting(40, "Points", 3, 256, "How many points of the query are matched to each of these shapes")
+    samples: int = setting(200, "Samples", 16, 4096, "Among how many samples of a shape the points are matched")
+    signature_samples: int = setting(
         40, "Signature Samples", 4, 1024, "By the distances around how many samples shapes are compared before matching"
     )
-    coarse_points: int = _setting(8, "Coarse Points", 3, 24, "How many points are matched exactly before all others")
+    coarse_points: int = setting(8, "Coarse Points", 3, 24, "How many points are matched exactly before all others")
 
     def __post_init__(self) -> None:
-        for setting in fields(self):
-            value, low, high = getattr(self, setting.name), setting.metadata["minimum"], setting.metadata["maximum"]
-            if not low <= value <= high:
-                raise SettingsError(f"{setting.metadata['label']} is {value}, but must lie between {low} and {high}.")
+        check_ranges(self)
         if self.samples < self.points:
             raise SettingsError(f"{self.points} Points need at least as many Samples, not {self.samples}.")
 
@@ -214,7 +204,7 @@ def retrieve_steps(
     for number, shape in enumerate([source, *targets]):
         start, end = 0.5 * number / (len(targets) + 1), 0.5 * (number + 1) / (len(targets) + 1)
         yield from within(shape.sample_steps(settings.signature_samples), start, end)
-        signatures.append(_Signature(shape, settings.signature_samples))
+        signatures.append(_Signature(shape.limited(settings.signature_samples)))
     bounds = np.array([signatures[0].bound(signature) for signature in signatures[1:]])
     by_bound = np.argsort(bounds, kind="stable")
     matches = []
@@ -242,7 +232,7 @@ def _check(shape: Shape, name: str, settings: RetrievalSettings) -> None:
 
 
 class _Signature:
-    """Distributions of the distances around the first samples of a shape.
+    """Distributions of the distances around the samples of a shape.
 
     Attributes
     ----------
@@ -252,8 +242,8 @@ class _Signature:
         Quantiles of the distances from each sample to the surface.
     """
 
-    def __init__(self, shape: Shape, count: int) -> None:
-        self.areas, distances = _first_samples(shape, count)
+    def __init__(self, shape: Shape) -> None:
+        self.areas, distances = shape.cell_areas, shape.sample_distances
         order = np.argsort(distances, axis=1)
         areas = self.areas[order]
         middle = np.cumsum(areas, axis=1) - areas / 2
@@ -266,35 +256,11 @@ class _Signature:
         return float(np.sqrt(max(self.areas @ table.min(axis=1), other.areas @ table.min(axis=0))))
 
 
-def _first_samples(shape: Shape, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Cell areas, (k,), of the first samples of a shape as parts of the whole, and the distances between them, (k, k).
-
-    A shape that already has more samples has to compare the same, so the cells are those of these samples alone.
-    """
-    rows = shape.sample_rows[:count]
-    cells = np.bincount(rows.argmin(axis=0), shape.mesh.vertex_areas, len(rows))
-    return cells / cells.sum(), shape.sample_distances[:count, :count]
-
-
-class _SparsePair(Pair):
-    """A pair of the first samples of two shapes, however many these have."""
-
-    def __init__(self, source: Shape, target: Shape, settings: MatchSettings) -> None:
-        self.source, self.target, self.settings, self.landmarks = source, target, settings, 0
-        first, self.source_distances = _first_samples(source, settings.samples)
-        second, self.target_distances = _first_samples(target, settings.samples)
-        bins, reach = settings.histogram_bins, max(self.source_distances.max(), self.target_distances.max())
-        self.linear = earth_movers_distance(
-            distance_histograms(self.source_distances, first, bins, reach),
-            distance_histograms(self.target_distances, second, bins, reach),
-            reach / bins,
-        )
-
-
 def _match_steps(source: Shape, target: Shape, place: int, settings: RetrievalSettings) -> Steps[RetrievedMatch]:
     """Match one pair, by the best coarse matching alone: which of its mirror images it is does not change the score."""
     yield from within(target.sample_steps(settings.samples), 0.0, 0.8)
-    pair = _SparsePair(source, target, settings.match)
+    # However many samples shapes have already, they compare the same.
+    pair = Pair(source.limited(settings.samples), target.limited(settings.samples), settings.match)
     best = (yield from within(coarse_steps(pair), 0.8, 0.9, "Matching"))[0]
     sizes = level_sizes(len(best.matching.assignment), settings.points)
     levels = yield from within(refine_steps(best.pair, best.matching.assignment, sizes), 0.9, 1.0, "Matching")

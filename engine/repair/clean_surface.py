@@ -193,6 +193,11 @@ class CleanSurface:
         return self.pieces[0]
 
     @property
+    def stand_in(self) -> StandIn | None:
+        """The main part, if it is a surface around several pieces that stands for them."""
+        return self.main if isinstance(self.main, StandIn) else None
+
+    @property
     def mesh(self) -> TriangleMesh:
         """The main part: manifold, oriented, every vertex with a triangle."""
         return self.pieces[0].mesh
@@ -229,6 +234,6 @@ class CleanSurface:
             Barycentric coordinates there.
         """
         own = self.vertex_images[vertices]
-        if isinstance(self.main, StandIn):
-            return self.main.images_of(vertices, found.nearest_vertices[own], found, mesh)
+        if self.stand_in is not None:
+            return self.stand_in.images_of(vertices, found.nearest_vertices[own], found, mesh)
         return found.triangles[own], found.barycentric[own]

@@ -89,11 +89,12 @@ def _only_last(own, follow, fit):
 
 
 R, D, P = "engine.dense.registered_hypotheses", "engine.dense.dense_registration", "engine.registration.prolongation"
+Q = "engine.dense.proposers"
 MECHANISMS = {
     "the paper's answers": [(f"{D}.map_hypotheses_steps", without_starts)],
     "rigid maps": [("engine.dense.dense_hypotheses.rigid_maps", lambda _: lambda *_given: [])],
-    "matchings as they are": [(f"{D}.unrefined_hypotheses_steps", lambda _: lambda *_given: returned([]))],
-    "limb sides": [(f"{D}.repaired_start_steps", lambda _: lambda *_given: returned(None))],
+    "matchings as they are": [(f"{Q}.unrefined_hypotheses_steps", lambda _: lambda *_given: returned([]))],
+    "limb sides": [(f"{Q}.repaired_start_steps", lambda _: lambda *_given: returned(None))],
     "rolling back": [(f"{R}.Follower.rolled_back_steps", lambda _: lambda _self, candidate: returned([candidate]))],
     "untwisting": [
         (
@@ -102,7 +103,7 @@ MECHANISMS = {
         )
     ],
     "other windings": [(f"{R}.untwisted", lambda own: lambda *given: own(*given)._replace(otherwise=[]))],
-    "close contest": [(f"{D}._contenders", lambda own: lambda *given: own(*given)[:1])],
+    "close contest": [(f"{room}.contenders", lambda own: lambda *given: own(*given)[:1]) for room in (D, Q)],
     "agreeing in turns": [(f"{R}.Follower.settled_steps", agreeing_already)],
     "softening by strain": [("engine.registration.registration._softened", lambda _: lambda elastic, *_given: elastic)],
     "mended patches": [(f"{P}.with_patches_mended", lambda _: lambda _mesh, images, *_given: images)],

@@ -14,7 +14,6 @@ from ...geometry.laplacian import laplace_beltrami
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import SurfacePoints
-from ...repair.clean_surface import StandIn
 from ...repair.cleaning import clean
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
@@ -183,9 +182,9 @@ def _of_main(x: CleanSurface, weights: csr_array) -> csr_array:
 
 def _on_main(image: CleanSurface, surface_map: SurfaceMap, domain: CleanSurface) -> FoundPoints:
     """Name the images of the main part's vertices on the main part of the other mesh; holes' centres get any."""
-    if isinstance(domain.main, StandIn):
+    if domain.stand_in is not None:
         own = SurfacePoints.at_vertices(domain.mesh, np.arange(domain.mesh.vertex_count))
-        triangles, barycentric = domain.main.to_original(own.triangles, own.barycentric)
+        triangles, barycentric = domain.stand_in.to_original(own.triangles, own.barycentric)
         points = SurfacePoints.from_barycentric(domain.original, triangles, barycentric)
         positions, vertices = points.interpolate(surface_map.positions), points.nearest_vertices
     else:
@@ -206,8 +205,8 @@ def _spread(
     """Positions of all vertices of the original mesh: of the main part (n, 3), posed (n, 3), and as posed elsewhere."""
     whole = posed.copy()
     main = np.flatnonzero(x.vertex_parts == 0)
-    if isinstance(x.main, StandIn):
-        whole[main] += x.main.places(main).interpolate(positions - posed_body)
+    if x.stand_in is not None:
+        whole[main] += x.stand_in.places(main).interpolate(positions - posed_body)
     else:
         whole[main] = positions[x.vertex_images[main]]
     return whole

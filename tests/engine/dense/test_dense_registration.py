@@ -9,8 +9,9 @@ import pytest
 from engine import Shape, SurfacePoints, TriangleMesh, run
 from engine.dense import dense_hypotheses as map_hypotheses
 from engine.dense import dense_registration as dense_map
+from engine.dense import proposers
 from engine.dense.dense_hypotheses import LandmarkStart, assessed_everywhere, map_hypotheses_steps
-from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, are_distinct, registered_pair_steps
+from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from engine.dense.densify import dense_match_steps
 from engine.dense.functional_maps import PointMaps
 from engine.dense.landmark_selection import Steered
@@ -218,7 +219,7 @@ def test_matchings_are_followed_only_if_they_agree_with_landmarks(agreeing, bodi
     steered = Steered(x, mirrored=False, hypotheses=hypotheses)
     monkeypatch.setattr(dense_map, "steered_hypotheses_steps", lambda *_, **__: returned(steered))
     asked = []
-    monkeypatch.setattr(dense_map, "agrees", lambda *those: asked.append(those[3]) or agreeing)
+    monkeypatch.setattr(proposers, "agrees", lambda *those: asked.append(those[3]) or agreeing)
     pair = run(registered_pair_steps(x, y, landmarks=Landmarks(*places)))
     assert {hypothesis.origin for hypothesis in asked} == {"matching"}
     assert ("matching" in [candidate.hypothesis.origin for candidate in pair.candidates]) == agreeing
@@ -472,18 +473,6 @@ def test_meshes_with_fewer_vertices_than_eigenpairs_are_registered_too():
     points = pair.registration.on_target
     images = SurfacePoints.from_barycentric(y.mesh, points.triangles, points.barycentric).positions
     assert np.linalg.norm(images / 1.1 - vertices, axis=1).mean() < 0.05 * x.scale
-
-
-def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_little_everywhere_are_not():
-    rng = np.random.default_rng(0)
-    areas, places = rng.uniform(1, 2, 400), rng.standard_normal((400, 3))
-    limb = np.zeros((400, 3))
-    limb[:12, 0] = 0.4
-    offset = np.full(3, 0.02)
-    assert not are_distinct(places, places + offset, areas)
-    assert are_distinct(places, places + limb, areas)
-    assert not are_distinct(places, places + limb * (np.arange(400) < 4)[:, None], areas)
-    assert are_distinct(places, places + 4 * offset, areas)
 
 
 def test_a_pair_that_nothing_was_compared_for_has_no_likeness():
