@@ -159,7 +159,7 @@ class Follower:
     @cached_property
     def _functions(self) -> NDArray[np.float64]:
         """All functions of the source, (n_x, k)."""
-        return _functions(self.x, len(self.x.spectrum))
+        return self.x.unit_functions()
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out what the surfaces stand for, and what is made in no time."""
@@ -309,10 +309,10 @@ class Follower:
         here, there = self._guides(candidate.hypothesis, self.vertex_maps(found))
         restart = partial(restarted_steps, stages=_STAGES, isometry=candidate.isometry)
         matches, guides = (found.on_source, found.on_target), (there, here)
-        steps = restart(target, source, _functions(self.y, _DETAILED), matches, ties=self.ties_back, guides=guides)
+        steps = restart(target, source, self.y.unit_functions(_DETAILED), matches, ties=self.ties_back, guides=guides)
         reverse = yield from within(steps, 0.0, 0.5)
         matches, guides = (reverse.on_source, reverse.on_target), (here, there)
-        steps = restart(source, target, _functions(self.x, _DETAILED), matches, ties=self.ties, guides=guides)
+        steps = restart(source, target, self.x.unit_functions(_DETAILED), matches, ties=self.ties, guides=guides)
         return reverse, (yield from within(steps, 0.5, 1.0))
 
     def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:
@@ -385,12 +385,6 @@ def _registered_steps(common: _Common, item: tuple[NDArray[np.float64], Stage, f
     follow, (start, stage, isometry) = common[0], item
     steps = register_steps(follow.source, follow.target, start, (stage,), isometry=isometry, ties=follow.ties)
     return (yield from steps)
-
-
-def _functions(shape: Shape, count: int) -> NDArray[np.float64]:
-    """First eigenfunctions of a shape of unit area, (n, count)."""
-    functions: NDArray[np.float64] = shape.spectrum.functions[:, :count] * np.sqrt(shape.laplace.area)
-    return functions
 
 
 def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:

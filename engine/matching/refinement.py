@@ -117,7 +117,7 @@ def refine_map_steps(
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.15, 0.2)
     moving, fixed = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
     places = fixed.in_unit_size(x.surface.proxy.on_finer(places))
-    functions = _functions(x)
+    functions = x.unit_functions(_DETAILED)
     # Without the noise of the map, which the surface would keep as folds.
     start = functions @ (functions.T @ (moving.mass[:, None] * places))
     proxies = x.surface.proxy, y.surface.proxy
@@ -125,7 +125,7 @@ def refine_map_steps(
     there = yield from within(register_steps(moving, fixed, start, (FINE, _CLOSE), ties=ties), 0.2, 0.5)
     ties = Ties.of_landmarks(*proxies[::-1], moving, known.target, known.source)
     matches = there.on_source, there.on_target
-    steps = restarted_steps(fixed, moving, _functions(y), matches, stages=(FINE, _CLOSE), ties=ties)
+    steps = restarted_steps(fixed, moving, y.unit_functions(_DETAILED), matches, stages=(FINE, _CLOSE), ties=ties)
     back = yield from within(steps, 0.5, 0.75)
     pair = RegisteredPair(x, y, moving, fixed, there, back, (), None, known, mirrored)
     dense = yield from within(dense_match_steps(pair, _BRIEF), 0.75, 1.0)
@@ -219,9 +219,3 @@ def point_distortions(
     squares = np.square(rows[0] - rows[1])  # (a, k)
     others = np.maximum(len(anchors) - np.isin(np.arange(count), anchors), 1)
     return np.sqrt(np.where(np.isfinite(squares), squares, 0.0).sum(axis=0) / others)
-
-
-def _functions(shape: Shape) -> NDArray[np.float64]:
-    """First eigenfunctions of a shape of unit area, (n, k)."""
-    functions: NDArray[np.float64] = shape.spectrum.functions[:, :_DETAILED] * np.sqrt(shape.laplace.area)
-    return functions

@@ -91,13 +91,14 @@ def with_limbs_steps(shape: Shape, name: str, vertices: NDArray[np.int64]) -> St
     known = vertices[(vertices >= 0) & (vertices < len(limbs))]
     if not limbs[known].any():
         return shape
-    if shape.joined is None:
-        joined = yield from joined_steps(surface.cleaned, name)
-        if joined is surface.cleaned:
-            shape.joined = shape
-        else:
-            shape.joined = Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh)))
-    return shape.joined
+    if shape.joined is not None:
+        return shape.joined
+    joined = yield from joined_steps(surface.cleaned, name)
+    whole = shape
+    if joined is not surface.cleaned:
+        whole = Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh)))
+    shape.keep_joined(whole)
+    return whole
 
 
 def joined_shapes_steps(

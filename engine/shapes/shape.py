@@ -3,23 +3,19 @@
 
 from __future__ import annotations
 
-import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse.csgraph import dijkstra
 
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.geodesics import GeodesicSolver
 from ..geometry.laplacian import LaplaceBeltrami, laplace_beltrami
-from ..geometry.mean_curvature import smoothed_mean_curvature
-from ..geometry.orientation import tangent_gradient
-from ..geometry.sampling import FarthestPointSampler
-from ..runtime.progress import Progress, Steps, run
+from ..runtime.progress import Steps, run
 from .prepared_surface import PreparedSurface, prepared_steps
 from .proxy import Proxy
+from .surface_samples import SurfaceSampler, SurfaceSamples
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,16 +24,44 @@ if TYPE_CHECKING:
 
 __all__ = ["Shape"]
 
-_CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fingers wide
-
-_TAKEN_TOGETHER, _FOLLOWED_TOGETHER = 100, 40
-"""Samples that are taken, and from which paths are followed, in one step."""
-
 _FEW = 0.4
 """Part of the vertices wanted from which on a surface gains little by more where it is registered."""
 
-_COMPARED = 8
-"""Samples by whose distances it is found how much longer paths are."""
+
+@dataclass(eq=False)
+class _Operators:
+    """What is computed of a surface, whatever its samples: shared by all shapes that differ in these alone.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    solver : GeodesicSolver
+        Measures distances on it.
+    surface : PreparedSurface or None
+        What it is of a mesh; None where that is not needed, as in other processes.
+    spectrum : Spectrum or None
+        The eigenpairs that were computed last.
+    joined, finer : Shape or None
+        Shapes that are used in the place of this one, once they were needed.
+    """
+
+    mesh: TriangleMesh
+    solver: GeodesicSolver
+    surface: PreparedSurface | None
+    spectrum: Spectrum | None = None
+    joined: Shape | None = None
+    finer: Shape | None = None
+
+    @cached_property
+    def laplace(self) -> LaplaceBeltrami:
+        return laplace_beltrami(self.mesh)
+
+    def of(self, surface: PreparedSurface | None) -> _Operators:
+        """Return the same operators of another surface with the same distances and eigenpairs, or of no mesh."""
+        other = _Operators(self.mesh if surface is None else surface.mesh, self.solver, surface, self.spectrum)
+        other.laplace = self.laplace
+        return other
 
 
 class Shape:
@@ -70,14 +94,10 @@ class Shape:
         For each vertex of the surface that is used, its own or the nearest vertex of the original mesh.
     scale : float
         Square root of the area of the surface that is used: the unit of all distances below.
-    joined : Shape or None
-        The shape of all pieces of the body as one surface, once that was needed; see `with_limbs_steps`.
     """
 
-    surface: PreparedSurface
-    joined: Shape | None
     is_sent_once = False
-    """See `sharing.shared_steps`; true of `lean` ones, which do not change any more."""
+    """See `parallel_map.shared_steps`; true of `lean` ones, which do not change any more."""
 
     def __init__(
         self,
@@ -86,7 +106,8 @@ class Shape:
         proxy_vertices: int = 5000,
         excluded: NDArray[np.bool_] | None = None,
     ) -> None:
-        self._start(run(prepared_steps(mesh, name, proxy_vertices, excluded)))
+        surface = run(prepared_steps(mesh, name, proxy_vertices, excluded))
+        self._start(_Operators(surface.mesh, GeodesicSolver(surface.mesh), surface))
 
     def __repr__(self) -> str:
         own, matched = self.original, self.mesh
@@ -101,47 +122,79 @@ class Shape:
         excluded: NDArray[np.bool_] | None = None,
     ) -> Steps[Shape]:
         """Make a shape in steps: for dense meshes that takes seconds."""
-        shape = object.__new__(cls)
-        shape._start((yield from prepared_steps(mesh, name, proxy_vertices, excluded)))
-        return shape
+        return cls.of((yield from prepared_steps(mesh, name, proxy_vertices, excluded)))
 
     @classmethod
     def of(cls, surface: PreparedSurface) -> Shape:
         """Make a shape of a surface that was prepared before."""
+        return cls._made(_Operators(surface.mesh, GeodesicSolver(surface.mesh), surface))
+
+    @classmethod
+    def _made(
+        cls, operators: _Operators, sampler: SurfaceSampler | None = None, samples: SurfaceSamples | None = None
+    ) -> Shape:
         shape = object.__new__(cls)
-        shape._start(surface)
+        shape._start(operators, sampler, samples)
         return shape
 
-    def _start(self, surface: PreparedSurface) -> None:
-        self.surface, self.joined = surface, None
-        self.original, self.mesh, self.vertices = surface.original, surface.mesh, surface.vertices
-        self.scale = float(np.sqrt(self.mesh.area))
-        self.solver = GeodesicSolver(self.mesh)
-        self._rows = np.empty((0, self.mesh.vertex_count), np.float32)
-        self._measured: int | None = None
-        self._paths: dict[int, NDArray[np.float32]] = {}
-        self._spectrum: Spectrum | None = None
+    def _start(
+        self, operators: _Operators, sampler: SurfaceSampler | None = None, samples: SurfaceSamples | None = None
+    ) -> None:
+        """Join operators and samples: those that a sampler takes, or fixed ones."""
+        self._operators, self._samples = operators, samples
+        self._sampler = sampler or SurfaceSampler(operators.mesh, operators.solver)
         self._views: dict[tuple[int, int | None], Shape] = {}
-        self._finer: Shape | None = None
         self._lean: tuple[tuple[object, ...], Shape] | None = None
+        self.mesh, self.solver = operators.mesh, operators.solver
+        self.scale = float(np.sqrt(self.mesh.area))
+        if operators.surface is not None:
+            self.surface = operators.surface
+            self.original, self.vertices = self.surface.original, self.surface.vertices
 
-    @cached_property
-    def _sampler(self) -> FarthestPointSampler:
-        """Farthest point sampling from one end of the surface: a start that does not depend on the vertex order."""
-        graph = self.solver.graph
-        centre = np.average(self.mesh.vertices, axis=0, weights=self.mesh.vertex_areas)
-        outermost = int(np.square(self.mesh.vertices - centre).sum(axis=1).argmax())
-        return FarthestPointSampler(graph, int(dijkstra(graph, indices=outermost).argmax()))
+    @property
+    def taken(self) -> SurfaceSamples:
+        """The samples, and all that is known of them."""
+        return self._sampler.taken if self._samples is None else self._samples
 
     @property
     def sample_count(self) -> int:
         """Number of samples with distances so far, S."""
-        return len(self._rows)
+        return len(self.taken)
 
     @property
     def measured_count(self) -> int:
         """Number of samples, the first, whose distances are by fast marching, and not estimated."""
-        return self.sample_count if self._measured is None else self._measured
+        return self.taken.measured
+
+    @property
+    def samples(self) -> NDArray[np.int64]:
+        """Vertices of the samples, farthest points first, (S,)."""
+        return self.taken.vertices
+
+    @property
+    def sample_rows(self) -> NDArray[np.float32]:
+        """Distance from each sample to each vertex, (S, n), estimated from the samples that are not measured."""
+        return self.taken.rows
+
+    @property
+    def cell_areas(self) -> NDArray[np.float64]:
+        """Area of each sample's Voronoi cell as a part of the whole, (S,)."""
+        return self.taken.cell_areas
+
+    @property
+    def sample_distances(self) -> NDArray[np.float64]:
+        """Distances between the samples, (S, S), symmetric with a zero diagonal."""
+        return self.taken.distances
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """Unit direction at each sample in which the distance from each sample grows, (S at, S from, 2)."""
+        return self.taken.directions
+
+    @property
+    def curvatures(self) -> NDArray[np.float64]:
+        """Mean curvature at each sample, smoothed at two scales, (2, S)."""
+        return self.taken.curvatures
 
     def sample_steps(self, count: int, measured: int | None = None) -> Steps[None]:
         """Take samples until there are `count` (at most all vertices), with their distances to all vertices.
@@ -154,41 +207,25 @@ class Shape:
             From how many of them, the first, distances are measured by fast marching; from all by default.  From the
             others paths are followed, which takes a fraction of the time, for `limited` to estimate distances by.
         """
-        count = min(count, self.mesh.vertex_count)
-        measured = count if measured is None else min(measured, count)
-        for taken in range(len(self._sampler.samples), count, _TAKEN_TOGETHER):
-            self._sampler.extend(min(taken + _TAKEN_TOGETHER, count))
-            yield Progress(0.0, "Measuring distances")
-        known = self.sample_count
-        new = np.array(self._sampler.samples[known:measured], np.int64)
-        followed = [*range(min(_COMPARED, measured)), *range(measured, count)] if measured < count else []
-        followed = [number for number in followed if number not in self._paths]
-        total = max(len(new) + len(followed), 1)
-        if len(new):
-            # float32 keeps a hundred thousand vertices in reach of an ordinary machine; its error, 1e-7 of the
-            # distance, is far below that of fast marching.
-            rows = np.empty((measured, self.mesh.vertex_count), np.float32)
-            rows[:known] = self._rows
-            for first, block in self.solver.distances_in_blocks(new):
-                rows[known + first : known + first + len(block)] = block / self.scale
-                yield Progress((first + len(block)) / total, "Measuring distances")
-            self._rows = rows
-            self._forget_samples()
-        for start in range(0, len(followed), _FOLLOWED_TOGETHER):
-            part = followed[start : start + _FOLLOWED_TOGETHER]
-            lengths = self.solver.path_lengths([self._sampler.samples[number] for number in part]) / self.scale
-            self._paths.update(zip(part, lengths.astype(np.float32), strict=True))
-            yield Progress((len(new) + start + len(part)) / total, "Measuring distances")
+        if self._samples is None:
+            yield from self._sampler.steps(count, measured)
+        elif min(count, self.mesh.vertex_count) > len(self._samples):
+            yield from self._sampler.steps(count)
+            self._samples = self._sampler.taken.first(count)
 
-    def spectrum_steps(self, count: int) -> Steps[None]:
-        """Compute the first `count` eigenpairs of the Laplace-Beltrami operator (as many as the mesh has, at most)."""
-        if self.lacks_spectrum(count):
-            self._spectrum = yield from eigenpairs_steps(self.laplace, min(count, self.mesh.vertex_count))
+    def lacks(self, count: int, measured: int | None = None) -> bool:
+        """Say whether `sample_steps` would have anything to do."""
+        fixed = self._samples is not None and min(count, self.mesh.vertex_count) <= len(self._samples)
+        return not fixed and self._sampler.lacks(count, measured)
 
-    @cached_property
-    def laplace(self) -> LaplaceBeltrami:
-        """The Laplace-Beltrami operator of the part that is used."""
-        return laplace_beltrami(self.mesh)
+    @property
+    def sampler(self) -> SurfaceSampler:
+        """What takes the samples: it may do so in another process, see `take_samples_of`."""
+        return self._sampler
+
+    def take_samples_of(self, sampler: SurfaceSampler) -> None:
+        """Go on from where the sampler of the same shape has come elsewhere."""
+        self._sampler = sampler if sampler is self._sampler else sampler.on(self.mesh, self.solver)
 
     def limited(self, count: int, measured: int | None = None) -> Shape:
         """Return the shape with only the first `count` of its samples, sharing all that was computed.
@@ -199,8 +236,8 @@ class Shape:
         ----------
         count, measured : int
             As in `sample_steps`, which was run with the same numbers.  From the samples that are not measured,
-            distances are estimated: the lengths of paths, divided by how much longer paths from the first samples are
-            than distances, in the mean.  That errs by about 1 % of the square root of the area.
+            distances are estimated, see `SurfaceSampler.estimated`.  That errs by about 1 % of the square root of the
+            area.
         """
         count = min(count, self.mesh.vertex_count)
         if measured is not None and measured >= count:
@@ -209,50 +246,22 @@ class Shape:
             return self
         view = self._views.get((count, measured))
         if view is None:
-            view = self._views[count, measured] = copy.copy(self)
-            view._views = {}  # noqa: SLF001
-            view._forget_samples()  # noqa: SLF001
-            if measured is None:
-                view._rows = self._rows[:count]  # noqa: SLF001
-                view._measured = min(self.measured_count, count)  # noqa: SLF001
-            else:
-                view._rows = self._with_estimates(count, measured)  # noqa: SLF001
-                view._measured = measured  # noqa: SLF001
-        view._spectrum = self._spectrum  # noqa: SLF001
+            samples = self.taken.first(count) if measured is None else self._sampler.estimated(count, measured)
+            view = self._views[count, measured] = self._made(self._operators, self._sampler, samples)
         return view
-
-    def _with_estimates(self, count: int, measured: int) -> NDArray[np.float32]:
-        """Distances from samples to all vertices, (count, n), from the first by fast marching."""
-        compared = min(_COMPARED, measured)
-        lengths = sum(float(self._paths[number].sum()) for number in range(compared))
-        rows = np.empty((count, self.mesh.vertex_count), np.float32)
-        rows[:measured] = self._rows[:measured]
-        np.stack([self._paths[number] for number in range(measured, count)], out=rows[measured:])
-        rows[measured:] *= float(rows[:compared].sum()) / lengths
-        return rows
 
     def starting_with(self, vertices: NDArray[np.int64]) -> Shape:
         """Return the shape with samples of its own, the first of which are given vertices (k,) of `mesh`.
 
         All else that was computed is shared.
         """
-        shape = copy.copy(self)
-        shape._forget_samples()  # noqa: SLF001
-        shape._rows = self._rows[:0]  # noqa: SLF001
-        shape._measured = None  # noqa: SLF001
-        shape._paths = {}  # noqa: SLF001
-        shape._views = {}  # noqa: SLF001
-        shape._sampler = FarthestPointSampler(self.solver.graph, vertices)  # noqa: SLF001
-        return shape
+        return self._made(self._operators, SurfaceSampler(self.mesh, self.solver, vertices))
 
     def reflected(self) -> Shape:
         """Return the shape as it is seen in a mirror, with all that does not depend on the side it is seen from."""
-        shape = copy.copy(self)
-        shape.surface, shape.joined = self.surface.reflected(), None
-        shape.original, shape.mesh = shape.surface.original, shape.surface.mesh
-        shape._views, shape._finer = {}, None  # noqa: SLF001
-        shape.__dict__.pop("directions", None)
-        return shape
+        surface = self.surface.reflected()
+        samples = None if self._samples is None else self._samples.on(surface.mesh)
+        return self._made(self._operators.of(surface), self._sampler.on(surface.mesh, self.solver), samples)
 
     @property
     def is_coarse(self) -> bool:
@@ -266,67 +275,57 @@ class Shape:
         """
         if not self.surface.proxy.is_identity or self.mesh.vertex_count >= self.surface.wanted:
             return self
-        if self._finer is None:
-            self._finer = Shape.of(replace(self.surface, proxy=Proxy.finer(self.mesh, self.surface.wanted)))
-        return self._finer
+        if self._operators.finer is None:
+            surface = replace(self.surface, proxy=Proxy.finer(self.mesh, self.surface.wanted))
+            self._operators.finer = Shape.of(surface)
+        return self._operators.finer
 
     def sampled_like(self, coarser: Shape) -> Shape:
         """Return the shape with just the samples of the one that it is finer than; distances are interpolated."""
-        shape = copy.copy(self)
-        shape._forget_samples()  # noqa: SLF001
-        shape._views, shape._paths = {}, {}  # noqa: SLF001
-        shape.samples = coarser.samples
-        shape._rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.sample_rows.T).T)  # noqa: SLF001
-        shape._measured = coarser.measured_count  # noqa: SLF001
-        return shape
-
-    def bare(self) -> Shape:
-        """Return the shape without the mesh that its surface stands for, which may be large, to sample it elsewhere."""
-        shape = copy.copy(self)
-        for name in ("surface", "original", "vertices", "joined"):
-            shape.__dict__.pop(name, None)
-        shape._views, shape._lean, shape._finer = {}, None, None  # noqa: SLF001
-        return shape
+        rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.sample_rows.T).T)
+        samples = SurfaceSamples(self.mesh, coarser.samples, rows, coarser.measured_count)
+        return self._made(self._operators, self._sampler, samples)
 
     def lean(self) -> Shape:
-        """Return the shape with the samples and the spectrum it has, which do not change any more, and bare.
+        """Return the shape with the samples and the spectrum it has, which do not change any more.
 
-        That is what other processes are sent.
+        It is without the mesh that its surface stands for, which may be large: that is what other processes are sent.
         """
-        state = self.mesh, self._rows, self._spectrum
+        state = self.mesh, self.taken, self._operators.spectrum
         if self._lean is None or any(a is not b for a, b in zip(state, self._lean[0], strict=True)):
-            shape = self.bare()
-            shape.samples = self.samples
-            shape._paths = {}  # noqa: SLF001
-            shape.__dict__.pop("_sampler", None)
+            shape = self._made(self._operators.of(None), samples=self.taken)
             shape.is_sent_once = True
             self._lean = shape._lean = state, shape  # noqa: SLF001
         return self._lean[1]
 
-    def lacks(self, count: int, measured: int | None = None) -> bool:
-        """Say whether `sample_steps` would have anything to do."""
-        count = min(count, self.mesh.vertex_count)
-        measured = count if measured is None else min(measured, count)
-        return self.sample_count < measured or any(number not in self._paths for number in range(measured, count))
+    @property
+    def joined(self) -> Shape | None:
+        """The shape of all pieces of the body as one surface, once that was needed; see `with_limbs_steps`."""
+        return self._operators.joined
 
-    def take_samples_of(self, other: Shape) -> None:
-        """Take over the samples of the same shape from elsewhere."""
-        if len(other._rows) > len(self._rows):
-            self._forget_samples()
-        self._sampler, self._rows, self._paths = other._sampler, other._rows, other._paths
+    def keep_joined(self, joined: Shape) -> None:
+        """Keep the shape of all pieces of the body as one surface."""
+        self._operators.joined = joined
+
+    @property
+    def laplace(self) -> LaplaceBeltrami:
+        """The Laplace-Beltrami operator of the part that is used."""
+        return self._operators.laplace
+
+    def spectrum_steps(self, count: int) -> Steps[None]:
+        """Compute the first `count` eigenpairs of the Laplace-Beltrami operator (as many as the mesh has, at most)."""
+        if self.lacks_spectrum(count):
+            self.take_spectrum((yield from eigenpairs_steps(self.laplace, min(count, self.mesh.vertex_count))))
 
     def lacks_spectrum(self, count: int) -> bool:
         """Say whether `spectrum_steps` would have anything to do."""
         # Not more either: a match must not depend on what was asked of the shape before.
-        return count > 0 and (self._spectrum is None or len(self._spectrum) != min(count, self.mesh.vertex_count))
+        known = self._operators.spectrum
+        return count > 0 and (known is None or len(known) != min(count, self.mesh.vertex_count))
 
     def take_spectrum(self, spectrum: Spectrum) -> None:
         """Take over the spectrum from elsewhere."""
-        self._spectrum = spectrum
-
-    def _forget_samples(self) -> None:
-        for name in ("samples", "cell_areas", "sample_distances", "directions", "curvatures"):
-            self.__dict__.pop(name, None)
+        self._operators.spectrum = spectrum
 
     @property
     def spectrum(self) -> Spectrum:
@@ -337,46 +336,11 @@ class Shape:
         RuntimeError
             If `spectrum_steps` was not run before.
         """
-        if self._spectrum is None:
+        if self._operators.spectrum is None:
             raise RuntimeError("The spectrum was not computed: run spectrum_steps first.")
-        return self._spectrum
+        return self._operators.spectrum
 
-    @cached_property
-    def samples(self) -> NDArray[np.int64]:
-        """Vertices of the samples, farthest points first, (S,)."""
-        return np.array(self._sampler.samples[: self.sample_count])
-
-    @property
-    def sample_rows(self) -> NDArray[np.float32]:
-        """Distance from each sample to each vertex, (S, n), estimated from the samples that are not measured."""
-        return self._rows
-
-    @cached_property
-    def cell_areas(self) -> NDArray[np.float64]:
-        """Area of each sample's Voronoi cell as a part of the whole, (S,)."""
-        nearest = self._rows.argmin(axis=0)
-        return np.bincount(nearest, self.mesh.vertex_areas, self.sample_count) / self.mesh.area
-
-    @cached_property
-    def sample_distances(self) -> NDArray[np.float64]:
-        """Distances between the samples, (S, S), symmetric with a zero diagonal."""
-        square = self._rows[:, self.samples].astype(np.float64)
-        measured = self.measured_count
-        square[measured:, :measured] = square[:measured, measured:].T
-        square = (square + square.T) / 2
-        np.fill_diagonal(square, 0)
-        return square
-
-    @cached_property
-    def directions(self) -> NDArray[np.float64]:
-        """Unit direction at each sample in which the distance from each sample grows, (S at, S from, 2)."""
-        gradient = tangent_gradient(self.mesh, self.samples) @ self._rows.T.astype(np.float64)
-        planar = gradient.reshape(self.sample_count, 2, -1).transpose(0, 2, 1)
-        lengths = np.linalg.norm(planar, axis=2, keepdims=True)
-        return np.divide(planar, lengths, out=np.zeros_like(planar), where=lengths > 0)
-
-    @cached_property
-    def curvatures(self) -> NDArray[np.float64]:
-        """Mean curvature at each sample, smoothed at two scales, (2, S)."""
-        distances = self._rows * self.scale
-        return np.stack([smoothed_mean_curvature(self.mesh, distances, r * self.scale) for r in _CURVATURE_RADII])
+    def unit_functions(self, count: int | None = None) -> NDArray[np.float64]:
+        """First eigenfunctions at all vertices, in units in which the area is one, (n, count), or all."""
+        functions: NDArray[np.float64] = self.spectrum.functions[:, :count] * np.sqrt(self.laplace.area)
+        return functions

@@ -12,6 +12,7 @@ from ..runtime.parallel_map import shared_steps
 if TYPE_CHECKING:
     from ..runtime.progress import Steps
     from .shape import Shape
+    from .surface_samples import SurfaceSampler
 
 __all__ = ["Wanted", "finer_shapes", "finer_shapes_steps", "prepared_shapes_steps"]
 
@@ -47,7 +48,7 @@ def prepared_shapes_steps(x: Shape, y: Shape, wanted: Wanted) -> Steps[None]:
     shapes = [x] if x is y else [x, y]
     sampled = [shape for shape in shapes if shape.lacks(wanted.samples, wanted.measured)]
     analysed = [shape for shape in shapes if shape.lacks_spectrum(wanted.eigenpairs)]
-    parts: list[Shape | LaplaceBeltrami] = [shape.bare() for shape in sampled]
+    parts: list[SurfaceSampler | LaplaceBeltrami] = [shape.sampler for shape in sampled]
     parts += [shape.laplace for shape in analysed]
     found = yield from shared_steps(_prepared_steps, wanted, parts)
     for shape, result in zip([*sampled, *analysed], found, strict=True):
@@ -76,9 +77,9 @@ def finer_shapes_steps(x: Shape, y: Shape, eigenpairs: int) -> Steps[tuple[Shape
     return first, second
 
 
-def _prepared_steps(wanted: Wanted, part: Shape | LaplaceBeltrami) -> Steps[Shape | Spectrum]:
-    """Sample a shape, or compute the eigenpairs of an operator."""
+def _prepared_steps(wanted: Wanted, part: SurfaceSampler | LaplaceBeltrami) -> Steps[SurfaceSampler | Spectrum]:
+    """Sample a surface, or compute the eigenpairs of an operator."""
     if isinstance(part, LaplaceBeltrami):
         return (yield from eigenpairs_steps(part, min(wanted.eigenpairs, part.vertex_count)))
-    yield from part.sample_steps(wanted.samples, wanted.measured)
+    yield from part.steps(wanted.samples, wanted.measured)
     return part

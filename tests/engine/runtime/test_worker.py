@@ -379,12 +379,12 @@ from outer.inner.engine.shapes.shape_preparation import Wanted, _prepared_steps
 from tests.shapes import creature
 helpers.use_processes(2); helpers.call_helpers(); (helper,) = helpers.present_helpers()
 while not helper.is_ready: time.sleep(0.01)
-shapes = [Shape(TriangleMesh(*creature()[:2])).bare() for _ in range(2)]
+shapes = [Shape(TriangleMesh(*creature()[:2])).sampler for _ in range(2)]
 tasks = []
 start = helper.start
 helper.start = lambda *order: tasks.append(start(*order)) or tasks[-1]
 first, second = run(shared_steps(_prepared_steps, Wanted(40), shapes))
-print(len(tasks), tasks[0].done, (first.sample_rows == second.sample_rows).all())
+print(len(tasks), tasks[0].done, (first.taken.rows == second.taken.rows).all())
 """
     assert python(script, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])) == ["1", "True", "True"]
 
