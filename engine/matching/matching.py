@@ -40,8 +40,8 @@ if they are closed."""
 _CUT = 0.4
 """Length of its border, in sqrt(area), from which on much may have been cut off a surface: around a thigh."""
 
-_SHARED = 0.95
-"""Part of either surface that is shared from which on all of them is matched: their sizes hardly differ."""
+_SHARED = 0.8
+"""Part of both surfaces that is shared from which on all of them is matched as well: their sizes hardly differ."""
 
 _OVERLAP, _FIRST_AFTER = 0.35, 0.6
 """Parts of the work after which it is known what surfaces share, and then how they match as they are."""

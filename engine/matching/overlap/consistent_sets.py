@@ -101,43 +101,38 @@ def consistent_sets(
     near = patches[0].between < plan.radius
     of_places = _Places(first)
     support = ((near[first][:, of_places.numbers] * share[of_places.numbers]) * of_places.best(together).T).sum(axis=1)
-    within: dict[int, tuple[NDArray[np.int64], NDArray[np.float32], _Places]] = {}
     found: list[tuple[float, ConsistentSet]] = []
     for seed in np.argsort(-support, kind="stable")[: plan.seeds]:
-        place = int(first[seed])
-        if place not in within:
-            indices = np.flatnonzero(near[place][first])
-            # Row by row is far faster than all entries at once.
-            block = together if len(indices) == len(first) else together.take(indices, axis=0).take(indices, axis=1)
-            within[place] = indices, block, _Places(first[indices])
-        indices, block, places = within[place]
-        own = int(np.searchsorted(indices, seed))
-        grown = _grown(block, places, own, share[first[indices]])
+        grown = _grown(together, of_places, int(seed), share[first], near[first[seed]][first])
         if grown is not None:
-            strength, members, weights = grown
-            found.append((strength, ConsistentSet(indices[members], weights)))
+            found.append(grown)
     found.sort(key=lambda pair: -pair[0])
     return _distinct([each for _, each in found], candidates, patches, plan.most)
 
 
 def _grown(
-    block: NDArray[np.float32], places: _Places, seed: int, share: NDArray[np.float32]
-) -> tuple[float, NDArray[np.int64], NDArray[np.float32]] | None:
-    """Grow a set from a seed: its strength, members and their weights; None if it stays too small."""
-    weights = block[seed].copy()
+    together: NDArray[np.float32],
+    places: _Places,
+    seed: int,
+    share: NDArray[np.float32],
+    near: NDArray[np.bool_],
+) -> tuple[float, ConsistentSet] | None:
+    """Grow a set from a seed among candidates that are near, with its strength; None if it stays too small."""
+    weights = together[seed] * near
     weights[seed] = 1
     for _ in range(_ROUNDS):
         kept = np.flatnonzero(places.is_best(weights) & (weights > 0))
         amounts = weights[kept] * share[kept]
-        support = amounts @ block[kept] / max(float(amounts.sum()), _TIE)
+        # Whole rows are gathered far faster than what of them is near.
+        support = amounts @ together[kept] * near / max(float(amounts.sum()), _TIE)
         weights = support * (support > _WEAK)
         weights /= max(float(weights.max()), _TIE)
     kept = np.flatnonzero(places.is_best(weights) & (weights > _LEAST_SHARE))
     if len(kept) < _LEAST:
         return None
     amounts = weights[kept] * share[kept]
-    strength = float(amounts @ block[np.ix_(kept, kept)] @ amounts / max(float(amounts.sum()), _TIE))
-    return strength, kept, weights[kept]
+    strength = float(amounts @ together[np.ix_(kept, kept)] @ amounts / max(float(amounts.sum()), _TIE))
+    return strength, ConsistentSet(kept, weights[kept])
 
 
 def _distinct(

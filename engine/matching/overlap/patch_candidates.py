@@ -47,6 +47,10 @@ _DIRECTIONS, _BENT, _FARTHEST, _BESIDE = 0.4, 0.35, 0.8, 0.04
 much more as a part of their distance, up to a distance; the last is added to short distances."""
 
 
+_ROWS = 128
+"""Rows of what goes together that are computed at once."""
+
+
 @dataclass(frozen=True, eq=False)
 class Candidates:
     """Pairs of a place of one surface and one of another, in the order of the former, k.
@@ -130,34 +134,68 @@ def compatibilities(
     and builds differ.
     """
     numbers = candidates.first, candidates.second
-    places, lengths, to_border = [], [], []
-    for surface, patch, number in zip(surfaces, patches, numbers, strict=True):
-        vertices = patch.vertices[number]
-        places.append(surface.vertices[vertices].astype(np.float32))
-        lengths.append(patch.between.astype(np.float32)[np.ix_(number, number)])
-        to_border.append(surface.border_distances[vertices].astype(np.float32))
+    sides = [
+        _Side(
+            surface.vertices[patch.vertices[number]].astype(np.float32),
+            patch.between.astype(np.float32)[:, number],
+            surface.border_distances[patch.vertices[number]].astype(np.float32),
+            number,
+        )
+        for surface, patch, number in zip(surfaces, patches, numbers, strict=True)
+    ]
+    rotations, credit = candidates.rotations.astype(np.float32), candidates.credit.astype(np.float32)
+    together = np.empty((len(candidates), len(candidates)), np.float32)
+    for start in range(0, len(candidates), _ROWS):
+        rows = slice(start, start + _ROWS)
+        block = np.exp(-_doubts((sides[0], sides[1]), rotations, rows))
+        block[candidates.first[rows, None] == candidates.first] = 0
+        together[rows] = block * (credit[rows, None] * credit)
+    return together
+
+
+@dataclass(frozen=True, eq=False)
+class _Side:
+    """The places of k candidates on one surface.
+
+    Attributes
+    ----------
+    places : (k, 3) array of float
+        Where they are.
+    lengths : (s, k) array of float
+        Lengths of paths from each patch.
+    to_border : (k,) array of float
+        Distances to where the surface was cut.
+    patches : (k,) array of int
+        Their patches.
+    """
+
+    places: NDArray[np.float32]
+    lengths: NDArray[np.float32]
+    to_border: NDArray[np.float32]
+    patches: NDArray[np.int64]
+
+
+def _doubts(sides: tuple[_Side, _Side], rotations: NDArray[np.float32], rows: slice) -> NDArray[np.float32]:
+    """Say how much speaks against some candidates, the rows, going together with each: sums of squares, (r, k)."""
+    lengths = [side.lengths[side.patches[rows]] for side in sides]
     far = (lengths[0] + lengths[1]) / 2
     past = np.zeros(far.shape, bool)
-    for length, border in zip(lengths, to_border, strict=True):
-        past |= length > border[:, None] + border - np.float32(1e-3)  # that is rounding
+    for side, length in zip(sides, lengths, strict=True):
+        past |= length > side.to_border[rows, None] + side.to_border - np.float32(1e-3)  # that is rounding
     tolerance = _LENGTHS + _STRETCH * far + past * (_PAST * np.minimum(far / _PAST_FROM, 1))
-    doubt = np.square((lengths[0] - lengths[1]) / tolerance)
-    del past, tolerance, lengths
-    flat = candidates.rotations.astype(np.float32).reshape(-1, 9)
-    angles = np.arccos(np.clip((flat @ flat.T - 1) / 2, -1, 1))
-    doubt += np.square(angles / (_ROTATIONS + np.minimum(far, _FARTHEST_BEND)))
-    del angles
-    # Where the rotation of one has the other, against where that is.
+    doubts = np.square((lengths[0] - lengths[1]) / tolerance)
+    flat = rotations.reshape(-1, 9)
+    angles = np.arccos(np.clip((flat[rows] @ flat.T - 1) / 2, -1, 1))
+    doubts += np.square(angles / (_ROTATIONS + np.minimum(far, _FARTHEST_BEND)))
+    # Where the rotation of one has the other, and of the other the one, against where these are.
+    here, there = sides[0].places, sides[1].places
+    turned = np.einsum("kab,kb->ka", rotations, here)
     apart = np.zeros_like(far)
     for axis in range(3):
-        along = flat[:, 3 * axis : 3 * axis + 3] @ places[0].T
-        along -= np.diagonal(along)[:, None].copy()
-        apart += np.square(along - (places[1][:, axis][None] - places[1][:, axis][:, None]))
+        along = rotations[:, axis]
+        step = there[rows, axis, None] - there[:, axis]
+        apart += np.square(along[rows] @ here.T - turned[rows, axis, None] + step)
+        apart += np.square(here[rows] @ along.T - turned[:, axis] - step)
     wide = (far + _BESIDE) * (_DIRECTIONS + _BENT * np.minimum(far, _FARTHEST))
-    apart /= np.square(wide) * 4
-    doubt += apart + apart.T
-    together: NDArray[np.float32] = np.exp(-doubt, dtype=np.float32)
-    together[candidates.first[:, None] == candidates.first] = 0
-    credit = candidates.credit.astype(np.float32)
-    together *= credit[:, None] * credit
-    return together
+    summed: NDArray[np.float32] = doubts + apart / (np.square(wide) * 4)
+    return summed
