@@ -126,7 +126,7 @@ class VertexMap:
 
 
 def _read_partners(mesh: bpy.types.Mesh, name: str) -> NDArray[np.bool_]:
-    """Read which vertices of a part have a counterpart: all, where it is not said, as by matches of earlier versions."""
+    """Read which vertices of a part have a counterpart: all, where it is not said, as by earlier versions."""
     partners = read_values(mesh, _partner_name(name), "INT")
     return np.ones(len(mesh.vertices), bool) if partners is None else partners != 0
 
