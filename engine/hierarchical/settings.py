@@ -7,14 +7,11 @@ The add-on's properties mirror these fields by name, label, description and rang
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..runtime.errors import SettingsError
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-__all__ = ["SETUPS", "MatchSettings", "check_ranges", "choice", "setting"]
+__all__ = ["SETUPS", "CheckedSettings", "MatchSettings", "choice", "setting"]
 
 
 def setting(default: float, label: str, minimum: float, maximum: float, description: str) -> Any:  # noqa: ANN401
@@ -28,27 +25,30 @@ def choice(default: str, label: str, description: str, choices: dict[str, tuple[
     return field(default=default, metadata={"label": label, "description": description, "choices": choices})
 
 
-def check_ranges(settings: DataclassInstance) -> None:
-    """Check all values of settings against what their fields declare.
+@dataclass(frozen=True)
+class CheckedSettings:
+    """Settings whose values are checked against what their fields declare.
 
     Raises
     ------
     SettingsError
         If a number is out of its range, or a word none of its choices.
     """
-    for own in fields(settings):
-        value, about = getattr(settings, own.name), own.metadata
-        if "choices" in about:
-            if value not in about["choices"]:
-                raise SettingsError(f"{about['label']} is {value!r}, but must be one of {list(about['choices'])}.")
-        elif "minimum" in about and not about["minimum"] <= value <= about["maximum"]:
-            raise SettingsError(
-                f"{about['label']} is {value}, but must lie between {about['minimum']} and {about['maximum']}."
-            )
+
+    def __post_init__(self) -> None:
+        for own in fields(self):
+            value, about = getattr(self, own.name), own.metadata
+            if "choices" in about:
+                if value not in about["choices"]:
+                    raise SettingsError(f"{about['label']} is {value!r}, but must be one of {list(about['choices'])}.")
+            elif "minimum" in about and not about["minimum"] <= value <= about["maximum"]:
+                raise SettingsError(
+                    f"{about['label']} is {value}, but must lie between {about['minimum']} and {about['maximum']}."
+                )
 
 
 @dataclass(frozen=True)
-class MatchSettings:
+class MatchSettings(CheckedSettings):
     """Settings of `match`; the defaults need no tuning across units, scale and resolution.
 
     Each field's metadata holds ``label`` and ``description``, and ``minimum`` and ``maximum`` of a number or
@@ -196,7 +196,7 @@ class MatchSettings:
     )
 
     def __post_init__(self) -> None:
-        check_ranges(self)
+        super().__post_init__()
         if self.coarse_candidates < self.coarse_points:
             raise SettingsError(
                 f"{self.coarse_points} Coarse Points need at least as many Coarse Candidates, "

@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry.squared_differences import squared_differences
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.sampled_pair import Pair
-from ..hierarchical.settings import MatchSettings, check_ranges, setting
+from ..hierarchical.settings import CheckedSettings, MatchSettings, setting
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.background import can_go_beside
@@ -33,7 +33,7 @@ _LEVELS = (np.arange(64) + 0.5) / 64  # at which the quantiles of distances are 
 
 
 @dataclass(frozen=True)
-class RetrievalSettings:
+class RetrievalSettings(CheckedSettings):
     """Settings of `retrieve`.
 
     The defaults were measured on 55 bodies of seven classes (`python -m tests.benchmarks.retrieval`): the class of the
@@ -57,7 +57,7 @@ class RetrievalSettings:
     coarse_points: int = setting(8, "Coarse Points", 3, 24, "How many points are matched exactly before all others")
 
     def __post_init__(self) -> None:
-        check_ranges(self)
+        super().__post_init__()
         if self.samples < self.points:
             raise SettingsError(f"{self.points} Points need at least as many Samples, not {self.samples}.")
 
