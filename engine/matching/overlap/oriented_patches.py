@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["RINGS", "TURNS", "OrientedPatches", "oriented_patches"]
 
+_TINY = float(np.finfo(float).tiny)
+
 _RADII = np.array([0.0, 0.045, 0.09, 0.14, 0.2, 0.27, 0.35])
 """Between which distances from the middle, in units of length, the rings of a patch lie."""
 
@@ -101,11 +103,11 @@ def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:
 
 def _frames(normals: NDArray[np.float64]) -> NDArray[np.float64]:
     """Find axes (s, 3, 3), right-handed, the last along each normal (s, 3)."""
-    upwards = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+    upwards = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)
     # Any axis that is not along the normal will do.
     aside = np.eye(3)[np.abs(upwards).argmin(axis=1)]
     first = np.cross(upwards, aside)
-    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), np.finfo(float).tiny)
+    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), _TINY)
     return np.stack([first, np.cross(upwards, first), upwards], axis=1)
 
 
@@ -114,7 +116,7 @@ def _seen(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Find the cells of points (k,) and what is seen there, (k, 4), by places, normals and lengths of paths."""
     aside = np.hypot(offsets[:, 0], offsets[:, 1])
-    outwards = (normals[:, :2] * offsets[:, :2]).sum(axis=1) / np.maximum(aside, np.finfo(float).tiny)
+    outwards = (normals[:, :2] * offsets[:, :2]).sum(axis=1) / np.maximum(aside, _TINY)
     seen = offsets[:, 2] / _HEIGHT, (aside - lengths) / _HEIGHT, _FACING * normals[:, 2], _FACING * outwards
     angles = np.arctan2(offsets[:, 1], offsets[:, 0]) / (2 * np.pi) * TURNS
     rings = np.searchsorted(_RADII, lengths, side="right") - 1

@@ -36,6 +36,8 @@ __all__ = ["CREDIBLE", "OverlapMatch", "credibility", "overlap_match_steps"]
 CREDIBLE = 0.5
 """Credibility from which on an overlap is more likely right than not."""
 
+_TINY = float(np.finfo(float).tiny)
+
 _SCORE, _MARGIN, _AGREEMENT, _AREA = (2.5, 0.6), (1.4, 0.35), (0.6, 0.06), (0.2, 0.04)
 """Of what an overlap is judged by, the value at which it is believed as often as not if all else is clear, and by how
 much more or less that changes: see the attributes of `Overlap`."""
@@ -200,15 +202,15 @@ def _quality(shared: _Shared, margin: float) -> MatchQuality:
     """Measure what is shared."""
     (source, target), known = shared.meshes, shared.known[0]
     areas = source.vertex_areas * known
-    total = max(float(areas.sum()), np.finfo(float).tiny)
+    total = max(float(areas.sum()), _TINY)
     found = SurfaceMap.from_points(target, shared.maps[0])
     shown = source.triangle_areas * known[source.triangles].all(axis=1)
-    orientation = float(shown @ found.face_orientations(source, target)) / max(float(shown.sum()), np.finfo(float).tiny)
+    orientation = float(shown @ found.face_orientations(source, target)) / max(float(shown.sum()), _TINY)
     # In one unit of length: parts have no sizes of their own.
     stretch = found.edge_stretch(source, target) * np.sqrt(target.area / source.area)
     usable = known[source.edges].all(axis=1) & np.isfinite(stretch) & (stretch > 0)
     weights = np.square(source.edge_lengths[usable])
-    distortion = float(weights @ np.abs(np.log(stretch[usable]))) / max(float(weights.sum()), np.finfo(float).tiny)
+    distortion = float(weights @ np.abs(np.log(stretch[usable]))) / max(float(weights.sum()), _TINY)
     confidence = float(areas @ shared.trust(0)) / total * max(orientation, 0.0)
     disagreement = float(areas @ shared.trips(0)) / total
     credible = shared.likely >= CREDIBLE

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["overlap_score", "shared_area"]
 
+_TINY = float(np.finfo(float).tiny)
+
 _GAP, _STRAIN, _CURVATURE, _INNER, _AREA = (
     (-4.0, 0.003, 0.0205),
     (-4.5, 0.03, 0.315),
@@ -47,7 +49,7 @@ def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
     strained, and has no other outline.
     """
     here, there = source.mass * fit.members, target.mass * fit.members_back
-    both = max(float(here.sum() + there.sum()), np.finfo(float).tiny)
+    both = max(float(here.sum() + there.sum()), _TINY)
     differences = (
         np.abs(source.curvatures - target.curvatures[fit.there.images]).mean(axis=1),
         np.abs(target.curvatures - source.curvatures[fit.back.images]).mean(axis=1),
@@ -56,7 +58,7 @@ def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
     inner += _inner_outline(target, source, fit.members_back, fit.back.images)
     values = (
         float(here @ fit.there.gaps + there @ fit.back.gaps) / both,
-        float(fit.energies @ fit.members) / max(float(here.sum()), np.finfo(float).tiny),
+        float(fit.energies @ fit.members) / max(float(here.sum()), _TINY),
         float(here @ differences[0] + there @ differences[1]) / both,
         inner,
         max(shared_area(source, target, fit), _LEAST_AREA),

@@ -116,7 +116,9 @@ def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
         for each in sets:
             first, second = candidates.first[each.members], candidates.second[each.members]
             paths = patches[0].paths[first][:, coarse.ids]
-            marks = Landmarks(nearest[first], there.vertices[patches[1].vertices[second]], each.weights)
+            marks = Landmarks(
+                nearest[first], there.vertices[patches[1].vertices[second]], each.weights.astype(np.float64)
+            )
             positions, marks = placed(coarse, marks, candidates.rotations[each.members], paths)
             starts.append((positions, marks, paths.min(axis=0) if np.isfinite(plan.radius) else None))
         yield Progress(0.5 + (number + 1) / (2 * len(PLANS)), _LABEL)
