@@ -94,8 +94,8 @@ def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:
         offsets = (places[near] - surface.vertices[vertex]) @ axes.T
         cells, seen = _seen(offsets, normals[near] @ axes.T, lengths[near])
         sums = summed_rows(cells, areas[near, None] * seen, RINGS * TURNS).reshape(RINGS, TURNS, 4)
-        amounts = np.bincount(cells, areas[near], RINGS * TURNS).reshape(RINGS, TURNS)
-        sums, amounts = (_blurred(each) for each in (sums, amounts))
+        amounts = np.bincount(cells, areas[near], RINGS * TURNS).astype(np.float64).reshape(RINGS, TURNS)
+        sums, amounts = _blurred(sums), _blurred(amounts)
         values[number] = sums / np.maximum(amounts, _LEAST / 100)[..., None]
         weights[number] = np.minimum(amounts / _FULL, 1) * (amounts > _LEAST)
     return OrientedPatches(vertices, paths, frames, values, weights)
