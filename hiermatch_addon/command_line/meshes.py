@@ -266,7 +266,8 @@ def _chosen_of_import(
     added: Sequence[bpy.types.Object], argument: MeshArgument, notes: list[str], *, whole: bool
 ) -> Side:
     """Return what is named of an import, or the character of the mesh with the most vertices."""
-    found = _named(argument, added)
+    exact = any(obj.type == "MESH" and obj.name == argument.name for obj in added)
+    found = None if exact else _named(argument, added)
     if found is not None:
         return found
     chosen = _choose_largest([obj for obj in added if obj.type == "MESH"], argument, notes)

@@ -179,6 +179,8 @@ class MatchJob(SteppedJob):
         The objects, or characters of several.
     options : JobOptions
         What to match and to write.
+    writes : bool
+        Whether it is to be written at all: if not, the source may be another file's.
 
     Attributes
     ----------
@@ -191,11 +193,14 @@ class MatchJob(SteppedJob):
         If the objects or settings do not allow a match.
     """
 
-    def __init__(self, context: bpy.types.Context, source: Side, target: Side, options: JobOptions) -> None:
+    def __init__(
+        self, context: bpy.types.Context, source: Side, target: Side, options: JobOptions, *, writes: bool = True
+    ) -> None:
         self._start = time.perf_counter()
         self._options = options
         depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
-        check_pair(view_layer_of(context), source, target)
+        self._writes = writes
+        check_pair(view_layer_of(context), source, target, writes_source=writes)
         for obj in (source, target):
             _check_points(obj, options.settings)
         self._references = (SideReference.of(source), SideReference.of(target))
@@ -324,7 +329,7 @@ class MatchJob(SteppedJob):
                 raise ObjectError(f'"{reference.name}" was deleted while it was being matched. Nothing was written.')
             objects.append(found)
         try:
-            check_pair(view_layer, *objects)
+            check_pair(view_layer, *objects, writes_source=self._writes)
         except ObjectError as error:
             raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
         for obj, mesh in zip(objects, self._meshes, strict=True):

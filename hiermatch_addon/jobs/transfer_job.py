@@ -12,7 +12,7 @@ from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..scene.armatures import read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of
-from ..scene.pair import check_pair, check_side
+from ..scene.pair import check_pair, check_side, is_own
 from ..storage.halves import find_common
 from ..storage.stored_map import find_maps, keep_refined
 from ..storage.vertex_maps import MapPair, StoredMaps
@@ -94,7 +94,7 @@ class _Leg:
             self.stored, self.refined, self.prefix = found.maps, found.refined, found.source.prefix
         self.match: MatchJob | None = None
         if self.stored is None:
-            self.match = MatchJob(context, source, target, _with_maps(options.match))
+            self.match = MatchJob(context, source, target, _with_maps(options.match), writes=is_own(source))
             self.prefix = options.match.prefix
         self.mesh = read_surface(target, context.evaluated_depsgraph_get(), use_modifiers=False)
         self.state = _state(target)
@@ -185,9 +185,9 @@ class TransferJob(SteppedJob):
         self._options = options
         depsgraph = context.evaluated_depsgraph_get()
         view_layer = view_layer_of(context)
-        check_side(view_layer, source)
+        check_side(view_layer, source, writable=False)
         for target in targets:
-            check_pair(view_layer, source, target)
+            check_pair(view_layer, source, target, writes_source=False)
         self._source, self._source_name, self._source_state = SideReference.of(source), source.name, _state(source)
         self._mesh: TriangleMesh = read_surface(source, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []
@@ -232,14 +232,15 @@ class TransferJob(SteppedJob):
     def _write_match(self, context: bpy.types.Context, leg: _Leg, source: Side, target: Side) -> Outcome | None:
         """Write the match if it is new, and the better maps.
 
-        A source carries one match of a prefix only: with several targets, the new matches are used but not kept.
+        A source carries one match of a prefix only: with several targets, the new matches are used but not kept; nor
+        are those of a source that is another file's.
         """
         outcome = None
         if leg.match is not None:
-            if len(self._legs) > 1:
+            if len(self._legs) > 1 or not is_own(source):
                 return None
             outcome = leg.match.finish(view_layer_of(context))
-        if leg.better is not None:
+        if leg.better is not None and is_own(source):
             keep_refined(context, source, target, leg.prefix, leg.better)
         return outcome
 
@@ -293,6 +294,6 @@ class TransferJob(SteppedJob):
             side = reference.find()
             if side is None:
                 raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
-            check_side(view_layer, side)
+            check_side(view_layer, side, writable=bool(found))  # the source comes first, and is only read
             found.append(side)
         return found[0], found[1:]

@@ -14,7 +14,7 @@ from ..jobs.job import MatchJob, job_options
 from ..jobs.job_operator import JobOperator
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
-from ..properties.panel_state import picked, state_of
+from ..properties.panel_state import pick_named, picked, state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.summary import remember
@@ -54,6 +54,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     doing = "Matching"
     cancelled = "The match was cancelled. Nothing was written"
 
+    _named = ("", "")  # what a script has called source and target
     _left_out = ""  # which parts of the source's own character, as a sentence
 
     @classmethod
@@ -81,6 +82,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         parts = [] if self.target or picked(state)[1] else selected_targets(context, source)[1]
         self._left_out = left_out_note(source, parts) if parts else ""
         job = MatchJob(context, source, target, job_options(self))
+        self._named = self.source, self.target
         # So that Adjust Last Operation repeats the match of the same two, whatever is selected by then.
         layer = view_layer_of(context)
         self.source, self.target = name_of(layer, source), name_of(layer, target)
@@ -92,6 +94,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         remember(
             state_of(context).summary, outcome.stored, (outcome.source, outcome.target), self.prefix, outcome.seconds
         )
+        pick_named(state_of(context), *self._named)
         refresh(cast("bpy.types.Scene", context.scene))
         if self._left_out:
             self.report({"INFO"}, translated(self._left_out))

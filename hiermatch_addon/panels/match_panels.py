@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..common.access import layout_of
+from ..common.access import layout_of, view_layer_of
 from ..common.phrases import counted
 from ..common.translated_text import translated
-from ..properties.panel_state import state_of
+from ..properties.panel_state import picked, state_of
 from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.setups import current_setup
-from ..scene.pair import selected_meshes
 from .panel_text import draw_text
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress, draw_starter
@@ -83,14 +82,23 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
     names.ui_units_x = _name_width()
     for name in ("source", "target"):
         names.label(text=name.title())
-        pickers.prop(state, name, text="")
+        _draw_picker(pickers.row(align=True), state, name)
     swap.scale_y = 2.0
     swap.operator("hiermatch.swap", text="", icon="UV_SYNC_SELECT")
-    if state.source is None or state.target is None:
-        selected = len(selected_meshes(context))
-        picked = (state.source is not None) + (state.target is not None)
-        if selected + picked < 2:
+    chosen = sum(one is not None for one in picked(state))
+    if chosen < 2:
+        selected = sum(obj.type in ("MESH", "ARMATURE") for obj in view_layer_of(context).objects.selected)
+        if selected + chosen < 2:
             draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
+
+
+def _draw_picker(row: bpy.types.UILayout, state: HIERMATCH_PG_scene, role: str) -> None:
+    """Draw what picks an object, and what picks a collection; once one is picked, that alone."""
+    collection = f"{role}_collection"
+    if getattr(state, collection) is None or getattr(state, role) is not None:
+        row.prop(state, role, text="")
+    if getattr(state, role) is None:
+        row.prop(state, collection, text="")
 
 
 def _name_width() -> float:

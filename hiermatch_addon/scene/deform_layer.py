@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["check_weights_writable", "read_weights", "write_weights"]
+__all__ = ["check_weights_writable", "read_group", "read_weights", "write_weights"]
 
 
 def check_weights_writable(obj: bpy.types.Object) -> None:
@@ -61,6 +61,17 @@ def read_weights(obj: bpy.types.Object) -> csr_array:
     weights = _stored(obj)[:, : len(obj.vertex_groups)]
     weights.eliminate_zeros()
     return weights
+
+
+def read_group(obj: bpy.types.Object, name: str) -> NDArray[np.float64]:
+    """Read the weights of one vertex group, (n,), nan at vertices that are not in it; nowhere if there is none."""
+    found = np.full(len(mesh_of(obj).vertices), np.nan)
+    group = obj.vertex_groups.get(name)
+    if group is not None:
+        stored = _stored(obj).tocsc()
+        own = slice(stored.indptr[group.index], stored.indptr[group.index + 1])
+        found[stored.indices[own]] = stored.data[own]
+    return found
 
 
 def write_weights(obj: bpy.types.Object, names: Sequence[str], weights: csr_array) -> None:

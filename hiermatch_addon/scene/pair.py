@@ -25,6 +25,7 @@ __all__ = [
     "check_side",
     "check_writable",
     "find_pair",
+    "is_own",
     "left_out_note",
     "name_of",
     "named_object",
@@ -59,8 +60,9 @@ def find_pair(
         for name, pick in zip(names, picked, strict=True)
     )
     active = layer.objects.active
-    if source is None and active is not None and active.select_get():
-        source = active_side(context, without=target)
+    taken = () if target is None else parts_of(target)
+    if source is None and active is not None and active.select_get() and active not in taken:
+        source = active_side(context, without=target) or active
     if source is None:
         source = _only(selected_meshes(context, without=target), "Source")
     if target is None:
@@ -231,8 +233,8 @@ def _only(candidates: Sequence[Side], role: str) -> Side:
     return candidates[0]
 
 
-def check_pair(view_layer: bpy.types.ViewLayer, source: Side, target: Side) -> None:
-    """Make sure that two sides can be matched and written to.
+def check_pair(view_layer: bpy.types.ViewLayer, source: Side, target: Side, *, writes_source: bool = True) -> None:
+    """Make sure that two sides can be matched and written to; the source only if it `writes_source`.
 
     Raises
     ------
@@ -241,8 +243,8 @@ def check_pair(view_layer: bpy.types.ViewLayer, source: Side, target: Side) -> N
     """
     if source == target:
         raise ObjectError(f'Source and Target are both "{source.name}". Choose two different objects.')
-    for side in (source, target):
-        check_side(view_layer, side)
+    check_side(view_layer, source, writable=writes_source)
+    check_side(view_layer, target)
     for mine in parts_of(source):
         for other in parts_of(target):
             if mine == other:
@@ -256,8 +258,8 @@ def check_pair(view_layer: bpy.types.ViewLayer, source: Side, target: Side) -> N
                 )
 
 
-def check_side(view_layer: bpy.types.ViewLayer, side: Side) -> None:
-    """Make sure that all parts of a side can be read and written to.
+def check_side(view_layer: bpy.types.ViewLayer, side: Side, *, writable: bool = True) -> None:
+    """Make sure that all parts of a side can be read and, if they are to be `writable`, written to.
 
     Raises
     ------
@@ -266,7 +268,7 @@ def check_side(view_layer: bpy.types.ViewLayer, side: Side) -> None:
     """
     seen: dict[bpy.types.ID, str] = {}
     for part in parts_of(side):
-        check_object(view_layer, part)
+        check_object(view_layer, part, writable=writable)
         mesh = mesh_of(part)
         if mesh in seen:
             raise ObjectError(
@@ -276,8 +278,8 @@ def check_side(view_layer: bpy.types.ViewLayer, side: Side) -> None:
         seen[mesh] = part.name
 
 
-def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> None:
-    """Make sure that an object can be read and written to.
+def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writable: bool = True) -> None:
+    """Make sure that an object can be read and, if it is to be `writable`, written to.
 
     Raises
     ------
@@ -289,7 +291,8 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> None
             f'"{obj.name}" is not a mesh but of type {obj.type.title()}. Choose a mesh object, or convert it '
             "(Object > Convert > Mesh)."
         )
-    check_writable(obj)
+    if writable:
+        check_writable(obj)
     if view_layer.objects.get(obj.name) != obj:
         raise ObjectError(
             f'"{obj.name}" is not in the view layer "{view_layer.name}". Link it to the scene, or enable its '
@@ -305,6 +308,12 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> None
     flat = [axis for axis, length in zip("XYZ", scale, strict=True) if not length > 0]
     if flat:
         raise ObjectError(f'"{obj.name}" has a scale of zero on {" and ".join(flat)}. Set its scale to 1 (Alt+S).')
+
+
+def is_own(side: Side) -> bool:
+    """Tell whether all parts of a side are this file's own, neither linked nor overridden."""
+    owners = [owner for part in parts_of(side) for owner in (part, part.data)]
+    return all(owner is not None and owner.library is None and owner.override_library is None for owner in owners)
 
 
 def check_writable(obj: bpy.types.Object) -> None:

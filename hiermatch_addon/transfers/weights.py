@@ -18,7 +18,7 @@ from ..jobs.transfer import TransferReport
 from ..scene import mesh_io
 from ..scene.armatures import bone_of
 from ..scene.character import parts_of, vertex_ranges
-from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
+from ..scene.deform_layer import check_weights_writable, read_group, read_weights, write_weights
 from ..storage.written_names import written_names
 from .weight_groups import chosen_groups, deforming_bones, group_names, locked_groups
 
@@ -39,6 +39,9 @@ _SUFFIX = "Rejected"
 
 _TORN, _WHOLE = (0.7, 0.02, 0.02, 1.0), (1.0, 1.0, 1.0, 1.0)
 """Linear colors of vertices whose own weights were rejected, and of others."""
+
+_RIGID = 0.5
+"""From which weight on in the group of rigid pieces a vertex says that its piece is rigid."""
 
 _WHOLE_SUM = 1e-3
 """How far from one the weights of a vertex may sum to that are shares of a whole."""
@@ -72,6 +75,7 @@ class WeightTransfer:
         self._task: _Task | None = None
         self._result: csr_array = csr_array((0, 0))
         self._torn: NDArray[np.bool_] = np.zeros(0, bool)
+        self._pieces: NDArray[np.int8] | None = None
         self._notes: list[str] = []
 
     def read(self, _context: bpy.types.Context, source: Side, target: Side) -> None:
@@ -97,6 +101,7 @@ class WeightTransfer:
         if self._settings.mark:
             self._check_mark(target)
         self._task = self._make_task(source, target, chosen, locked)
+        self._pieces = np.concatenate([_said_of_pieces(part, self._settings.rigid_group) for part in parts_of(target)])
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the weights of the target."""
@@ -109,6 +114,8 @@ class WeightTransfer:
             telling=task.telling if task.telling.any() else None,
             fill=settings.fill,
             fill_alone=settings.alone == "FILL",
+            rigid=settings.rigid,
+            pieces=self._pieces,
         )
         self._torn = carried.torn
         self._result = put_in(
@@ -218,6 +225,12 @@ class WeightTransfer:
             mesh_io.add_colors(mesh_of(part), self._mark_name, colors[own])
             attributes.active_color_name = self._mark_name
             attributes.default_color_name = rendered or self._mark_name
+
+
+def _said_of_pieces(obj: bpy.types.Object, name: str) -> NDArray[np.int8]:
+    """Read what a vertex group says of loose pieces, (n,): 1 that they are rigid, -1 that they are not, 0 nothing."""
+    weights = read_group(obj, name)
+    return np.where(np.isnan(weights), 0, np.where(weights >= _RIGID, 1, -1)).astype(np.int8)
 
 
 def _write_part(obj: bpy.types.Object, names: Sequence[str], weights: csr_array, *, every: bool) -> None:

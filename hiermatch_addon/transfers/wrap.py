@@ -12,6 +12,7 @@ from ..common.access import mesh_of
 from ..jobs.transfer import TransferReport
 from ..scene.character import parts_of, vertex_ranges
 from ..scene.mesh_io import vertex_positions
+from ..scene.pair import check_writable
 from ..scene.shape_key_io import (
     KeySettings,
     add_keys,
@@ -75,6 +76,7 @@ class WrapTransfer:
         moved, other = self._roles(source, target)
         for part in parts_of(moved):
             if self._settings.result == "KEY":
+                check_writable(part)
                 check_keys_writable(part, self._names(other.name))
             self._from_world.append(np.linalg.inv(world_matrix(context, part)))
 

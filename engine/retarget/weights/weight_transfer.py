@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, hstack
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress
-from .rigid_parts import with_rigid_parts
+from .rigid_parts import with_rigid_parts, with_single_bones
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
 from .weight_filling import filled
 from .weight_rejection import torn_vertices
@@ -83,6 +83,8 @@ def carry_weights_steps(
     telling: NDArray[np.bool_] | None = None,
     fill: bool = True,
     fill_alone: bool = False,
+    rigid: bool = True,
+    pieces: NDArray[np.int8] | None = None,
 ) -> Steps[CarriedWeights]:
     """Carry weights across a map.
 
@@ -99,10 +101,14 @@ def carry_weights_steps(
     telling : (g,) array of bool, optional
         The columns that tell whether neighbours move together: those of bones; all if not given.
     fill : bool
-        Whether vertices that the map tears away from their neighbours take the weights around them, and small parts
-        move as one whose counterparts do.
+        Whether vertices that the map tears away from their neighbours take the weights around them.
     fill_alone : bool
         Whether vertices that have no partner on the source take the weights around them, too.
+    rigid : bool
+        Whether loose parts move as one whose counterparts do.
+    pieces : (m,) array of int, optional
+        What is known of the loose parts: 1 on vertices of one that moves by one bone, -1 of one that never moves as
+        one, 0 elsewhere.  More vertices outvote fewer.
 
     Yields
     ------
@@ -118,9 +124,12 @@ def carry_weights_steps(
     result = carried(weights, target_to_source)
     torn = np.zeros(len(target_to_source), bool)
     parts = WeldedParts.of(target)
+    marks = np.zeros(parts.part_count) if pieces is None else np.bincount(parts.vertex_labels, pieces)
+    if rigid:
+        result = with_rigid_parts(result, parts, weights, WeldedParts.of(source), target_to_source, free=marks < 0)
+    result = with_single_bones(result, parts, marks > 0, telling)
     if fill:
         yield Progress(0.2, "Looking for torn vertices")
-        result = with_rigid_parts(result, parts, weights, WeldedParts.of(source), target_to_source)
         bones = result if telling is None else csr_array(result[:, telling])
         torn = torn_vertices(bones, target_to_source, parts, source)
         yield Progress(0.5, "Filling in weights")

@@ -666,12 +666,21 @@ MESSAGES: Final[dict[str, str]] = {
         "これより小さいウェイトは、各頂点の最大のものを除いて削除されます"
     ),
     "Fill": "フィル",
+    ("Where the map tears vertices away from their neighbors, take the weights from around them along the surface"): (
+        "マップが頂点を隣から引き離した場所では、表面に沿って周囲のウェイトを使います"
+    ),
+    "Rigid Pieces": "剛体の部品",
     (
-        "Where the map tears vertices away from their neighbors, take the weights from around them along the "
-        "surface; and let small loose parts move as one, such as eyes, if they do on the source"
+        "Let loose pieces move as one, such as eyes, teeth, buckles and plates, if what they correspond to does on "
+        "the source"
+    ): ("目、歯、バックル、装甲板のような独立した部品を、ソースの対応する部分がそうなら一体として動くようにします"),
+    "Rigid Group": "剛体グループ",
+    (
+        "Vertex group of the target for single pieces: a loose piece with vertices of weight 1 in it moves by one "
+        "bone, one with vertices of weight 0 never moves as one, whatever the source does"
     ): (
-        "マップが頂点を隣から引き離した場所では、表面に沿って周囲のウェイトを使います。また、目のような小さな独"
-        "立部分は、ソースでそうなら一体として動くようにします"
+        "個々の部品を指定するターゲットの頂点グループ。ウェイト1の頂点がある独立部品は一つのボーンで動き、ウェイト0の頂点"
+        "がある部品は、ソースにかかわらず一体としては動きません"
     ),
     "Without Counterpart": "対応のない場所",
     "Follow the Map": "マップに従う",

@@ -559,9 +559,8 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Fill": "填充",
     (
-        "Where the map tears vertices away from their neighbors, take the weights from around them along the "
-        "surface; and let small loose parts move as one, such as eyes, if they do on the source"
-    ): "在映射将顶点与相邻顶点撕开之处，沿表面取用周围的权重；眼睛之类的松散小部件若在源上整体移动，则保持整体移动",
+        "Where the map tears vertices away from their neighbors, take the weights from around them along the surface"
+    ): "在映射将顶点与相邻顶点撕开之处，沿表面取用周围的权重",
     "Without Counterpart": "没有对应部分处",
     "Follow the Map": "遵循映射",
     (
@@ -571,6 +570,19 @@ MESSAGES: Final[dict[str, str]] = {
     "The weights of the nearest place that the map leads to": "映射所指最近处的权重",
     "The weights of the vertices around them that have a counterpart": "其周围有对应部分的顶点的权重",
     "Their weights stay as they are": "其权重保持不变",
+    "Rigid Pieces": "刚性部件",
+    (
+        "Let loose pieces move as one, such as eyes, teeth, buckles and plates, if what they correspond to does on "
+        "the source"
+    ): "眼睛、牙齿、扣环、甲片之类的松散部件，若其在源上的对应部分整体移动，则也整体移动",
+    "Rigid Group": "刚性组",
+    (
+        "Vertex group of the target for single pieces: a loose piece with vertices of weight 1 in it moves by one "
+        "bone, one with vertices of weight 0 never moves as one, whatever the source does"
+    ): (
+        "目标上用于指定单个部件的顶点组：组中有权重为 1 的顶点的松散部件由一根骨骼驱动，有权重为 0 的顶点的部件从不整体"
+        "移动，不论源如何"
+    ),
     "Mark Rejected": "标记被弃用处",
     (
         "Write a color attribute that shows in red which vertices were torn away from their neighbors, so that "

@@ -17,7 +17,7 @@ from ...jobs.job_operator import JobOperator
 from ...jobs.running import can_start
 from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...properties.freshness import refresh
-from ...properties.panel_state import picked, state_of
+from ...properties.panel_state import pick_named, picked, state_of
 from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import remember
 from ...scene.character import side_of
@@ -85,6 +85,7 @@ class TransferOperator(JobOperator):
     panel = "HIERMATCH_PT_retarget"
     optional = False
 
+    _named = ("", "")  # what a script has called source and target
     _left_out = ""  # which parts of the source's own character, as a sentence
 
     def _transfers(self) -> list[Transfer]:
@@ -109,6 +110,8 @@ class TransferOperator(JobOperator):
         match = replace(job_options(state), prefix=self.prefix or state.prefix)
         options = TransferOptions(match, self.prefix, refine=self.refine, optional=self.optional)
         job = TransferJob(context, source, targets, self._transfers, options)
+        names = [item.name for item in self.targets] or [self.target]
+        self._named = self.source, names[0] if len(names) == 1 else ""
         # So that Adjust Last Operation repeats it with the same ones, whatever is selected by then.
         self.source = name_of(view_layer_of(context), source)
         self.targets.clear()
@@ -126,6 +129,7 @@ class TransferOperator(JobOperator):
                 names = (outcome.source, outcome.target)
                 prefix = self.prefix or state_of(context).prefix
                 remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
+        pick_named(state_of(context), *self._named)
         refresh(scene)
         remember_transfer(context, carried, self._left_out)
         self._report(carried)

@@ -32,11 +32,14 @@ class WeightSettings:
     clean : float
         Weights below this are dropped.
     fill : bool
-        Whether vertices that the map tears away from their neighbours take the weights around them, and small loose
-        parts move as one.
+        Whether vertices that the map tears away from their neighbours take the weights around them.
     alone : str
         What vertices without a counterpart get: "MAP", the weights of where the map has them; "FILL", those of the
         vertices around them that have one; "LEAVE", nothing new.
+    rigid : bool
+        Whether loose pieces move as one whose counterparts on the source do.
+    rigid_group : str
+        Name of the vertex group of the target that says which pieces do in any case, and which do not.
     mark : bool
         Whether a color attribute shows these vertices.
     prefix : str
@@ -51,6 +54,8 @@ class WeightSettings:
     clean: float = 0.001
     fill: bool = True
     alone: str = "MAP"
+    rigid: bool = True
+    rigid_group: str = "Rigid"
     mark: bool = False
     prefix: str = "HM"
 
@@ -112,7 +117,7 @@ class WeightOptions:
         "weight_fill": _props.BoolProperty(
             name="Fill",
             description="Where the map tears vertices away from their neighbors, take the weights from around them "
-            "along the surface; and let small loose parts move as one, such as eyes, if they do on the source",
+            "along the surface",
             default=True,
         ),
         "weight_alone": _props.EnumProperty(
@@ -125,6 +130,18 @@ class WeightOptions:
                 ("LEAVE", "Leave Out", "Their weights stay as they are"),
             ],
             default="MAP",
+        ),
+        "weight_rigid": _props.BoolProperty(
+            name="Rigid Pieces",
+            description="Let loose pieces move as one, such as eyes, teeth, buckles and plates, if what they "
+            "correspond to does on the source",
+            default=True,
+        ),
+        "weight_rigid_group": _props.StringProperty(
+            name="Rigid Group",
+            description="Vertex group of the target for single pieces: a loose piece with vertices of weight 1 in it "
+            "moves by one bone, one with vertices of weight 0 never moves as one, whatever the source does",
+            default="Rigid",
         ),
         "weight_mark": _props.BoolProperty(
             name="Mark Rejected",
@@ -143,6 +160,8 @@ class WeightOptions:
         weight_clean: float
         weight_fill: bool
         weight_alone: str
+        weight_rigid: bool
+        weight_rigid_group: str
         weight_mark: bool
 
 
@@ -157,6 +176,8 @@ def weight_settings(options: WeightOptions, prefix: str = "") -> WeightSettings:
         clean=options.weight_clean,
         fill=options.weight_fill,
         alone=options.weight_alone,
+        rigid=options.weight_rigid,
+        rigid_group=options.weight_rigid_group,
         mark=options.weight_mark,
         prefix=prefix or WeightSettings.prefix,
     )

@@ -19,10 +19,12 @@ from hiermatch.hiermatch_addon.command_line.outputs import save
 from hiermatch.hiermatch_addon.command_line.program import main
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES
+from hiermatch.hiermatch_addon.scene.armatures import find_armature
+from hiermatch.hiermatch_addon.scene.character import Character
 from hiermatch.hiermatch_addon.storage.match_file import load_match
 from hiermatch.hiermatch_addon.transfers import symmetrise
 
-from tests.addon.rigs import add_rigged_pair
+from tests.addon.rigs import add_rigged, add_rigged_pair, split_up
 from tests.addon.scenes import DENSE, QUICK, add_blob, add_pair
 
 
@@ -295,6 +297,41 @@ def test_a_second_blend_brings_its_rig(folder, tmp_path):
     assert rigged.parent.name in bpy.context.view_layer.objects
     with pytest.raises(ObjectError, match='no object called "Nobody"'):
         load_meshes([arguments[0], MeshArgument(tmp_path / "rigged.blend", "Nobody")])
+
+
+def test_characters_are_named_by_their_armature_or_collection(tmp_path):
+    source, _ = add_rigged(resolution=4)
+    parts = split_up(source, lambda centers: centers[:, 0] > 0)
+    held = bpy.data.collections.new("Held")
+    bpy.context.scene.collection.children.link(held)
+    held.objects.link(parts[0])
+    held.objects.link(parts[1])
+    add_blob("Prop")
+    names = tuple(part.name for part in parts)
+    path = tmp_path / "character.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    (first,), _ = load_meshes([MeshArgument(path, "Source Rig")])
+    assert (first.name, tuple(part.name for part in first.parts)) == ("Source Rig", names)
+    opened = tmp_path / "other.blend"
+    bpy.ops.wm.read_homefile(use_empty=True)
+    add_blob("Body")
+    bpy.ops.wm.save_as_mainfile(filepath=str(opened))
+    for name in ("Source Rig", "Held"):
+        (_, second), _ = load_meshes([MeshArgument(opened), MeshArgument(path, name)])
+        assert (second.name, tuple(part.name for part in second.parts)) == (name, names)
+        assert find_armature(second).name == "Source Rig"
+        assert "Prop" not in bpy.data.objects
+
+
+def test_an_import_of_a_character_is_taken_as_a_whole(tmp_path):
+    source, _ = add_rigged(resolution=4)
+    parts = split_up(source, lambda centers: centers[:, 0] > 0)
+    save(tmp_path / "character.glb", Character("Hero", tuple(parts)))
+    (side,), notes = load_meshes([MeshArgument(tmp_path / "character.glb")])
+    assert len(side.parts) == 2
+    assert "holds a character of 2 meshes" in notes[0]
+    (one,), _ = load_meshes([MeshArgument(tmp_path / "character.glb")], whole=False)
+    assert one in bpy.context.view_layer.objects.values()
 
 
 def test_every_option_of_the_operators_is_there():

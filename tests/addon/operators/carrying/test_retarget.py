@@ -69,6 +69,9 @@ def retargeted(extension, tmp_path_factory):
 def pair(retargeted, empty_file):
     assert empty_file
     bpy.ops.wm.open_mainfile(filepath=retargeted)
+    state = bpy.context.scene.hiermatch
+    assert (state.source, state.target) == (bpy.data.objects["Source"], bpy.data.objects["Target"])
+    state.source = state.target = None
     return bpy.data.objects["Source"], bpy.data.objects["Target"]
 
 
@@ -189,6 +192,36 @@ def test_several_targets_get_theirs_and_no_match_is_kept():
         assert weight_error(source, target) < 0.3
         assert not target.data.attributes.get("HM Map Weights")
     assert len(bpy.context.scene.hiermatch_retarget.report.done.splitlines()) == 2
+
+
+def test_a_linked_source_is_carried_from_and_its_match_is_not_kept(tmp_path):
+    source, _ = add_rigged(resolution=4)
+    add_target(source, part=0.3)
+    path = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    for name, link in (("Source", True), ("Target", False)):
+        with bpy.data.libraries.load(path, link=link) as (_, into):
+            into.objects = [name]
+        bpy.context.scene.collection.objects.link(into.objects[0])
+    bpy.context.view_layer.update()
+    quick()
+    assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
+    source, target = bpy.data.objects["Source"], bpy.data.objects["Target"]
+    assert source.library is not None
+    assert weight_error(source, target) < 0.3
+    assert not target.data.attributes.get("HM Map Weights")
+    with pytest.raises(RuntimeError, match="is linked from"):
+        bpy.ops.hiermatch.match(source="Source", target="Target")
+
+
+def test_what_a_script_has_named_is_picked_if_nothing_is(pair):
+    state = bpy.context.scene.hiermatch
+    assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
+    assert (state.source, state.target) == pair
+    state.target = None
+    assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
+    assert (state.source, state.target) == (pair[0], None)
 
 
 def test_the_selection_says_what_is_meant(pair):

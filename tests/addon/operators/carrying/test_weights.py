@@ -20,7 +20,7 @@ from hiermatch.hiermatch_addon.transfers.weights import WeightTransfer
 from scipy.sparse import csr_array
 
 from tests.addon.rigs import add_rigged, add_target, true_passage
-from tests.addon.scenes import mesh_snapshot, weights_of
+from tests.addon.scenes import add_blob, mesh_snapshot, weights_of
 
 
 @pytest.fixture
@@ -302,3 +302,55 @@ def test_options_make_the_settings():
     finally:
         del bpy.types.Scene.weights_of_test
         bpy.utils.unregister_class(Options)
+
+
+def test_a_group_says_which_loose_pieces_are_rigid():
+    """A strap across two bones bends with them, unless one of its vertices is in the group with weight 1."""
+    source, _ = add_rigged(resolution=4)
+    body = len(source.data.vertices)
+    piece = add_blob("Strap", 8, 6)
+    bpy.ops.object.select_all(action="DESELECT")
+    for obj in (piece, source):
+        obj.select_set(state=True)
+    bpy.context.view_layer.objects.active = source
+    bpy.ops.object.join()
+    strap = np.arange(body, len(source.data.vertices))
+    for number, share in zip(strap.tolist(), np.linspace(0.2, 0.9, len(strap)).tolist(), strict=True):
+        source.vertex_groups["spine"].add([number], share, "REPLACE")
+        source.vertex_groups["chest"].add([number], 1 - share, "REPLACE")
+    target = add_target(source, part=0.0)[0]
+    names = ["spine", "chest"]
+    carry(source, target)
+    np.testing.assert_allclose(dense(target, names)[strap], dense(source, names)[strap], atol=1e-5)
+    target.vertex_groups.new(name="Rigid").add([int(strap[3])], 1.0, "REPLACE")
+    carry(source, target)
+    np.testing.assert_array_equal(dense(target, names)[strap], np.tile([1, 0], (len(strap), 1)))
+    np.testing.assert_allclose(dense(target, names)[:body], dense(source, names)[:body], atol=1e-5)
+
+
+def test_a_piece_is_rigid_as_on_the_source_unless_the_group_or_the_option_says_no():
+    source, _ = add_rigged(resolution=4)
+    body = len(source.data.vertices)
+    piece = add_blob("Eye", 8, 6)
+    bpy.ops.object.select_all(action="DESELECT")
+    for obj in (piece, source):
+        obj.select_set(state=True)
+    bpy.context.view_layer.objects.active = source
+    bpy.ops.object.join()
+    eye = np.arange(body, len(source.data.vertices))
+    source.vertex_groups["head"].add(eye.tolist(), 1.0, "REPLACE")
+    target = add_target(source, part=0.0)[0]
+    passage = true_passage(source, target)
+    back = passage.pair.target_to_source
+    triangles = back.triangles.copy()
+    triangles[eye[:4]] = back.triangles[0]  # some of its vertices go astray
+    stray = SurfaceMap.from_barycentric(passage.pair.source, triangles, back.barycentric)
+    passage = replace(passage, pair=replace(passage.pair, target_to_source=stray))
+    whole = np.ones(len(eye))
+    carry(source, target, passage, fill=False)
+    np.testing.assert_array_equal(dense(target, ["head"])[eye, 0], whole)
+    carry(source, target, passage, fill=False, rigid=False)
+    assert dense(target, ["head"])[eye[:4], 0].max() < 0.5
+    target.vertex_groups.new(name="Rigid").add([int(eye[-1])], 0.0, "REPLACE")
+    carry(source, target, passage, fill=False)
+    assert dense(target, ["head"])[eye[:4], 0].max() < 0.5
