@@ -41,7 +41,7 @@ class Pair:
     command : str
         The subcommand.
     source, target : str
-        FILE or FILE:OBJECT, the file as an absolute path.
+        FILE or FILE:NAME, the file as an absolute path.
     outputs : tuple of str
         The files to write, absolute.
     map : str

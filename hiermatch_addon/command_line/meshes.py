@@ -55,7 +55,7 @@ class MeshArgument:
 
 
 def mesh_argument(text: str) -> MeshArgument:
-    """Read FILE or FILE:OBJECT; both may contain colons.
+    """Read FILE or FILE:NAME; both may contain colons.
 
     Raises
     ------
