@@ -35,8 +35,10 @@ if TYPE_CHECKING:
     from ..shapes.shape import Shape
 
 __all__ = [
+    "USUAL",
     "LandmarkStart",
     "MapHypothesis",
+    "Selection",
     "assessed_everywhere",
     "hypothesis_of",
     "map_domains",
@@ -49,12 +51,42 @@ __all__ = [
 _FINE_SIZES = spectral_sizes(15, 80, 9)
 _SMOOTH = 25  # eigenfunctions that maps between coarse samples are carried over with
 _SMOOTHED = 110  # eigenfunctions that patches are smoothed by before they are compared as rigid bodies
-_DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
-_RETURNED = {1: 4, -1: 2}  # most hypotheses that keep the orientation, and that mirror it
-_HOPELESS = 3.0  # excess of the score over the best of the same orientation
 _ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
 _ROUGH = "matching"  # origin of what functional maps have not refined
 _ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Which maps are followed up beside the most credible one.
+
+    Attributes
+    ----------
+    apart : float
+        Mean distance, in sqrt(area), between the images of distinct maps.
+    hopeless : float
+        Excess of the score over the best of the same orientation from which on a map is left out.
+    keeping, mirroring : int
+        How many maps are returned that keep the orientation, and that mirror it, at most.
+    ambiguous : float
+        Difference of scores up to which a map is registered before it is given up.
+    contested : float
+        Difference of scores up to which a registered map is registered closely, too, before one is chosen.
+    most : int
+        How many are registered, and how many closely, at most.
+    """
+
+    apart: float = 0.07
+    hopeless: float = 3.0
+    keeping: int = 4
+    mirroring: int = 2
+    ambiguous: float = 2.0
+    contested: float = 3.0
+    most: int = 3
+
+
+USUAL = Selection()
+"""What is followed up usually."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,6 +186,7 @@ def map_hypotheses_steps(
     mirrored: bool = True,
     domains: tuple[MapDomain, MapDomain] | None = None,
     searched: RoughSearch | None = None,
+    selection: Selection = USUAL,
 ) -> Steps[list[MapHypothesis]]:
     """Propose dense maps between two surfaces, most credible first.
 
@@ -178,6 +211,8 @@ def map_hypotheses_steps(
         Those of the surfaces, if earlier hypotheses have them.
     searched : RoughSearch, optional
         Matchings of extremities that keep the orientation, with its domains, if they have been looked for.
+    selection : Selection
+        Which maps are returned.
 
     Yields
     ------
@@ -187,8 +222,8 @@ def map_hypotheses_steps(
     Returns
     -------
     list of MapHypothesis
-        Up to four that keep the orientation and two that mirror it, by growing score; what is far less credible than
-        the best of its orientation is left out.
+        Those that keep the orientation and those that mirror it, by growing score; what is far less credible than the
+        best of its orientation is left out.
 
     Raises
     ------
@@ -208,7 +243,8 @@ def map_hypotheses_steps(
     if search:
         candidates += [(points, "rigid") for points in rigid_maps(a, b)]
     refined = yield from within(shared_steps(_refined_lead_steps, domains, candidates), 0.4, 1.0)
-    kept = distinct_leads(b, refined, _DISTINCT, _HOPELESS, _RETURNED)
+    most = {1: selection.keeping, -1: selection.mirroring}
+    kept = distinct_leads(b, refined, selection.apart, selection.hopeless, most)
     return [hypothesis_of(domains, lead) for lead in kept]
 
 

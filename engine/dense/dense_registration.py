@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..runtime.progress import Steps, within
-from .dense_hypotheses import MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
+from .dense_hypotheses import USUAL, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
-from .proposers import MOST_CANDIDATES, PROPOSERS, Contest, are_distinct, contenders
+from .proposers import PROPOSERS, Contest, are_distinct, contenders
 from .registered_hypotheses import Candidate, CloseFit, Follower
 
 if TYPE_CHECKING:
@@ -30,9 +30,6 @@ __all__ = ["EIGENPAIRS", "RegisteredPair", "registered_pair_steps"]
 
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""
-
-_AMBIGUOUS = 2.0
-"""Difference of scores up to which a hypothesis is registered before it is given up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +86,7 @@ def registered_pair_steps(
     as_they_are: bool = False,
     landmarks: Landmarks | None = None,
     searched: RoughSearch | None = None,
+    selection: Selection = USUAL,
 ) -> Steps[RegisteredPair]:
     """Find the map between two surfaces that keeps left on the left, and refine it.
 
@@ -106,6 +104,8 @@ def registered_pair_steps(
         What is known to correspond, and is held together; the samples of the shapes begin with them.
     searched : RoughSearch, optional
         Matchings of extremities that keep the orientation, if they have been looked for; without landmarks only.
+    selection : Selection
+        Which maps are followed up beside the most credible one.
 
     Returns
     -------
@@ -117,7 +117,9 @@ def registered_pair_steps(
     mirrored = False
     if landmarks is None:
         # Mirrored maps serve only landmarks that ask for one.
-        proposals = map_hypotheses_steps(x, y, starts, search=search, mirrored=False, searched=searched)
+        proposals = map_hypotheses_steps(
+            x, y, starts, search=search, mirrored=False, searched=searched, selection=selection
+        )
         hypotheses = yield from within(proposals, 0.1, 0.4)
     else:
         steered = yield from within(steered_hypotheses_steps(x, y, starts, landmarks, search=search), 0.1, 0.4)
@@ -132,7 +134,7 @@ def registered_pair_steps(
         ties_back = Ties.of_landmarks(*proxies[::-1], source, there, here)
     # Both surfaces are seen from outside, so the true map keeps the orientation.
     keeping = [h for h in hypotheses if h.orientation > 0] or hypotheses
-    plausible = [h for h in keeping if h.score < keeping[0].score + _AMBIGUOUS][:MOST_CANDIDATES]
+    plausible = [h for h in keeping if h.score < keeping[0].score + selection.ambiguous][: selection.most]
     if as_they_are:
         plausible += [unrefined_hypothesis(hypotheses[0].domains, start) for start in starts]
     untried = [h for h in hypotheses if h.orientation > 0 and not any(h is p for p in plausible)]
@@ -141,10 +143,11 @@ def registered_pair_steps(
     candidates.sort(key=lambda candidate: candidate.score)
     # Where no map is looked for, the one that is given is followed as it is.
     proposers = PROPOSERS if search else ()
+    contest = Contest(follow, landmarks, selection)
     for number, propose in enumerate(proposers):
         begin, end = (0.6 + 0.1 * (number + i) / len(proposers) for i in (0, 1))
-        candidates = yield from within(propose(Contest(follow, landmarks), candidates), begin, end)
-    fits = yield from within(_contest_steps(follow, candidates), 0.7, 0.9)
+        candidates = yield from within(propose(contest, candidates), begin, end)
+    fits = yield from within(_contest_steps(contest, candidates), 0.7, 0.9)
     closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
     best = closest.candidate
     others = [candidate for candidate in candidates if candidate is not best]
@@ -156,9 +159,9 @@ def registered_pair_steps(
     return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips)
 
 
-def _contest_steps(follow: Follower, candidates: list[Candidate]) -> Steps[list[CloseFit]]:
+def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[CloseFit]]:
     """Register the candidates that may be chosen closely; the most credible first."""
-    fits = yield from follow.all_close_steps(contenders(follow, candidates))
+    fits = yield from contest.follow.all_close_steps(contenders(contest, candidates))
     return sorted(fits, key=lambda fit: fit.score)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..geometry.best_distinct import best_distinct
 from ..runtime.progress import Steps, within
-from .dense_hypotheses import map_hypotheses_steps, unrefined_hypotheses_steps
+from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
 from .limb_sides import exchanged_limbs, repaired_start_steps
 from .registered_hypotheses import Candidate, Follower
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from ..shapes.landmarks import Landmarks
 
-__all__ = ["MOST_CANDIDATES", "PROPOSERS", "Contest", "Proposer", "are_distinct", "contenders"]
+__all__ = ["PROPOSERS", "Contest", "Proposer", "are_distinct", "contenders"]
 
 _CONTRADICTED = 4.0
 """Difference of scores up to which a map whose limbs are where they belong is preferred to one that exchanges them as
@@ -40,14 +40,8 @@ _DISTINCT = 0.07
 _ELSEWHERE, _LIMB = 0.15, 0.02
 """Or they are different maps if they take so large a part of the source so far, in sqrt(area), from each other."""
 
-MOST_CANDIDATES = 3
-"""Maps of one kind that are registered, at most."""
-
 _LIKE = 0.04
 """Mean distance, in sqrt(area), up to which a rough map would lead to where another one already has."""
-
-_CONTESTED = 3.0
-"""Difference of scores up to which other maps are registered closely, too, before one is chosen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +54,13 @@ class Contest:
         Registers what is proposed.
     landmarks : Landmarks or None
         What the maps have to agree with.
+    selection : Selection
+        Which maps are compared.
     """
 
     follow: Follower
     landmarks: Landmarks | None = None
+    selection: Selection = USUAL
 
 
 Proposer = Callable[[Contest, list[Candidate]], Steps[list[Candidate]]]
@@ -84,14 +81,15 @@ def are_distinct(first: NDArray[np.float64], second: NDArray[np.float64], areas:
     return bool(apart.mean() > _DISTINCT or elsewhere > _LIMB)
 
 
-def contenders(follow: Follower, candidates: list[Candidate]) -> list[Candidate]:
+def contenders(contest: Contest, candidates: list[Candidate]) -> list[Candidate]:
     """Take the best candidate, and other maps that are nearly as credible."""
-    close = [candidate for candidate in candidates if candidate.score <= candidates[0].score + _CONTESTED]
+    selection, areas = contest.selection, contest.follow.source.mass
+    close = [candidate for candidate in candidates if candidate.score <= candidates[0].score + selection.contested]
 
     def differ(candidate: Candidate, other: Candidate) -> bool:
-        return are_distinct(candidate.registration.positions, other.registration.positions, follow.source.mass)
+        return are_distinct(candidate.registration.positions, other.registration.positions, areas)
 
-    return best_distinct(close, differ, MOST_CANDIDATES)
+    return best_distinct(close, differ, selection.most)
 
 
 def _matchings_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
@@ -134,7 +132,7 @@ def _limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
 
 def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
     """Propose long bodies turned back about their axes, and how else they might lie, for all that may be chosen."""
-    chosen = contenders(contest.follow, candidates)
+    chosen = contenders(contest, candidates)
     ways: list[Candidate] = []
     for number, candidate in enumerate(chosen):
         begin, end = ((number + i) / len(chosen) for i in (0, 1))

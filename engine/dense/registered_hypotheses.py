@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     _Common = tuple["Follower", MapDomain, MapDomain]
     Trips = tuple[NDArray[np.float64], NDArray[np.float64]]
 
-__all__ = ["Candidate", "CloseFit", "Follower"]
+__all__ = ["Candidate", "CloseFit", "Follower", "Settling"]
 
 _SMOOTH = 40
 """Eigenfunctions that the source is placed by before it is registered."""
@@ -70,14 +70,25 @@ _WORTHWHILE = 3.0
 _POSED, _BUILT = 0.38, 0.48
 """Mean difference of wave kernel signatures up to which only poses differ, and from which on bodies are unlike."""
 
-_STAGES = AGAIN, CLOSE, LAST
 
-_DISAGREE = 0.0055, 0.008, 0.012
-"""Mean length of the way there and back, in sqrt(area), from which on both sides are registered once more, twice, and
-three times: in turn each corrects what the other strains, and none comes to rest at once."""
+@dataclass(frozen=True)
+class Settling:
+    """How both surfaces are registered in turn until they agree: each corrects what the other strains.
 
-_NEARER = 0.95
-"""Part of its length before from which on the way there and back has not become shorter."""
+    Attributes
+    ----------
+    stages : tuple of Stage
+        How one is registered from where the other lies.
+    disagree : tuple of float
+        Mean length of the way there and back, in sqrt(area), from which on both are registered once more, twice, and
+        so on.
+    nearer : float
+        Part of its length before from which on this way has not become shorter.
+    """
+
+    stages: tuple[Stage, ...] = (AGAIN, CLOSE, LAST)
+    disagree: tuple[float, ...] = (0.0055, 0.008, 0.012)
+    nearer: float = 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,6 +152,8 @@ class Follower:
         Their surfaces.
     ties, ties_back : Ties or None
         Where the source is held on the target, and the target on the source.
+    settling : Settling
+        How both are registered in turn.
     """
 
     x: Shape
@@ -149,6 +162,7 @@ class Follower:
     target: DeformableSurface
     ties: Ties | None = None
     ties_back: Ties | None = None
+    settling: Settling = Settling()
     is_sent_once: ClassVar[bool] = True
 
     @cached_property
@@ -265,27 +279,27 @@ class Follower:
         At last the target follows where the source has come to lie since.  How far they were apart before that tells
         where they may err, see `trips`.
         """
-        trips = self.trips(fit)
-        for number, agreed in enumerate(_DISAGREE):
+        trips, disagree = self.trips(fit), self.settling.disagree
+        for number, agreed in enumerate(disagree):
             length = self._length(trips)
             if length <= agreed:
                 break
             again = self.again_steps(fit.candidate, fit.registration)
-            begin, end = ((number + i) / (len(_DISAGREE) + 1) for i in (0, 1))
+            begin, end = ((number + i) / (len(disagree) + 1) for i in (0, 1))
             reverse, registration = yield from within(again, begin, end)
             other = replace(fit, registration=registration, reverse=reverse)
             apart = self.trips(other)
             if self._length(apart) >= length:
                 break
             fit, trips = other, apart
-            if self._length(apart) > _NEARER * length:
+            if self._length(apart) > self.settling.nearer * length:
                 break
         matches = fit.registration.on_source, fit.registration.on_target
         start, isometry = fit.reverse.positions, fit.candidate.isometry
         following = register_steps(
             self.target, self.source, start, (LAST,), matches, isometry=isometry, ties=self.ties_back
         )
-        follower = yield from within(following, len(_DISAGREE) / (len(_DISAGREE) + 1), 1.0)
+        follower = yield from within(following, len(disagree) / (len(disagree) + 1), 1.0)
         return replace(fit, reverse=follower), trips
 
     def trips(self, fit: CloseFit) -> Trips:
@@ -307,7 +321,7 @@ class Follower:
         """Register the target from where the source lies on it, then the source from where the target does."""
         source, target = self.source, self.target
         here, there = self._guides(candidate.hypothesis, self.vertex_maps(found))
-        restart = partial(restarted_steps, stages=_STAGES, isometry=candidate.isometry)
+        restart = partial(restarted_steps, stages=self.settling.stages, isometry=candidate.isometry)
         matches, guides = (found.on_source, found.on_target), (there, here)
         steps = restart(target, source, self.y.unit_functions(_DETAILED), matches, ties=self.ties_back, guides=guides)
         reverse = yield from within(steps, 0.0, 0.5)

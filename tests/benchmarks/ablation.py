@@ -15,7 +15,7 @@ import argparse
 import csv
 import time
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -23,6 +23,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from engine import HierMatchError, TriangleMesh, match, use_processes
+from engine.dense.registered_hypotheses import Settling
 from tests.benchmarks.clothed import clothed, garments
 from tests.benchmarks.known_shapes import LOST, KnownShape, KnownShapes
 from tests.benchmarks.modular import as_it_is, ends_of, put_together
@@ -80,12 +81,7 @@ def without_starts(own):
 
 def agreeing_already(own):
     """Follow the target once at last, and never go on in turns."""
-    return lambda follow, fit: _only_last(own, follow, fit)
-
-
-def _only_last(own, follow, fit):
-    with switched(("engine.dense.registered_hypotheses._DISAGREE", lambda _: ())):
-        return (yield from own(follow, fit))
+    return lambda follow, fit: own(replace(follow, settling=Settling(disagree=())), fit)
 
 
 R, D, P = "engine.dense.registered_hypotheses", "engine.dense.dense_registration", "engine.registration.prolongation"

@@ -7,15 +7,14 @@ import numpy as np
 import pytest
 
 from engine import Shape, SurfacePoints, TriangleMesh, run
-from engine.dense import dense_hypotheses as map_hypotheses
 from engine.dense import dense_registration as dense_map
 from engine.dense import proposers
-from engine.dense.dense_hypotheses import LandmarkStart, assessed_everywhere, map_hypotheses_steps
+from engine.dense.dense_hypotheses import LandmarkStart, Selection, assessed_everywhere, map_hypotheses_steps
 from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from engine.dense.densify import dense_match_steps
 from engine.dense.functional_maps import PointMaps
 from engine.dense.landmark_selection import Steered
-from engine.dense.registered_hypotheses import Follower
+from engine.dense.registered_hypotheses import Follower, Settling
 from engine.registration.elastic import ElasticSurface
 from engine.registration.positional_constraints import Ties
 from engine.registration.registration import SOFT, register_steps
@@ -225,12 +224,13 @@ def test_matchings_are_followed_only_if_they_agree_with_landmarks(agreeing, bodi
     assert ("matching" in [candidate.hypothesis.origin for candidate in pair.candidates]) == agreeing
 
 
+BOTH = Selection(apart=0.0, hopeless=np.inf, ambiguous=np.inf)
+"""That both of two maps are followed, however much less credible one is."""
+
+
 @pytest.fixture
-def both_starts(bodies, starts, monkeypatch):
-    """Start from the truth, and from it with the hind legs exchanged, however much less credible that is."""
-    monkeypatch.setattr(map_hypotheses, "_HOPELESS", np.inf)
-    monkeypatch.setattr(map_hypotheses, "_DISTINCT", 0.0)
-    monkeypatch.setattr(dense_map, "_AMBIGUOUS", np.inf)
+def both_starts(bodies, starts):
+    """Start from the truth, and from it with the hind legs exchanged."""
     return [starts[0], hind_legs_exchanged(*bodies)]
 
 
@@ -247,13 +247,13 @@ def with_soft_score(monkeypatch, origin, added):
 
 def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, both_starts, monkeypatch):
     x, y, rest_x, rest_y = bodies
-    plain = run(registered_pair_steps(x, y, both_starts, search=False))
+    plain = run(registered_pair_steps(x, y, both_starts, search=False, selection=BOTH))
     scores = {candidate.hypothesis.origin: candidate.score for candidate in plain.candidates}
     # So that the wrong one seems a little better at first.
     added = scores["exchanged"] - scores["true"] + 1
     assert added > 1
     with_soft_score(monkeypatch, "true", added)
-    pair = run(registered_pair_steps(x, y, both_starts, search=False))
+    pair = run(registered_pair_steps(x, y, both_starts, search=False, selection=BOTH))
     assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true", "exchanged"]
     assert pair.candidates[0].score == pytest.approx(pair.candidates[1].score + 1)
     assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
@@ -282,15 +282,13 @@ def disagreeing(bodies, starts):
     x, y = bodies[:2]
     pair = run(registered_pair_steps(x, y, starts[:1], search=False))
     follow = Follower(x, y, pair.source, pair.target)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("engine.dense.registered_hypotheses._STAGES", (replace(SOFT, weights=(40.0,)),))
-        return follow, run(follow.close_steps(pair.candidates[0]))
+    hardly = replace(follow, settling=Settling(stages=(replace(SOFT, weights=(40.0,)),)))
+    return follow, run(hardly.close_steps(pair.candidates[0]))
 
 
 @pytest.mark.parametrize(("agreed", "more"), [((np.inf,), 0), ((0.0,), 1), ((0.0, 0.0), 2), ((0.0, np.inf), 1)])
 def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monkeypatch):
-    follow, fit = disagreeing
-    monkeypatch.setattr("engine.dense.registered_hypotheses._DISAGREE", agreed)
+    follow, fit = replace(disagreeing[0], settling=Settling(disagree=agreed)), disagreeing[1]
     lengths = [ways_there_and_back(follow, fit)]
     own = Follower.again_steps
     starts = []
@@ -309,12 +307,10 @@ def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monk
 
 
 def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monkeypatch):
-    follow, fit = disagreeing
-    monkeypatch.setattr("engine.dense.registered_hypotheses._DISAGREE", (0.0,) * 3)
+    follow, fit = replace(disagreeing[0], settling=Settling(disagree=(0.0,) * 3, nearer=0.0)), disagreeing[1]
     own = Follower.again_steps
     tried = []
     monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: tried.append(found) or own(self, c, found))
-    monkeypatch.setattr("engine.dense.registered_hypotheses._NEARER", 0.0)
     assert run(follow.settled_steps(fit))[0].registration is not fit.registration
     assert len(tried) == 1
     # Farther from each other, they are not taken.
@@ -367,7 +363,7 @@ def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_sta
     closely = []
     own = Follower.close_steps
     monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.hypothesis.origin) or own(self, c))
-    pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False))
+    pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False, selection=BOTH))
     assert closely == ["true"]
     assert pair.margin == pytest.approx(pair.candidates[1].score - pair.candidates[0].score)
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from engine.dense.proposers import are_distinct, contenders
+from engine.dense.proposers import Contest, are_distinct, contenders
 
 
 def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_little_everywhere_are_not():
@@ -33,9 +33,9 @@ def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_lit
     ids=["all", "like", "worse", "few", "first"],
 )
 def test_other_maps_that_are_nearly_as_credible_as_the_first_are_contenders(scores, places, chosen):
-    follow = SimpleNamespace(source=SimpleNamespace(mass=np.ones(5)))
+    contest = Contest(SimpleNamespace(source=SimpleNamespace(mass=np.ones(5))))
     candidates = [
         SimpleNamespace(score=score, registration=SimpleNamespace(positions=np.full((5, 3), place, float)))
         for score, place in zip(scores, places, strict=True)
     ]
-    assert contenders(follow, candidates) == [candidates[number] for number in chosen]
+    assert contenders(contest, candidates) == [candidates[number] for number in chosen]
