@@ -24,9 +24,10 @@ from .retarget.motion.key_reduction import reduced_keys, slopes_of
 from .retarget.motion.motion_transfer import MotionSettings, TransferredMotion, transfer_motion, transfer_motion_steps
 from .retarget.motion.paired_weights import paired_weights
 from .retarget.motion.posed_motion import LocalTransforms, Motion, local_transforms, posed_motion
+from .retarget.open_ends import open_ends
 from .retarget.rig.fitted_rig import FittedRig
 from .retarget.rig.joint_placement import PlacedJoints, place_joints
-from .retarget.rig.rest_pose import RestPose, is_posed, rest_pose
+from .retarget.rig.rest_pose import RestPose, at_rest, is_posed, length_ratio, rest_pose, unposed
 from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
 from .retarget.rig.skeleton import Skeleton
 from .retarget.values.attribute_transfer import CarriedValues, Crossing, Domain, carry_values_steps
@@ -95,6 +96,7 @@ __all__ = [
     "TransferredMotion",
     "TriangleMesh",
     "WrappedSurface",
+    "at_rest",
     "bone_frames",
     "called_steps",
     "carry_face_values",
@@ -116,10 +118,12 @@ __all__ = [
     "in_between",
     "is_posed",
     "kept_in_place",
+    "length_ratio",
     "local_transforms",
     "match",
     "match_steps",
     "nearest_regions",
+    "open_ends",
     "pair_bones",
     "paired_weights",
     "place_joints",
@@ -140,6 +144,7 @@ __all__ = [
     "symmetry_map_steps",
     "transfer_motion",
     "transfer_motion_steps",
+    "unposed",
     "use_processes",
     "with_rows",
     "within",

@@ -10,6 +10,7 @@ import bpy
 from ..engine import close_helpers
 from .command_line import register_command, unregister_command
 from .common.translations import register_translations, unregister_translations
+from .operators.answer import HIERMATCH_OT_answer
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.carrying.fit_rig import HIERMATCH_OT_fit_rig
 from .operators.carrying.retarget import HIERMATCH_OT_retarget
@@ -19,6 +20,8 @@ from .operators.carrying.transfer_shape_keys import HIERMATCH_OT_transfer_shape_
 from .operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
 from .operators.carrying.transfer_weights import HIERMATCH_OT_transfer_weights
 from .operators.carrying.wrap import HIERMATCH_OT_wrap
+from .operators.checking.before_after import HIERMATCH_OT_before_after
+from .operators.checking.bend_joints import HIERMATCH_OT_test_poses
 from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
 from .operators.export_match import HIERMATCH_OT_export_match
@@ -39,6 +42,7 @@ from .operators.steering.edit_pairs import (
     HIERMATCH_OT_remove_pair,
     HIERMATCH_OT_select_pair,
 )
+from .operators.steering.guide_me import HIERMATCH_OT_guide_me
 from .operators.steering.landmark_files import HIERMATCH_OT_load_landmarks, HIERMATCH_OT_save_landmarks
 from .operators.steering.mirror_landmarks import HIERMATCH_OT_mirror_landmarks
 from .operators.steering.pick_landmarks import HIERMATCH_OT_pick_landmarks
@@ -69,6 +73,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PG_progress,
     HIERMATCH_OT_match,
     HIERMATCH_OT_cancel,
+    HIERMATCH_OT_answer,
     HIERMATCH_OT_use_setup,
     HIERMATCH_OT_flip,
     HIERMATCH_OT_swap,
@@ -81,6 +86,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PG_steering,
     HIERMATCH_OT_add_landmark,
     HIERMATCH_OT_pick_landmarks,
+    HIERMATCH_OT_guide_me,
     HIERMATCH_OT_remove_landmark,
     HIERMATCH_OT_switch_landmark,
     HIERMATCH_OT_select_landmark,
@@ -104,6 +110,8 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_transfer_attributes,
     HIERMATCH_OT_wrap,
     HIERMATCH_OT_symmetrise,
+    HIERMATCH_OT_test_poses,
+    HIERMATCH_OT_before_after,
     HIERMATCH_UL_landmarks,
     HIERMATCH_UL_pairs,
     HIERMATCH_OT_add_preset,

@@ -58,7 +58,13 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         options = chosen_options("retarget", given_options("retarget", parsed))
         of_match = {k: v for k, v in given_options("match", parsed).items() if k not in NOT_OF_THE_MATCH}
         matching = chosen_options("match", of_match | ({"prefix": options.prefix} if options.prefix else {}))
-        settings = TransferOptions(job_options(matching), options.prefix, refine=options.refine, optional=True)
+        settings = TransferOptions(
+            job_options(matching),
+            options.prefix,
+            refine=options.refine,
+            optional=True,
+            accept_doubtful=options.accept_doubtful,
+        )
         console.progress(0.0, "Reading files")
         source, target = load_pair(parsed, report)
         context = bpy.context
@@ -70,7 +76,7 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
             names = (outcome.source, outcome.target)
             remember(state_of(context).summary, outcome.stored, names, matching.prefix, outcome.seconds)
         refresh(cast("bpy.types.Scene", context.scene))
-        remember_transfer(context, carried)
+        remember_transfer(context, source.name, carried)
         report.add_carried(carried)
         prefix = options.prefix if outcome is None else matching.prefix
         save_results(parsed, report, (source, target), prefix, console, clean=True)

@@ -5,11 +5,15 @@ from __future__ import annotations
 
 from ...engine import HierMatchError
 
-__all__ = ["NothingToCarryError", "ObjectError"]
+__all__ = ["DoubtfulMatchError", "NothingToCarryError", "ObjectError"]
 
 
 class ObjectError(HierMatchError):
     """An object that cannot be matched or written to as it stands; the message says why and what to do."""
+
+
+class DoubtfulMatchError(ObjectError):
+    """A match that nothing should be carried across unless somebody wants it all the same."""
 
 
 class NothingToCarryError(ObjectError):

@@ -26,7 +26,7 @@ from ..storage import writing
 from ..storage.contents import contents_steps
 from ..storage.excluded_regions import excluded_vertices
 from ..storage.landmarks import find_landmarks, landmark_array
-from ..storage.stored_match import Answer, CornerPoints, StoredMatch, Written
+from ..storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 from ..storage.vertex_maps import StoredMaps, add_maps
 from .stepped_job import SteppedJob
 
@@ -271,6 +271,14 @@ class MatchJob(SteppedJob):
         if self._found is None:
             return None
         return self._found.maps(mirrored=self._writes_mirrored(self._found))
+
+    @property
+    def quality(self) -> Quality | None:
+        """How far these maps can be trusted; None as long as there are none."""
+        if self._found is None:
+            return None
+        found = self._found.mirrored if self._writes_mirrored(self._found) else self._found.result
+        return None if found is None or found.quality is None else Quality.of(found.quality)
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
         """Write the result on both objects.

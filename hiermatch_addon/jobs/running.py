@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, cast
+
+import bpy
 
 from ..common.access import window_manager_of
 from ..common.translated_text import translated
 
-if TYPE_CHECKING:
-    import bpy
-
-__all__ = ["can_start", "is_running", "running_panel"]
+__all__ = ["can_start", "is_running", "running_panel", "start_soon"]
 
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
@@ -27,6 +26,26 @@ def running_panel(window_manager: bpy.types.WindowManager) -> str:
     operators: Any = (operator for window in window_manager.windows for operator in window.modal_operators)
     ours = (operator for operator in operators if operator.bl_idname.startswith("HIERMATCH_OT_"))
     return next((panel for operator in ours if (panel := getattr(operator, "panel", ""))), "")
+
+
+def start_soon(context: bpy.types.Context, operator: str, **options: Any) -> None:  # noqa: ANN401 - the operator's own
+    """Start an operator, such as "hiermatch.guide_me", in this window once the one that runs has ended."""
+    window = context.window
+
+    def start() -> None:
+        manager: Any = bpy.context.window_manager
+        if window not in list(manager.windows):
+            return  # closed meanwhile
+        area = next((area for area in window.screen.areas if area.type == "VIEW_3D"), None)
+        region = next((region for region in area.regions if region.type == "WINDOW"), None) if area else None
+        started: Any = bpy.ops
+        for name in operator.split("."):
+            started = getattr(started, name)
+        with cast("Any", bpy.context).temp_override(window=window, area=area, region=region):
+            if started.poll():
+                started("INVOKE_DEFAULT", **options)
+
+    bpy.app.timers.register(start, first_interval=0.0)
 
 
 def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...engine import HierMatchError, Progress, fit_rig_steps, within
 from ..common.access import view_layer_of
-from ..common.errors import NothingToCarryError, ObjectError
+from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError
 from ..scene.armatures import read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of
 from ..scene.pair import check_pair, check_side, is_own
@@ -19,6 +19,7 @@ from ..storage.vertex_maps import MapPair, StoredMaps
 from .job import MatchJob
 from .stepped_job import SteppedJob
 from .transfer import Passage, TransferReport
+from .verdict import Verdict, advice_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from ...engine import Steps, TriangleMesh
     from ..scene.armatures import SourceRig
     from ..scene.character import Side
+    from ..storage.stored_match import Quality
     from .job import JobOptions, Outcome
     from .transfer import Transfer
 
@@ -51,12 +53,18 @@ class TransferOptions:
         Whether the map is refined with the source's rig, for what goes better with one.
     optional : bool
         Whether what cannot be carried over is left out with a note, if anything else can be.
+    accept_doubtful : bool
+        Whether to go on, too, if a match is not to be trusted.
+    asks : bool
+        Whether to wait then until somebody has called `accept`; else that is an error.
     """
 
     match: JobOptions
     prefix: str = ""
     refine: bool = True
     optional: bool = False
+    accept_doubtful: bool = False
+    asks: bool = False
 
 
 @dataclass(frozen=True)
@@ -73,12 +81,15 @@ class Carried:
         One for each transfer, those that were left out last.
     seconds : float
         How long it took until here since the job began.
+    verdict : Verdict or None
+        How far the match can be trusted; None if that is not known, as of a match of an older version.
     """
 
     target: str
     outcome: Outcome | None
     reports: tuple[TransferReport, ...]
     seconds: float
+    verdict: Verdict | None = None
 
 
 class _Leg:
@@ -89,9 +100,12 @@ class _Leg:
         self.stored: StoredMaps | None = None
         self.refined = False
         self.prefix = options.prefix
+        self.quality: Quality | None = None
+        self.verdict: Verdict | None = None
         if _carry_fresh_match(source, target, options.prefix):
             found = find_maps(source, target, options.prefix)
             self.stored, self.refined, self.prefix = found.maps, found.refined, found.source.prefix
+            self.quality = found.quality
         self.match: MatchJob | None = None
         if self.stored is None:
             self.match = MatchJob(context, source, target, _with_maps(options.match), writes=is_own(source))
@@ -122,6 +136,8 @@ class _Leg:
         if errors and not (self._optional and self.transfers):
             raise errors[0][1]
         for label, reason in errors:
+            if not str(reason):
+                continue
             said = (f"{label} left out: {reason}",)
             absent = isinstance(reason, NothingToCarryError)
             self.left_out.append(TransferReport("", remarks=said) if absent else TransferReport("", notes=said))
@@ -182,7 +198,7 @@ class TransferJob(SteppedJob):
         options: TransferOptions,
     ) -> None:
         self._start = time.perf_counter()
-        self._options = options
+        self._options, self._accepted = options, options.accept_doubtful
         depsgraph = context.evaluated_depsgraph_get()
         view_layer = view_layer_of(context)
         check_side(view_layer, source, writable=False)
@@ -226,7 +242,7 @@ class TransferJob(SteppedJob):
         for leg, target in zip(self._legs, targets, strict=True):
             outcome = self._write_match(context, leg, source, target)
             reports = (*(transfer.write(context, source, target) for transfer in leg.transfers), *leg.left_out)
-            carried.append(Carried(target.name, outcome, reports, time.perf_counter() - self._start))
+            carried.append(Carried(target.name, outcome, reports, time.perf_counter() - self._start, leg.verdict))
         return carried
 
     def _write_match(self, context: bpy.types.Context, leg: _Leg, source: Side, target: Side) -> Outcome | None:
@@ -260,11 +276,14 @@ class TransferJob(SteppedJob):
         if leg.match is not None:
             while not leg.match.advance(self._view_layer, 0.0):
                 yield Progress(_MATCHED * leg.match.progress.fraction, leg.match.progress.label)
-            leg.stored, begin = leg.match.maps, _MATCHED
+            leg.stored, leg.quality, begin = leg.match.maps, leg.match.quality, _MATCHED
         if leg.stored is None:
             raise ObjectError(
                 f'The match of "{self._source_name}" and "{leg.name}" has no dense map. Match them with Dense Map on.'
             )
+        self._judge(leg)
+        while self.doubts:
+            yield Progress(begin, "Waiting for an answer")
         passage = Passage(leg.stored.between(self._mesh, leg.mesh))
         if self._rig is not None and any(transfer.uses_rig for transfer in leg.transfers):
             passage = yield from within(self._fitted_steps(leg, passage, self._rig), begin, _FITTED)
@@ -274,6 +293,34 @@ class TransferJob(SteppedJob):
             start = begin + number * share
             yield Progress(start, transfer.label)
             yield from within(transfer.steps(passage), start, start + share, transfer.label)
+
+    @property
+    def doubts(self) -> list[tuple[str, Verdict]]:
+        """Targets whose match is not to be trusted and that nobody has accepted, and what is said of each."""
+        found = [(leg.name, leg.verdict) for leg in self._legs if leg.verdict is not None and leg.verdict.doubtful]
+        return [] if self._accepted else found
+
+    def accept(self) -> None:
+        """Go on with matches that are not to be trusted."""
+        self._accepted = True
+
+    def _judge(self, leg: _Leg) -> None:
+        """Say how far a match can be trusted.
+
+        Raises
+        ------
+        DoubtfulMatchError
+            If it cannot, and nobody wants it all the same.
+        """
+        if leg.quality is None:
+            return
+        advice = advice_on(leg.quality, (self._source_name, leg.name), (self._mesh, leg.mesh))
+        verdict = leg.verdict = Verdict.of(leg.quality, advice)
+        if verdict.doubtful and not (self._accepted or self._options.asks):
+            raise DoubtfulMatchError(
+                f'The match of "{self._source_name}" and "{leg.name}" is doubtful, and nothing was written. '
+                f"{verdict.said} Add landmarks and match again, or set Accept Doubtful to write it all the same."
+            )
 
     def _fitted_steps(self, leg: _Leg, passage: Passage, rig: SourceRig) -> Steps[Passage]:
         """Fit the source's rig into the target, and take the better maps that come with it."""

@@ -3,18 +3,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
 
 from ..common.access import layout_of, view_layer_of
 from ..common.phrases import counted
 from ..common.translated_text import translated
+from ..jobs.verdict import DOUBTFUL
 from ..properties.panel_state import picked, state_of
 from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.setups import current_setup
-from .panel_text import draw_text
+from .panel_text import draw_text, wrap_text
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress, draw_starter
 
@@ -35,6 +36,22 @@ _LABEL_SHARE = 0.4
 _CLEAR_ORIENTATION = 0.3
 """From which agreement on a match is called to keep or to mirror the orientation."""
 
+_EXPLAINED_WIDTH = 40
+"""Letters in a line of a sentence under Advanced: about what a usual sidebar holds."""
+
+_CONFIDENCE: Final = ((0.7, "good"), (0.5, "fair"), (DOUBTFUL, "look closely"), (0.0, "do not trust it"))
+"""From which confidence on it is called so."""
+
+_STRETCH: Final = ((0.5, "very much"), (0.2, "much, the builds differ"), (0.1, "some"), (0.0, "little"))
+"""From which mean stretch on it is called so."""
+
+_SENTENCES: Final = {
+    "Metric and Descriptor": "How distances are measured, and by what a place is recognised in another pose",
+    "Coarse Match": "The first step: a few points, for which all combinations are looked through",
+    "Refinement": "The steps after: more points, each sought near where those around it lie",
+}
+"""What the groups under Advanced are about, by their titles."""
+
 
 class HIERMATCH_PT_match(bpy.types.Panel):
     """Choose two meshes, match them, and read how it went."""
@@ -50,29 +67,20 @@ class HIERMATCH_PT_match(bpy.types.Panel):
         HIERMATCH_PT_presets.draw_panel_header(layout_of(self))
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the panel from top to bottom in the order of work."""
+        """Draw the two meshes, the button and the result; all else is folded below, in the order of work."""
         layout = layout_of(self)
         layout.use_property_split = True
         layout.use_property_decorate = False
         state = state_of(context)
         _draw_pair(layout, context, state)
-        _draw_setup(layout, state)
-        layout.prop(state, "points")
-        switches = layout.column()
-        for name in (*(name for name in APART if name != "points"), "use_modifiers", "use_landmarks"):
-            switches.prop(state, name)
-        _draw_regions(layout, state)
-        _draw_output(layout, state)
-        _draw_advanced(layout, state)
         _draw_run(layout, context, state)
         if state.summary.points:
             _draw_summary(layout, context, state.summary)
-        column = layout.column()
-        column.operator("hiermatch.clear", icon="TRASH")
-        column.operator("hiermatch.add_demo_pair", icon="ADD")
-        row = column.row(align=True)
-        row.operator("hiermatch.export_match", icon="EXPORT")
-        row.operator("hiermatch.import_match", icon="IMPORT")
+        _draw_options(layout, state)
+        _draw_regions(layout, state)
+        _draw_output(layout, state)
+        _draw_advanced(layout, state)
+        _draw_more(layout)
 
 
 def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_scene) -> None:
@@ -90,6 +98,8 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
         selected = sum(obj.type in ("MESH", "ARMATURE") for obj in view_layer_of(context).objects.selected)
         if selected + chosen < 2:
             draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
+            if not state.summary.points:
+                layout.operator("hiermatch.add_demo_pair", icon="ADD")
 
 
 def _draw_picker(row: bpy.types.UILayout, state: HIERMATCH_PG_scene, role: str) -> None:
@@ -107,13 +117,13 @@ def _name_width() -> float:
     return _NAME_WIDTH if name.isascii() else max(_NAME_WIDTH, _WIDE_LETTER * len(name))
 
 
-def _draw_setup(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
-    """Draw the menu of setups, with the one that the settings make."""
-    row = layout.row(align=True)
-    name = row.column()
-    name.ui_units_x = _name_width()
-    name.label(text="Setup")
-    row.operator_menu_enum("hiermatch.use_setup", "setup", text=current_setup(state) or "Custom")
+def _draw_options(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
+    """Draw the options that are changed now and then."""
+    header, body = cast("Any", layout).panel("hiermatch_options", default_closed=True)
+    header.label(text="Options")
+    if body is not None:
+        for name in (*APART, "use_modifiers", "use_landmarks"):
+            body.prop(state, name)
 
 
 def _draw_regions(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
@@ -142,18 +152,46 @@ def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
 
 
 def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
-    """Draw the settings that usually stay as they are, as far as they matter."""
+    """Draw the settings that usually stay as they are, as far as they matter, with a sentence for each group."""
     header, body = cast("Any", layout).panel("hiermatch_advanced", default_closed=True)
     header.label(text="Advanced")
+    if body is None:
+        return
+    row = body.row(align=True)
+    name = row.column()
+    name.ui_units_x = _name_width()
+    name.label(text="Setup")
+    row.operator_menu_enum("hiermatch.use_setup", "setup", text=current_setup(state) or "Custom")
+    for title, names in shown_groups(state):
+        column = body.column()
+        if title:
+            column.label(text=title)
+            _draw_faint(column, _SENTENCES[title])
+        for name in names:
+            # Beside a number, a usual sidebar has no room for names as long as these; inside its field it has.
+            column.use_property_split = state.bl_rna.properties[name].type not in ("INT", "FLOAT")
+            column.prop(state, name)
+
+
+def _draw_faint(layout: bpy.types.UILayout, sentence: str) -> None:
+    """Draw what explains the rows below."""
+    column: Any = layout.column()
+    column.active, column.scale_y = False, 0.8
+    for line in wrap_text(translated(sentence), _EXPLAINED_WIDTH):
+        column.label(text=line, translate=False)
+
+
+def _draw_more(layout: bpy.types.UILayout) -> None:
+    """Draw what is done before and after the work: the demo pair, files, and taking away what was written."""
+    header, body = cast("Any", layout).panel("hiermatch_more", default_closed=True)
+    header.label(text="Demo and Files")
     if body is not None:
-        for title, names in shown_groups(state):
-            column = body.column()
-            if title:
-                column.label(text=title)
-            for name in names:
-                # Beside a number, a usual sidebar has no room for names as long as these; inside its field it has.
-                column.use_property_split = state.bl_rna.properties[name].type not in ("INT", "FLOAT")
-                column.prop(state, name)
+        column = body.column()
+        column.operator("hiermatch.clear", icon="TRASH")
+        column.operator("hiermatch.add_demo_pair", icon="ADD")
+        row = column.row(align=True)
+        row.operator("hiermatch.export_match", icon="EXPORT")
+        row.operator("hiermatch.import_match", icon="IMPORT")
 
 
 def _draw_run(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_scene) -> None:
@@ -167,33 +205,54 @@ def _draw_run(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIE
 
 
 def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summary: HIERMATCH_PG_summary) -> None:
-    """Draw how the last match went."""
+    """Draw how far the last match can be trusted, and its numbers to unfold."""
     box = layout.box().column()
+    doubtful = bool(summary.verdict) and summary.confidence < DOUBTFUL
     if summary.stale:
         draw_text(box, context, summary.stale, "ERROR")
-    box.label(text=translated("{count} points matched").format(count=summary.points), icon="CHECKMARK")
     if summary.verdict:
-        draw_text(box, context, summary.verdict, "INFO")
-    rows = (
-        ("Source", summary.source),
-        ("Target", summary.target),
-        ("Confidence", f"{summary.confidence:.0%}" if summary.verdict else ""),
-        ("Distortion", f"{summary.stretch:.0%}" if summary.verdict else f"{summary.distortion:.4g}"),
-        ("Worst Point", "" if summary.verdict else f"{summary.worst_distortion:.3f}"),
-        ("Coarse Match", _coarse_text(summary)),
+        draw_text(box, context, summary.verdict, "ERROR" if doubtful else "CHECKMARK")
+    else:
+        box.label(text=translated("{count} points matched").format(count=summary.points), icon="CHECKMARK")
+    _draw_rows(
+        box,
+        ("Confidence", _judged(summary.confidence, _CONFIDENCE) if summary.verdict else ""),
         ("Left and Right", _orientation_text(summary)),
         ("Mirrored Match", "" if summary.has_mirrored else translated("none")),
-        ("Time", f"{summary.seconds:.1f} s" if summary.seconds else ""),
     )
-    for name, text in rows:
-        if not text:
-            continue
-        split = box.split(factor=_LABEL_SHARE)
-        split.label(text=name)
-        split.label(text=text, translate=False)  # a name such as "Source" stays as it is
+    if doubtful:
+        box.operator("hiermatch.guide_me", icon="EYEDROPPER")
     if summary.has_mirrored:
         draw_starter(box, context, "hiermatch.flip", "Use Mirrored Match", "MOD_MIRROR", depress=summary.mirrored)
+    header, body = cast("Any", layout).panel("hiermatch_details", default_closed=True)
+    header.label(text="Details")
+    if body is not None:
+        _draw_rows(
+            body,
+            ("Source", summary.source),
+            ("Target", summary.target),
+            ("Matched Points", str(summary.points)),
+            ("Distortion", _judged(summary.stretch, _STRETCH) if summary.verdict else f"{summary.distortion:.4g}"),
+            ("Worst Point", "" if summary.verdict else f"{summary.worst_distortion:.3f}"),
+            ("Search", _search_text(summary)),
+            ("Time", f"{summary.seconds:.1f} s" if summary.seconds else ""),
+        )
     _draw_notes(layout, context, summary.notes.splitlines())
+
+
+def _draw_rows(layout: bpy.types.UILayout, *rows: tuple[str, str]) -> None:
+    """Draw names and values beside each other; those without a value are left out."""
+    for name, text in rows:
+        if text:
+            split = layout.split(factor=_LABEL_SHARE)
+            split.label(text=name)
+            split.label(text=text, translate=False)  # a name such as "Source" stays as it is
+
+
+def _judged(number: float, scale: tuple[tuple[float, str], ...]) -> str:
+    """Write a share with a word for whether that is good: that of the first limit that it reaches."""
+    word = next(word for least, word in scale if number >= least)
+    return f"{number:.0%}, {translated(word)}"
 
 
 def _draw_notes(layout: bpy.types.UILayout, context: bpy.types.Context, notes: list[str]) -> None:
@@ -208,17 +267,17 @@ def _draw_notes(layout: bpy.types.UILayout, context: bpy.types.Context, notes: l
             draw_text(column, context, note, "INFO")
 
 
-def _coarse_text(summary: HIERMATCH_PG_summary) -> str:
-    """Say how good the coarse match is; nothing once it was refined, since then it is not what was proven of."""
+def _search_text(summary: HIERMATCH_PG_summary) -> str:
+    """Say whether the exact first step looked at everything; nothing once the match was refined since."""
     if summary.proven:
-        return translated("optimum proven")
-    return translated("within {gap} of the best").format(gap=f"{summary.gap:.0%}") if summary.gap else ""
+        return translated("finished")
+    if not summary.gap:
+        return ""
+    return translated("ended early, at most {gap} from the best").format(gap=f"{summary.gap:.0%}")
 
 
 def _orientation_text(summary: HIERMATCH_PG_summary) -> str:
     """Say whether the match keeps left and right."""
     if abs(summary.orientation) < _CLEAR_ORIENTATION:
-        verdict = translated("unclear")
-    else:
-        verdict = translated("kept") if summary.orientation > 0 else translated("exchanged")
-    return f"{verdict} ({summary.orientation:+.2f})"
+        return translated("unclear, look at the colors")
+    return translated("kept") if summary.orientation > 0 else translated("exchanged")

@@ -12,7 +12,7 @@ from ..common.translated_text import translated
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["draw_text", "wrap_text"]
+__all__ = ["draw_text", "letters_across", "wrap_text"]
 
 _PIXELS_PER_LETTER = 7
 """Rough width of a letter at normal interface scale, to wrap sentences."""
@@ -23,12 +23,17 @@ _NEVER_FIRST: Final = "、。，．：；！？）」』”’・ー々ぁぃぅ
 
 def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
     """Draw a sentence, in the language of the interface, over as many lines as the width of the sidebar asks for."""
-    region, preferences = cast("Any", context.region), cast("Any", context.preferences)
-    width = region.width / (_PIXELS_PER_LETTER * preferences.system.ui_scale)
     column: Any = layout.column()
     column.scale_y = 0.8
-    for number, line in enumerate(wrap_text(translated(text), max(16, int(width) - 6))):
+    for number, line in enumerate(wrap_text(translated(text), letters_across(context))):
         column.label(text=line, icon="BLANK1" if number else icon, translate=False)
+
+
+def letters_across(context: bpy.types.Context) -> int:
+    """Return how many letters of a sentence stand in a line of the sidebar."""
+    region, preferences = cast("Any", context.region), cast("Any", context.preferences)
+    width = region.width / (_PIXELS_PER_LETTER * preferences.system.ui_scale)
+    return max(16, int(width) - 6)
 
 
 def wrap_text(text: str, width: int) -> list[str]:

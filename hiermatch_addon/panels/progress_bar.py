@@ -9,7 +9,8 @@ from ..common.access import window_manager_of
 from ..common.translated_text import translated
 from ..jobs.running import is_running, running_panel
 from ..properties.panel_state import progress_of
-from .panel_text import draw_text
+from .panel_text import draw_text, letters_across
+from .question import draw_question
 
 if TYPE_CHECKING:
     import bpy
@@ -37,6 +38,9 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, panel:
     place = running_panel(window_manager_of(context))
     if place == panel:
         progress = progress_of(context)
+        if progress.question:
+            draw_question(layout.box(), progress.question.splitlines(), letters_across(context))
+            return True
         layout.progress(text=translated(progress.label), factor=cast("float", progress.fraction))
         layout.operator("hiermatch.cancel", icon="CANCEL")
         return True
@@ -71,6 +75,8 @@ def draw_starter(
     """
     place: Any = layout
     if is_running(window_manager_of(context)):
-        place.label(text=text, icon=icon)
+        waiting = place.row()
+        waiting.enabled = False  # a label that is not is drawn as bright as a button
+        waiting.label(text=text, icon=icon)
         return None
     return place.operator(operator, text=text, icon=icon, **how)

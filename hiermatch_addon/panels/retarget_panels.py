@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import bpy
 
 from ..common.access import layout_of
+from ..scene.armatures import find_armature
+from ..scene.posing.before_after import is_before
+from ..scene.posing.exercise import is_exercising
 from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wrap import WrapOptions
@@ -18,7 +21,7 @@ from .progress_bar import draw_progress, draw_starter
 if TYPE_CHECKING:
     from ..transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
 
-__all__ = ["HIERMATCH_PT_retarget", "HIERMATCH_PT_symmetry"]
+__all__ = ["HIERMATCH_PT_retarget", "HIERMATCH_PT_symmetry", "draw_report"]
 
 _ALONE: Final = {
     "use_rig": "hiermatch.fit_rig",
@@ -45,9 +48,6 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         state: Any = retarget_of(context)
-        for switch in KINDS:
-            _draw_kind(layout, context, state, switch)
-        layout.prop(state, "refine")
         if draw_progress(layout, context, self.bl_idname):
             return
         row = layout.row()
@@ -55,8 +55,11 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         button = row.operator("hiermatch.retarget", icon="OUTLINER_OB_ARMATURE")
         names = [name for kind in KINDS.values() for name in option_names(kind)]
         copy_named(state, button, [*KINDS, *names, "refine"])
+        draw_report(layout, context, state.report)
+        for switch in KINDS:
+            _draw_kind(layout, context, state, switch)
+        layout.prop(state, "refine")
         _draw_wrap(layout, context, state)
-        _draw_report(layout, context, state.report)
 
 
 class HIERMATCH_PT_symmetry(bpy.types.Panel):
@@ -112,15 +115,25 @@ def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
             copy_named(state, button, [*names, "refine"])
 
 
-def _draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: HIERMATCH_PG_report) -> None:
+def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: HIERMATCH_PG_report) -> None:
     """Draw what became of the last transfer."""
     if not report.done:
         return
     box = layout.box().column()
     for line in report.done.splitlines():
-        draw_text(box, context, line, "CHECKMARK")
+        draw_text(box, context, line, "ERROR" if report.doubtful else "CHECKMARK")
+    for line in report.verdict.splitlines():
+        draw_text(box, context, line, "ERROR" if report.doubtful else "INFO")
     for line in report.notes.splitlines():
         draw_text(box, context, line, "ERROR")
     for line in report.remarks.splitlines():
         draw_text(box, context, line, "INFO")
     box.label(text=f"{report.seconds:.1f} s", icon="TIME")
+    target = bpy.data.objects.get(report.target)
+    armature = target if target is None or target.type == "ARMATURE" else find_armature(target)
+    row = layout.row(align=True)
+    pressed = armature is not None and is_exercising(armature)
+    poses = row.operator("hiermatch.test_poses", icon="ARMATURE_DATA", depress=pressed)
+    hidden = target is not None and is_before(target)
+    before = row.operator("hiermatch.before_after", icon="ARROW_LEFTRIGHT", depress=hidden)
+    poses.target = before.target = report.target

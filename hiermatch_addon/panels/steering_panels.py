@@ -49,9 +49,12 @@ class HIERMATCH_UL_landmarks(bpy.types.UIList):
         icon = "CHECKBOX_HLT" if item.use else "CHECKBOX_DEHLT"
         switch = row.operator("hiermatch.switch_landmark", text="", icon=icon, emboss=False)
         switch.number, switch.use = item.number, not item.use
+        number = row.row()
+        number.ui_units_x = 1.2
+        number.label(text=str(item.number))  # as it stands in the viewport
         name = row.row()
         name.active = item.use
-        name.label(text=f"{item.number}:  {item.source} - {item.target}")
+        name.prop(item, "label", text="", emboss=False)
         row.operator("hiermatch.select_landmark", text="", icon="RESTRICT_SELECT_OFF").number = item.number
         row.operator("hiermatch.remove_landmark", text="", icon="X").number = item.number
 
@@ -98,6 +101,7 @@ class HIERMATCH_PT_landmarks(bpy.types.Panel):
         steering = steering_of(context)
         layout.active = state_of(context).use_landmarks
         row = layout.row(align=True)
+        row.operator("hiermatch.guide_me", icon="LIGHT_SUN")
         row.operator("hiermatch.pick_landmarks", icon="EYEDROPPER")
         row.operator("hiermatch.add_landmark", text="", icon="ADD")
         if steered_pair(cast("bpy.types.Scene", context.scene)) is None:

@@ -314,3 +314,7 @@ class HIERMATCH_PG_progress(bpy.types.PropertyGroup):
     fraction: _props.FloatProperty(name="Fraction", description="Part of the match that is done", min=0, max=1)
     label: _props.StringProperty(name="Label", description="What is being done")
     cancel: _props.BoolProperty(name="Cancel", description="Whether the running match is to end")
+    question: _props.StringProperty(
+        name="Question", description="What has to be answered before the work goes on, one sentence per line"
+    )
+    answer: _props.StringProperty(name="Answer", description="The answer; empty as long as there is none")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.halves import Half
 
-__all__ = ["common_match", "point_name", "steered_pair", "sync_lists"]
+__all__ = ["common_match", "landmark_label", "point_name", "steered_pair", "sync_lists"]
 
 
 _REVISIONS = 1 << 30
@@ -75,6 +75,11 @@ def point_name(prefix: str, number: int) -> str:
     return f"{prefix}.{number:03d}"
 
 
+def landmark_label(number: int) -> str:
+    """Return what a landmark is called that the user has not named."""
+    return f"Landmark {number}"
+
+
 def sync_lists(scene: bpy.types.Scene) -> None:
     """Fill both lists of a scene, and write to it only if they have changed."""
     owner: Any = scene
@@ -91,7 +96,10 @@ def sync_lists(scene: bpy.types.Scene) -> None:
 def _landmark_rows(scene: bpy.types.Scene) -> list[dict[str, Any]]:
     pair = steered_pair(scene)
     landmarks = [] if pair is None else find_landmarks(*pair)
-    return [{"name": f"Landmark {one.number}", **vars(one)} for one in landmarks]
+    labels = [landmark_label(one.number) for one in landmarks]
+    return [
+        {**vars(one), "name": label, "label": one.name or label} for one, label in zip(landmarks, labels, strict=True)
+    ]
 
 
 def _pair_rows(scene: bpy.types.Scene) -> list[dict[str, Any]]:

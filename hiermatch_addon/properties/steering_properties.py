@@ -9,6 +9,8 @@ from typing import Any, cast
 import bpy
 
 from ..common.redraw import redraw_views
+from ..storage.landmarks import find_landmarks, rename_landmark
+from .steering_lists import landmark_label, steered_pair
 
 __all__ = ["HIERMATCH_PG_landmark", "HIERMATCH_PG_pair", "HIERMATCH_PG_steering", "steering_of"]
 
@@ -20,9 +22,23 @@ def _redraw(_owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None
     redraw_views(cast("bpy.types.WindowManager", context.window_manager))
 
 
+def _rename(row: Any, _context: bpy.types.Context) -> None:  # noqa: ANN401 - a row of the list below
+    """Let the landmark of a row have its name on both meshes."""
+    pair = steered_pair(cast("bpy.types.Scene", row.id_data))
+    if pair is None:
+        return
+    known = {one.number: one.name for one in find_landmarks(*pair)}
+    name = "" if row.label == landmark_label(row.number) else row.label
+    if known.get(row.number, name) != name:  # else the list was filled
+        rename_landmark(*pair, row.number, name)
+
+
 class HIERMATCH_PG_landmark(bpy.types.PropertyGroup):
     """A row of the list of landmarks."""
 
+    label: _props.StringProperty(
+        name="Name", description="What the landmark is called; double-click to change it", maxlen=63, update=_rename
+    )
     number: _props.IntProperty(name="Number", description="By which the landmark is known on both meshes")
     source: _props.IntProperty(name="Source Vertex", description="Vertex of the source")
     target: _props.IntProperty(name="Target Vertex", description="Vertex of the target that corresponds to it")

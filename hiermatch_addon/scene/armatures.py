@@ -15,6 +15,8 @@ from .character import parts_of
 from .deform_layer import read_weights
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import bpy
     import mathutils
     from numpy.typing import NDArray
@@ -26,6 +28,7 @@ __all__ = [
     "armature_modifier",
     "armature_of",
     "bone_of",
+    "bone_weights",
     "find_armature",
     "moving_armatures",
     "read_rig",
@@ -133,26 +136,42 @@ def read_rig(side: Side) -> SourceRig | None:
     if armature is None:
         return None
     bones = armature_of(armature).bones
-    numbers = {bone.name: number for number, bone in enumerate(bones) if bone.use_deform}
-    parts = [_bone_weights(obj, armature, numbers, len(bones)) for obj in parts_of(side)]
-    weights = _normalised(csr_array(vstack(parts, format="csr")))
+    names = tuple(bone.name for bone in bones)
+    weights = bone_weights(side, armature, names)
     if weights.nnz == 0:
         return None
     return SourceRig(armature.name, tuple(bone.name for bone in bones), read_skeleton(armature), weights)
 
 
-def _bone_weights(obj: bpy.types.Object, armature: bpy.types.Object, numbers: dict[str, int], count: int) -> csr_array:
-    """Read how much each of all bones moves the vertices of an object, (n, count), as its groups say."""
+def bone_weights(side: Side, armature: bpy.types.Object, names: Sequence[str]) -> csr_array:
+    """Read how much each of some bones of an armature moves each vertex of all parts of a side.
+
+    Returns
+    -------
+    (n, b) csr_array of float
+        Rows sum to one, or are empty.  Columns of bones that do not deform, or do not exist, are empty.
+    """
+    bones = armature_of(armature).bones
+    numbers = {name: number for number, name in enumerate(names) if name in bones and bones[name].use_deform}
+    parts = [_part_weights(obj, armature, numbers, names) for obj in parts_of(side)]
+    return _normalised(csr_array(vstack(parts, format="csr")))
+
+
+def _part_weights(
+    obj: bpy.types.Object, armature: bpy.types.Object, numbers: dict[str, int], names: Sequence[str]
+) -> csr_array:
+    """Read how much each bone moves the vertices of an object, (n, b), as its groups say."""
     vertices = len(mesh_of(obj).vertices)
-    if obj.parent == armature and bone_of(obj):
-        place = armature_of(armature).bones.find(bone_of(obj))
-        return csr_array((np.ones(vertices), (np.arange(vertices), np.full(vertices, place))), shape=(vertices, count))
+    if obj.parent == armature and bone_of(obj) in names:
+        place = list(names).index(bone_of(obj))
+        held = (np.arange(vertices), np.full(vertices, place))
+        return csr_array((np.ones(vertices), held), shape=(vertices, len(names)))
     groups = [group for group in obj.vertex_groups if group.name in numbers]
     if not groups:
-        return csr_array((vertices, count))
+        return csr_array((vertices, len(names)))
     columns = read_weights(obj)[:, [group.index for group in groups]].tocoo()
     places = np.array([numbers[group.name] for group in groups], np.int64)
-    return csr_array((columns.data, (columns.row, places[columns.col])), shape=(vertices, count))
+    return csr_array((columns.data, (columns.row, places[columns.col])), shape=(vertices, len(names)))
 
 
 def _normalised(weights: csr_array) -> csr_array:

@@ -14,7 +14,7 @@ from .character import parts_of
 if TYPE_CHECKING:
     from .character import Side
 
-__all__ = ["bind", "made_rig", "mark_made"]
+__all__ = ["bind", "is_made", "made_rig", "mark_made"]
 
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
@@ -26,6 +26,11 @@ _OWN = frozenset({"name", "type", "object", "vertex_group", "show_expanded", "is
 def mark_made(armature: bpy.types.Object, source: bpy.types.Object) -> None:
     """Record that an armature object was made after another one."""
     cast("Any", armature)[_MARKER] = source.name
+
+
+def is_made(armature: bpy.types.Object) -> bool:
+    """Tell whether an armature object was made after another one."""
+    return _MARKER in cast("Any", armature)
 
 
 def made_rig(target: Side, source: bpy.types.Object) -> bpy.types.Object | None:

@@ -16,10 +16,16 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["keep_pose", "pose_bases"]
+__all__ = ["AS_IT_WAS", "keep_pose", "kept_pose", "pose_bases"]
 
 _MARKER = "hiermatch_rest"
 """Custom property of the actions that were made here: the name of the armature they were made for."""
+
+_KIND = "hiermatch_pose"
+"""Custom property of theirs: which pose of the armature it is, empty for the rest pose of a posed target."""
+
+AS_IT_WAS = "as it was"
+"""Kind of the pose in which a target looks as it did before it was brought to another rest pose."""
 
 _CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 
@@ -56,7 +62,18 @@ def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.flo
     return bases
 
 
-def keep_pose(armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix], *, show: bool) -> bpy.types.Action:
+def kept_pose(armature: bpy.types.Object, kind: str = "") -> bpy.types.Action | None:
+    """Find the pose of a kind that was kept for an armature."""
+    for action in bpy.data.actions:
+        found: Any = action
+        if found.get(_MARKER) == armature.name and found.get(_KIND, "") == kind:
+            return action
+    return None
+
+
+def keep_pose(
+    armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix], *, show: bool, kind: str = ""
+) -> bpy.types.Action:
     """Keep a pose as an action of one frame, with a fake user; one that was made before is replaced.
 
     Parameters
@@ -69,19 +86,22 @@ def keep_pose(armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix]
         The transforms of its bones, from `pose_bases`.
     show : bool
         Whether the armature takes the pose; else it stays as it is, with the action that it has.
+    kind : str
+        Which pose it is: one of the same kind is replaced.
 
     Returns
     -------
     bpy.types.Action
         The action.
     """
-    for old in [action for action in bpy.data.actions if cast("Any", action).get(_MARKER) == armature.name]:
+    old = kept_pose(armature, kind)
+    if old is not None:
         bpy.data.actions.remove(old)  # another one of that name is the user's own
     animation: Any = armature.animation_data or armature.animation_data_create()
     before = animation.action, getattr(animation, "action_slot", None)
     action: Any = bpy.data.actions.new(name)
     action.use_fake_user = True
-    action[_MARKER] = armature.name
+    action[_MARKER], action[_KIND] = armature.name, kind
     animation.action = action
     pose = cast("bpy.types.Pose", armature.pose)
     for bone_name, basis in bases.items():

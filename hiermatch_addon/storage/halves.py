@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,11 +14,11 @@ from ..scene.character import Character, parts_of, positions_of, topology_of
 from . import writing
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from ..scene.character import Side, SideReference
 
-__all__ = ["Half", "find_again", "find_carriers", "find_common", "find_half", "find_keyed"]
+__all__ = ["Half", "find_again", "find_carriers", "find_common", "find_half", "find_keyed", "moved_by_us"]
 
 
 @dataclass(frozen=True)
@@ -237,6 +238,17 @@ def _assembled(halves: list[Half]) -> Half | None:
 def _prefixes(side: Side) -> tuple[str, ...]:
     first = parts_of(side)[0]
     return writing.prefixes(first) if first.type == "MESH" else ()
+
+
+@contextmanager
+def moved_by_us(side: Side) -> Iterator[None]:
+    """Keep the matches of a side up to date while its vertices are moved without another meaning, as by a pose."""
+    halves = [half for prefix in _prefixes(side) if (half := _half(side, prefix)) is not None]
+    fresh = [half.prefix for half in halves if not half.staleness()]
+    yield
+    for prefix in fresh:
+        for part in parts_of(side):
+            writing.change_kept(part, prefix, positions=positions_of(side))
 
 
 def _kept(obj: bpy.types.Object, prefix: str) -> dict[str, Any]:

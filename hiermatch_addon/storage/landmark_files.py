@@ -41,7 +41,7 @@ def landmarks_to_text(source: Side, target: Side, landmarks: Sequence[Landmark])
         positions[role] = own_positions(obj)
         text[role] = {"name": obj.name, "vertices": len(positions[role]), "faces": topology_of(obj)}
     text["landmarks"] = [
-        {"number": landmark.number, "use": landmark.use}
+        {"number": landmark.number, "use": landmark.use, "name": landmark.name}
         | {
             role: {"vertex": vertex, "position": positions[role][vertex].tolist()}
             for role, vertex in zip(_ROLES, (landmark.source, landmark.target), strict=True)
@@ -77,7 +77,7 @@ def landmarks_from_text(text: str, source: Side, target: Side) -> tuple[list[Lan
     try:
         data = json.loads(text)
         known = data["format"] == _FORMAT and data["version"] <= _VERSION
-        rows = [(int(row["number"]), bool(row["use"])) for row in data["landmarks"]]
+        rows = [(int(row["number"]), bool(row["use"]), str(row.get("name", ""))) for row in data["landmarks"]]
         sides = [[_place(row[role]) for row in data["landmarks"]] for role in _ROLES]
         digests = [str(data[role]["faces"]) for role in _ROLES]
     except (ValueError, KeyError, TypeError) as error:
@@ -91,7 +91,8 @@ def landmarks_from_text(text: str, source: Side, target: Side) -> tuple[list[Lan
     for obj, places, digest in zip((source, target), sides, digests, strict=True):
         columns.append(_vertices(obj, places, notes, same=topology_of(obj) == digest))
     return [
-        Landmark(number, there, back, use) for (number, use), there, back in zip(rows, *columns, strict=True)
+        Landmark(number, there, back, use, name)
+        for (number, use, name), there, back in zip(rows, *columns, strict=True)
     ], notes
 
 

@@ -16,6 +16,7 @@ from ..common.errors import ObjectError
 from ..scene.character import parts_of, vertex_ranges
 from ..scene.pair import check_writable
 from . import landmark_layer
+from .landmark_names import landmark_names, name_landmark
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -33,6 +34,7 @@ __all__ = [
     "find_landmarks",
     "landmark_array",
     "remove_landmark",
+    "rename_landmark",
     "select_on_side",
     "switch_landmark",
 ]
@@ -56,19 +58,23 @@ class Landmark:
         The vertices.
     use : bool
         Whether a match is to keep to it.
+    name : str
+        What the user calls it; may be empty.
     """
 
     number: int
     source: int
     target: int
     use: bool = True
+    name: str = ""
 
 
 def find_landmarks(source: Side, target: Side) -> list[Landmark]:
     """Return what landmarks two meshes have in common, in the order of their numbers."""
     there, back = read_marks(source), read_marks(target)
+    names = landmark_names(target) | landmark_names(source)
     return [
-        Landmark(number, vertex, back[number][0], use and back[number][1])
+        Landmark(number, vertex, back[number][0], use and back[number][1], names.get(number, ""))
         for number, (vertex, use) in there.items()
         if number in back
     ]
@@ -80,7 +86,7 @@ def landmark_array(landmarks: Iterable[Landmark]) -> NDArray[np.int64] | None:
     return np.array(pairs, np.int64) if pairs else None
 
 
-def add_landmarks(source: Side, target: Side, pairs: Iterable[tuple[int, int]]) -> list[Landmark]:
+def add_landmarks(source: Side, target: Side, pairs: Iterable[tuple[int, int]], name: str = "") -> list[Landmark]:
     """Let vertices of the source and of the target correspond.
 
     A vertex has one landmark only: where one of the two has one already, that landmark moves.
@@ -91,6 +97,8 @@ def add_landmarks(source: Side, target: Side, pairs: Iterable[tuple[int, int]]) 
         The objects, both in Object Mode or in Edit Mode.
     pairs : iterable of (int, int)
         Vertices of the source and of the target.
+    name : str
+        What the new landmarks are called; may be empty.
 
     Returns
     -------
@@ -113,7 +121,9 @@ def add_landmarks(source: Side, target: Side, pairs: Iterable[tuple[int, int]]) 
             for other in [other for other, (place, _) in marks.items() if place == vertex]:
                 del marks[other]
             marks[number] = (vertex, True)
-        added.append(Landmark(number, *pair))
+        for obj in (source, target):
+            name_landmark(obj, number, name)  # or it would have that of one of the same number that is gone
+        added.append(Landmark(number, *pair, name=name))
     write_marks(source, there)
     write_marks(target, back)
     return added
@@ -130,6 +140,20 @@ def remove_landmark(source: Side, target: Side, number: int) -> None:
     _check_number(source, target, number)
     for obj in (source, target):
         write_marks(obj, {other: mark for other, mark in read_marks(obj).items() if other != number})
+        name_landmark(obj, number, "")
+
+
+def rename_landmark(source: Side, target: Side, number: int, name: str) -> None:
+    """Name a landmark; an empty name takes its name away.
+
+    Raises
+    ------
+    ObjectError
+        If there is none of that number, or a mesh cannot be written to.
+    """
+    _check_number(source, target, number)
+    for obj in (source, target):
+        name_landmark(obj, number, name)
 
 
 def switch_landmark(source: Side, target: Side, number: int, *, use: bool) -> None:
@@ -159,6 +183,8 @@ def clear_landmarks(source: Side, target: Side) -> int:
     common = {landmark.number for landmark in find_landmarks(source, target)}
     for obj in (source, target):
         write_marks(obj, {number: mark for number, mark in read_marks(obj).items() if number not in common})
+        for number in common:
+            name_landmark(obj, number, "")
     return len(common)
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
     from .halves import Half
+    from .stored_match import Quality
     from .vertex_maps import MapPair
 
 __all__ = ["FoundMaps", "find_maps", "keep_refined", "stored_map"]
@@ -37,6 +38,8 @@ class FoundMaps:
         Whether they were refined with a rig.
     use_modifiers : bool
         Whether the meshes were matched as shape keys and modifiers show them.
+    quality : Quality or None
+        How far they can be trusted, as it was measured when the match was made; None if that is not known.
     """
 
     source: Half
@@ -44,6 +47,7 @@ class FoundMaps:
     maps: StoredMaps
     refined: bool
     use_modifiers: bool
+    quality: Quality | None = None
 
 
 def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
@@ -82,7 +86,8 @@ def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
     if maps is None:
         raise ObjectError(f"The dense map of {pair} was removed from the attributes of a mesh. Match them again.")
     kept = maps if first is halves[0] else maps.reverse
-    return FoundMaps(*halves, kept, stored.answer.refined, stored.written.use_modifiers)
+    answer = stored.answer
+    return FoundMaps(*halves, kept, answer.refined, stored.written.use_modifiers, answer.quality)
 
 
 def stored_map(context: bpy.types.Context, source: Side, target: Side, prefix: str = "") -> MapPair:

@@ -25,6 +25,8 @@ _props: Any = bpy.props  # whose functions Blender's stubs declare to return not
 class HIERMATCH_PG_report(bpy.types.PropertyGroup):
     """What became of the last transfer; it is there if `done` is not empty."""
 
+    source: _props.StringProperty(name="Source", description="Name of the source object")
+    target: _props.StringProperty(name="Target", description="Name of the target object; of several, of the last one")
     done: _props.StringProperty(name="Done", description="What was carried over to which object, one per line")
     notes: _props.StringProperty(
         name="Notes", description="What was left out, or should be known, and why: one sentence per line"
@@ -33,6 +35,11 @@ class HIERMATCH_PG_report(bpy.types.PropertyGroup):
         name="Remarks",
         description="What was left out, or should be known, but is no reason to worry: one sentence per line",
     )
+    verdict: _props.StringProperty(
+        name="Verdict",
+        description="How far the matches can be trusted, one sentence per line; empty if that is unknown",
+    )
+    doubtful: _props.BoolProperty(name="Doubtful", description="Whether one of the matches is not to be trusted")
     seconds: _props.FloatProperty(name="Seconds", description="How long it took")
 
 
@@ -61,14 +68,18 @@ def copy_named(source: object, target: object, names: Iterable[str]) -> None:
         setattr(target, name, getattr(source, name))
 
 
-def remember_transfer(context: bpy.types.Context, carried: list[Carried], left_out: str = "") -> None:
-    """Fill the report; `left_out` says which selected meshes were no targets."""
+def remember_transfer(context: bpy.types.Context, source: str, carried: list[Carried], left_out: str = "") -> None:
+    """Fill the report of what was carried from a source; `left_out` says which selected meshes were no targets."""
     report: Any = retarget_of(context).report
+    report.source, report.target = source, carried[-1].target if carried else ""
     done = []
     for one in carried:
         what = [part.done for part in one.reports if part.done]
         done.append(f'Carried to "{one.target}": {", ".join(what) if what else "nothing"}')
     report.done = "\n".join(done)
+    verdicts = [one.verdict for one in carried if one.verdict is not None]
+    report.verdict = "\n".join(verdict.said for verdict in verdicts)
+    report.doubtful = any(verdict.doubtful for verdict in verdicts)
     parts = [part for one in carried for part in one.reports]
     report.notes = "\n".join(dict.fromkeys(note for part in parts for note in part.notes))
     remarks = [*([left_out] if left_out else []), *(remark for part in parts for remark in part.remarks)]

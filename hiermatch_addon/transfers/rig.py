@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -40,6 +41,15 @@ class RigTransfer:
     ----------
     settings : RigSettings
         How.
+
+    Attributes
+    ----------
+    names : (b,) tuple of str
+        Names of the bones.
+    frames : (k, 3, 3) array of float
+        Rotations that the whole target may be turned by against the source.
+    placed : PlacedJoints or None
+        The bones in the target, in world space; None as long as they are not placed.
     """
 
     label = "Rig"
@@ -47,10 +57,10 @@ class RigTransfer:
 
     def __init__(self, settings: RigSettings) -> None:
         self._settings = settings
-        self._names: tuple[str, ...] = ()
+        self.names: tuple[str, ...] = ()
         self._normals: NDArray[np.float64] = np.empty((0, 3))
-        self._frames: NDArray[np.float64] = np.empty((0, 3, 3))
-        self._placed: PlacedJoints | None = None
+        self.frames: NDArray[np.float64] = np.empty((0, 3, 3))
+        self.placed: PlacedJoints | None = None
         self._rest: RestPose | None = None
         self._notes: list[str] = []
 
@@ -81,26 +91,30 @@ class RigTransfer:
                 f'"{source.name}" is moved by {listed(others)} as well as by "{armature.name}". Only the latter was '
                 "fitted."
             )
-        self._names = rig.names
+        self.names = rig.names
         axes = [bone.matrix_local.to_3x3().col[2] for bone in armature_of(armature).bones]
         self._normals = np.array(axes, np.float64) @ matrix[:3, :3].T
         # The target stands as the source does: in the world, or each in the space of its object.
         stands = [parts_of(side)[0].matrix_world for side in (source, target)]
         turns = [np.array(matrix.to_3x3().normalized(), np.float64) for matrix in stands]
-        self._frames = np.stack([np.eye(3), _rotation(turns[1] @ np.linalg.inv(turns[0]))])
+        self.frames = np.stack([np.eye(3), _rotation(turns[1] @ np.linalg.inv(turns[0]))])
+
+    def leave_rest_pose(self) -> None:
+        """Make no rest pose: the target is brought to it otherwise."""
+        self._settings = replace(self._settings, rest=False)
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Place the joints, and find the rest pose."""
         rig, body = passage.rig, passage.pair.source
-        if rig is None or passage.bone_names != self._names:
+        if rig is None or passage.bone_names != self.names:
             raise ObjectError("The rig of the source was changed meanwhile. Nothing was written.")
         yield Progress(0.0, "Placing the joints")
-        placed = self._placed = place_joints(rig, body, self._normals, self._frames)
+        placed = self.placed = place_joints(rig, body, self._normals, self.frames)
         if not self._settings.rest or self._settings.pose == "REST":
             return
         yield Progress(0.5, "Finding the rest pose")
         if self._settings.pose == "POSED" or is_posed(rig, body, placed):
-            self._rest = rest_pose(rig, body, placed, self._frames)
+            self._rest = rest_pose(rig, body, placed, self.frames)
         else:
             self._notes.append(
                 "The target seems to be in its rest pose already, so none was made. If it is posed, set Pose to Posed."
@@ -109,11 +123,11 @@ class RigTransfer:
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Make the armature, or update the one made before, and bind the target to it."""
         model = cast("bpy.types.Object", find_armature(source))
-        placed = cast("PlacedJoints", self._placed)
+        placed = cast("PlacedJoints", self.placed)
         first = parts_of(target)[0]
         made = made_rig(target, model) if self._settings.existing == "UPDATE" else None
         armature = made or _new_armature(context, target, model)
-        missing = move_joints(context, armature, self._names, placed)
+        missing = move_joints(context, armature, self.names, placed)
         if made is None:
             kept = repoint(armature, _counterparts(source, target, model, armature))
             if kept:
@@ -132,11 +146,11 @@ class RigTransfer:
                 f'Constraints or drivers move {listed(displaced)} of "{armature.name}" away from rest, and the target '
                 "with them. Check them."
             )
-        if not {group.name for part in parts_of(target) for group in part.vertex_groups} & set(self._names):
+        if not {group.name for part in parts_of(target) for group in part.vertex_groups} & set(self.names):
             self._notes.append(
                 f'"{target.name}" has no weights for the bones of "{armature.name}" yet. Transfer the weights as well.'
             )
-        bones = counted(len(self._names), "bone")
+        bones = counted(len(self.names), "bone")
         done = [f'the rig "{armature.name}" with {bones}']
         if self._rest is not None:
             action = self._keep_rest(armature)
@@ -148,11 +162,11 @@ class RigTransfer:
     def _keep_rest(self, armature: bpy.types.Object) -> str:
         """Keep the rest pose as an action."""
         rest = cast("RestPose", self._rest)
-        moves = np.tile(np.eye(4), (len(self._names), 1, 1))
+        moves = np.tile(np.eye(4), (len(self.names), 1, 1))
         moves[:, :3, :3] = rest.turns
         moves[:, :3, 3] = rest.heads - np.einsum("bij,bj->bi", rest.turns, rest.posed_heads)
         present = armature_of(armature).bones
-        wanted = {name: move for name, move in zip(self._names, moves, strict=True) if name in present}
+        wanted = {name: move for name, move in zip(self.names, moves, strict=True) if name in present}
         bases = pose_bases(armature, wanted)
         return keep_pose(armature, f"{armature.name} Rest", bases, show=self._settings.rest_shown).name
 

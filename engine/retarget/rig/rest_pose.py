@@ -10,7 +10,7 @@ import numpy as np
 
 from ...runtime.errors import RigError
 from .joint_carriers import carriers_of, moved_areas
-from .joint_placement import root_direction, standing
+from .joint_placement import PlacedJoints, root_direction, standing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
     from ...mesh.triangle_mesh import TriangleMesh
     from .fitted_rig import FittedRig
-    from .joint_placement import PlacedJoints
 
-__all__ = ["RestPose", "bend_angles", "is_posed", "rest_pose", "unposed"]
+__all__ = ["RestPose", "at_rest", "bend_angles", "is_posed", "length_ratio", "rest_pose", "unposed"]
 
 _LARGE_PART = 0.01
 """A bone is judged by its angle if it moves more than this part of the body: that of a finger is mostly noise."""
@@ -127,6 +126,41 @@ def rest_pose(
         lying = unposed(rig.registered, rig.weights, RestPose(placed.heads, heads, turns))
         heads[~rooted] += ((rig.registered @ down).max() - (lying @ down).max()) * down
     return RestPose(placed.heads, heads, turns)
+
+
+def at_rest(placed: PlacedJoints, rest: RestPose) -> PlacedJoints:
+    """Return the bones of the target as they lie in its rest pose: turned as in the source, with their own lengths."""
+    tails = rest.heads + np.einsum("bij,bj->bi", rest.turns, placed.tails - placed.heads)
+    normals = np.einsum("bij,bj->bi", rest.turns, placed.normals)
+    return PlacedJoints(rest.heads, tails, normals, rest.turns @ placed.rotations)
+
+
+def length_ratio(rig: FittedRig, source: TriangleMesh, rest: RestPose) -> float:
+    """Find how many times longer the large bones of the target are than those of the source, all together.
+
+    Parameters
+    ----------
+    rig : FittedRig
+        The rig.
+    source : TriangleMesh
+        The body that it moves.
+    rest : RestPose
+        The target at rest.
+
+    Returns
+    -------
+    float
+        By what movements of the whole body grow, such as steps; the mean scale of the bones if none hangs on another.
+    """
+    areas, above = moved_areas(rig, source), carriers_of(rig, source).above
+    judged = np.flatnonzero((areas > _LARGE_PART * areas.sum()) & (above >= 0))
+    before, after = (
+        float(np.linalg.norm(heads[judged] - heads[above[judged]], axis=1).sum())
+        for heads in (rig.skeleton.heads, rest.heads)
+    )
+    if not (before > 0 and after > 0):
+        return float(np.average(rig.scales, weights=areas))
+    return after / before
 
 
 def unposed(vertices: NDArray[np.float64], weights: csr_array, rest: RestPose) -> NDArray[np.float64]:

@@ -14,6 +14,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Source": "ソース",
     "Name of the source object": "ソースオブジェクトの名前",
     "Target": "ターゲット",
+    "Name of the target object; of several, of the last one": (
+        "ターゲットオブジェクトの名前。複数ある場合は最後のもの"
+    ),
     "Name of the target object": "ターゲットオブジェクトの名前",
     "Distortion": "歪み",
     "Distortion of the whole match": "マッチング全体の歪み",
@@ -257,6 +260,49 @@ MESSAGES: Final[dict[str, str]] = {
     "What is being done": "実行中の作業",
     "Cancel": "キャンセル",
     "Whether the running match is to end": "実行中のマッチングを終了するかどうか",
+    "Question": "質問",
+    "What has to be answered before the work goes on, one sentence per line": (
+        "作業を続ける前に答える必要があること。一行に一文"
+    ),
+    "Answer": "回答",
+    "The answer; empty as long as there is none": "回答。まだないうちは空",
+    "Say what is to become of a match that is not to be trusted": "信頼できないマッチングをどうするかを決めます",
+    "What is to be done": "どうするか",
+    "Match Again with Landmarks": "ランドマークでやり直す",
+    "Write nothing, name corresponding places by clicks, and match again": (
+        "何も書き込まず、対応する場所をクリックで示してから、もう一度マッチングします"
+    ),
+    "Write Anyway": "そのまま書き込む",
+    "Carry everything across the match as it is; one Undo takes it back": (
+        "今のマッチングのまま引き継ぎます。一回の「元に戻す」で取り消せます"
+    ),
+    "Write nothing": "何も書き込みません",
+    "Waiting for an answer": "回答を待っています",
+    "Nothing is asked": "何も質問されていません",
+    "Nothing was written. Name corresponding places by clicks, and match again": (
+        "何も書き込まれていません。対応する場所をクリックで示して、もう一度マッチングしてください"
+    ),
+    "The match is doubtful": "このマッチングは疑わしいものです",
+    'The match with "{0}" is doubtful. {1}': "「{0}」とのマッチングは疑わしいものです。{1}",
+    (
+        'The match of "{0}" and "{1}" is doubtful, and nothing was written. {2} Add landmarks and match '
+        "again, or set Accept Doubtful to write it all the same."
+    ): (
+        "「{0}」と「{1}」のマッチングは疑わしいため、何も書き込まれていません。{2}ランドマークを加えてもう一"
+        "度マッチングするか、それでも書き込むには「疑わしくても書き込む」を設定してください。"
+    ),
+    "Confidence {0}: {1}": "信頼度{0}：{1}",
+    "Confidence {0}: {1} Note: {2}": "信頼度{0}：{1}注意：{2}",
+    (
+        '"{0}" is open at {1} ends and looks like a garment for "{2}": fit it with Wear instead, or leave '
+        "out of the other mesh what it lacks."
+    ): (
+        "「{0}」は{1}か所の端が開いており、「{2}」の衣服のように見えます。代わりに「着せる」で合わせるか、こ"
+        "れにない部分をもう一方のメッシュから除外してください。"
+    ),
+    '"{0}" looks like a part of "{1}": name what it lacks under Leave Out, and match again.': (
+        "「{0}」は「{1}」の一部のように見えます。これにない部分を「除外」で指定して、もう一度マッチングしてください。"
+    ),
     "Match": "マッチング",
     (
         "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
@@ -453,6 +499,31 @@ MESSAGES: Final[dict[str, str]] = {
         "ターゲットであるオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ"
     ),
     "Pick Landmarks": "ランドマークを指定",
+    "Guide Me": "案内に従う",
+    (
+        "Click on nose, hands and feet of both meshes as you are asked for them; S leaves one out. After the "
+        "last one, or Enter, the two are matched again with these landmarks"
+    ): (
+        "求められた順に、両方のメッシュの鼻、手、足をクリックします。Sで飛ばせます。最後まで進むかEnterを押す"
+        "と、これらのランドマークでもう一度マッチングします"
+    ),
+    "Nose": "鼻",
+    "Left Hand": "左手",
+    "Right Hand": "右手",
+    "Left Foot": "左足",
+    "Right Foot": "右足",
+    "Tail": "尾",
+    '{0} ({1} of {2}): click on it on "{3}"    S: leave out': (
+        "{0}（{1}/{2}）：「{3}」の上でクリックしてください    S：飛ばす"
+    ),
+    'Click on "{0}" first, or press S to leave this place out.': (
+        "先に「{0}」をクリックするか、Sを押してこの場所を飛ばしてください。"
+    ),
+    "No landmark was added, so there is nothing new to match by": (
+        "ランドマークが加わっていないので、新しくマッチングする手がかりはありません"
+    ),
+    "Matching again with {0} landmarks": "{0}個のランドマークでもう一度マッチングしています",
+    "What the landmark is called; double-click to change it": "ランドマークの名前。ダブルクリックで変更できます",
     (
         "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
         "ends it"
@@ -563,6 +634,16 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "How long it took": "かかった時間",
     "Refine with Rig": "リグで改良",
+    "Accept Doubtful": "疑わしくても書き込む",
+    (
+        "Write the result also if the match is not to be trusted, with a confidence below 30 percent. In a "
+        "window you are asked"
+    ): "マッチングが信頼できない（信頼度が30％未満の）場合にも結果を書き込みます。ウィンドウでは確認されます",
+    "How far the matches can be trusted, one sentence per line; empty if that is unknown": (
+        "マッチングをどこまで信頼できるか。一行に一文。不明な場合は空"
+    ),
+    "Doubtful": "疑わしい",
+    "Whether one of the matches is not to be trusted": "信頼できないマッチングがあるかどうか",
     (
         "If the source has a rig, fit it into the target and make the map of the match better with it, once for "
         "each match. It takes some seconds, and weights, joints and shape keys gain much"
@@ -600,6 +681,37 @@ MESSAGES: Final[dict[str, str]] = {
     "Keep": "維持",
     "Leave it as it is, and make another one": "そのままにして、別のものを作ります",
     "Bind": "バインド",
+    "Rest Pose like the Source's": "ソースと同じレストポーズ",
+    (
+        "Whether to bring the target to the rest pose of the source, so that the source's actions play on "
+        "it. How it stood is kept as an action"
+    ): (
+        "ターゲットをソースのレストポーズにして、ソースのアクションがそのまま再生されるようにするかどうか。元"
+        "の立ち方はアクションとして残ります"
+    ),
+    "If It Has Actions": "アクションがあれば",
+    "If the rig of the source has an action or strips of actions": (
+        "ソースのリグにアクションまたはアクションストリップがある場合"
+    ),
+    "Always": "常に",
+    "Also for actions that are to come later": "後から作るアクションのためにも",
+    "Never": "しない",
+    "The pose that the target stands in becomes its rest pose": "ターゲットの今のポーズがレストポーズになります",
+    "Rest Pose": "レストポーズ",
+    "a rest pose like the source's": "ソースと同じレストポーズ",
+    (
+        '"{0}" has the rest pose of "{1}" now, in which the actions of "{2}" play. How it stood is kept as '
+        'the action "{3}".'
+    ): (
+        "「{0}」は「{1}」のレストポーズになり、「{2}」のアクションが再生できます。元の立ち方はアクション「{3}"
+        "」に残してあります。"
+    ),
+    "The rest pose stays as it was, and the source's actions do not play as they should: {0}.": (
+        "レストポーズは元のままで、ソースのアクションは正しく再生されません。理由：{0}。"
+    ),
+    '"{0}" is moved by the armature "{1}" as well': "「{0}」はアーマチュア「{1}」にも動かされています",
+    '"{0}" has no weights for the bones of "{1}"': "「{0}」には「{1}」のボーンのウェイトがありません",
+    '"{0}" shares its mesh data with other objects': "「{0}」はメッシュデータを他のオブジェクトと共有しています",
     (
         "Give the target an Armature modifier, set as the source's, and the armature as its parent if the source "
         "has its own as parent"
@@ -914,6 +1026,55 @@ MESSAGES: Final[dict[str, str]] = {
         "手にない部分は周囲に従います"
     ),
     "Symmetrise": "対称化",
+    "Test Poses": "ポーズのテスト",
+    (
+        "Bend every joint of the target's rig in turn, with a marker for each on the timeline; pressed "
+        "again, all of it is taken away"
+    ): (
+        "ターゲットのリグの関節を一つずつ順に曲げます。タイムラインにそれぞれのマーカーが付きます。もう一度押"
+        "すと、すべて取り除かれます"
+    ),
+    (
+        "Name of the mesh or armature; if empty, the one picked in the panel, that of the last retarget, or "
+        "else the active object"
+    ): (
+        "メッシュまたはアーマチュアの名前。空の場合は、パネルで選んだもの、最後のリターゲットのもの、またはア"
+        "クティブオブジェクト"
+    ),
+    "Remove": "取り除く",
+    "Take test poses away, and make none if there are none": "テスト用のポーズを取り除きます。なければ何も作りません",
+    'The test poses of "{0}" are gone': "「{0}」のテスト用ポーズを取り除きました",
+    'No bone of "{0}" moves a mesh. Transfer the weights first.': (
+        "「{0}」にはメッシュを動かすボーンがありません。先にウェイトを転送してください。"
+    ),
+    '"{0}" bends {1} in {2} frames. Space plays it, the button ends it': (
+        "「{0}」は{1}を{2}フレームで曲げます。スペースキーで再生し、ボタンで終わります"
+    ),
+    "Before and After": "前と後",
+    (
+        "Show the target as it stood before it got rig and shape keys; pressed again, as it is now, with the "
+        "pose that it was in"
+    ): "リグとシェイプキーを受け取る前のターゲットを表示します。もう一度押すと、今の状態とポーズに戻ります",
+    (
+        "Name of the mesh; if empty, the one picked in the panel, that of the last retarget, or else the active object"
+    ): "メッシュの名前。空の場合は、パネルで選んだもの、最後のリターゲットのもの、またはアクティブオブジェクト",
+    '"{0}" is no mesh. Pick the mesh that got a rig as the Target.': (
+        "「{0}」はメッシュではありません。リグを受け取ったメッシュをターゲットに選んでください。"
+    ),
+    '"{0}" is shown as it is': "「{0}」を今の状態で表示しています",
+    '"{0}" is shown as it was before': "「{0}」を元の状態で表示しています",
+    '"{0}" has no rig or shape keys that came from a source. Retarget it first.': (
+        "「{0}」にはソースから来たリグもシェイプキーもありません。先にリターゲットしてください。"
+    ),
+    "It is open which character is meant. Pick it as the Target, or make it the active object.": (
+        "どのキャラクターかが決まっていません。ターゲットに選ぶか、アクティブオブジェクトにしてください。"
+    ),
+    '"{0}" has no armature that could bend it. Retarget it with Rig on first.': (
+        "「{0}」には曲げるためのアーマチュアがありません。先に「リグ」をオンにしてリターゲットしてください。"
+    ),
+    '"{0}" is linked from another file and cannot be posed. Make it local first.': (
+        "「{0}」は他のファイルからリンクされており、ポーズを付けられません。先にローカル化してください。"
+    ),
     (
         "Take weights, shape keys and colors of one side of a mesh to its other side, also if its pose or its "
         "topology is not symmetric"
@@ -1166,11 +1327,32 @@ MESSAGES: Final[dict[str, str]] = {
     "Left and Right": "左右",
     "Time": "時間",
     "none": "なし",
-    "unclear": "不明",
     "kept": "保持",
+    "finished": "完了",
+    "ended early, at most {gap} from the best": "途中で終了。最良との差は最大{gap}",
+    "unclear, look at the colors": "不明。色を見て確かめてください",
+    "good": "良好",
+    "fair": "まずまず",
+    "look closely": "よく確かめてください",
+    "do not trust it": "信頼できません",
+    "little": "わずか",
+    "some": "いくらか",
+    "much, the builds differ": "大きい。体型が異なります",
+    "very much": "非常に大きい",
+    "Search": "探索",
+    "Details": "詳細",
+    "Options": "オプション",
+    "Demo and Files": "デモとファイル",
+    "How distances are measured, and by what a place is recognised in another pose": (
+        "距離の測り方と、別のポーズで場所を見分ける手がかり"
+    ),
+    "The first step: a few points, for which all combinations are looked through": (
+        "最初の段階：少数の点について、すべての組み合わせを調べます"
+    ),
+    "The steps after: more points, each sought near where those around it lie": (
+        "次の段階：点を増やし、それぞれを周りの点の近くで探します"
+    ),
     "exchanged": "入れ替わり",
-    "optimum proven": "最適と証明済み",
-    "within {gap} of the best": "最適値との差は{gap}以内",
     "{count} points matched": "{count}個のポイントをマッチングしました",
     "Custom": "カスタム",
     "Metric and Descriptor": "距離と記述子",

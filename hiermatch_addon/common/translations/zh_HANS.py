@@ -14,6 +14,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Source": "源",
     "Name of the source object": "源物体的名称",
     "Target": "目标",
+    "Name of the target object; of several, of the last one": "目标物体的名称；有多个时为最后一个",
     "Name of the target object": "目标物体的名称",
     "Distortion": "畸变",
     "Distortion of the whole match": "整个匹配的畸变",
@@ -220,6 +221,39 @@ MESSAGES: Final[dict[str, str]] = {
     "What is being done": "正在进行的工作",
     "Cancel": "取消",
     "Whether the running match is to end": "是否要结束正在运行的匹配",
+    "Question": "问题",
+    "What has to be answered before the work goes on, one sentence per line": "继续之前需要回答的内容，每行一句",
+    "Answer": "回答",
+    "The answer; empty as long as there is none": "回答；尚无回答时为空",
+    "Say what is to become of a match that is not to be trusted": "决定如何处理不可信的匹配",
+    "What is to be done": "怎么做",
+    "Match Again with Landmarks": "用地标重新匹配",
+    "Write nothing, name corresponding places by clicks, and match again": (
+        "不写入任何内容，点击指出对应的位置，然后重新匹配"
+    ),
+    "Write Anyway": "仍然写入",
+    "Carry everything across the match as it is; one Undo takes it back": "按现有匹配传递全部内容；撤销一次即可还原",
+    "Write nothing": "不写入任何内容",
+    "Waiting for an answer": "正在等待回答",
+    "Nothing is asked": "当前没有需要回答的问题",
+    "Nothing was written. Name corresponding places by clicks, and match again": (
+        "没有写入任何内容。请点击指出对应的位置，然后重新匹配"
+    ),
+    "The match is doubtful": "此匹配可疑",
+    'The match with "{0}" is doubtful. {1}': "与“{0}”的匹配可疑。{1}",
+    (
+        'The match of "{0}" and "{1}" is doubtful, and nothing was written. {2} Add landmarks and match '
+        "again, or set Accept Doubtful to write it all the same."
+    ): "“{0}”和“{1}”的匹配可疑，没有写入任何内容。{2}请添加地标后重新匹配；若仍要写入，请设置“接受可疑匹配”。",
+    "Confidence {0}: {1}": "置信度 {0}：{1}",
+    "Confidence {0}: {1} Note: {2}": "置信度 {0}：{1}注意：{2}",
+    (
+        '"{0}" is open at {1} ends and looks like a garment for "{2}": fit it with Wear instead, or leave '
+        "out of the other mesh what it lacks."
+    ): "“{0}”有 {1} 处开口，看起来像是“{2}”的衣服：请改用“穿戴”使其贴合，或在另一个网格中排除它所没有的部分。",
+    '"{0}" looks like a part of "{1}": name what it lacks under Leave Out, and match again.': (
+        "“{0}”看起来像是“{1}”的一部分：请在“排除”中指定它所没有的部分，然后重新匹配。"
+    ),
     "Match": "匹配",
     (
         "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
@@ -386,6 +420,22 @@ MESSAGES: Final[dict[str, str]] = {
         "作为目标的物体的名称；为空时使用面板中选取的物体，否则使用另一个选中的网格"
     ),
     "Pick Landmarks": "拾取地标",
+    "Guide Me": "引导我",
+    (
+        "Click on nose, hands and feet of both meshes as you are asked for them; S leaves one out. After the "
+        "last one, or Enter, the two are matched again with these landmarks"
+    ): "按提示依次点击两个网格的鼻子、手和脚；按 S 可跳过。完成最后一个或按 Enter 后，用这些地标重新匹配",
+    "Nose": "鼻子",
+    "Left Hand": "左手",
+    "Right Hand": "右手",
+    "Left Foot": "左脚",
+    "Right Foot": "右脚",
+    "Tail": "尾巴",
+    '{0} ({1} of {2}): click on it on "{3}"    S: leave out': "{0}（{1}/{2}）：请在“{3}”上点击    S：跳过",
+    'Click on "{0}" first, or press S to leave this place out.': "请先点击“{0}”，或按 S 跳过此处。",
+    "No landmark was added, so there is nothing new to match by": "没有添加地标，因此没有新的匹配依据",
+    "Matching again with {0} landmarks": "正在用 {0} 个地标重新匹配",
+    "What the landmark is called; double-click to change it": "地标的名称；双击可更改",
     (
         "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
         "ends it"
@@ -475,6 +525,16 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "How long it took": "所用时间",
     "Refine with Rig": "用绑定改善",
+    "Accept Doubtful": "接受可疑匹配",
+    (
+        "Write the result also if the match is not to be trusted, with a confidence below 30 percent. In a "
+        "window you are asked"
+    ): "即使匹配不可信（置信度低于 30%）也写入结果。在窗口中会询问您",
+    "How far the matches can be trusted, one sentence per line; empty if that is unknown": (
+        "各匹配的可信程度，每行一句；未知时为空"
+    ),
+    "Doubtful": "可疑",
+    "Whether one of the matches is not to be trusted": "是否有不可信的匹配",
     (
         "If the source has a rig, fit it into the target and make the map of the match better with it, once for "
         "each match. It takes some seconds, and weights, joints and shape keys gain much"
@@ -506,6 +566,29 @@ MESSAGES: Final[dict[str, str]] = {
     "Keep": "维持",
     "Leave it as it is, and make another one": "保持原样，另做一个",
     "Bind": "绑定",
+    "Rest Pose like the Source's": "与源相同的静置姿态",
+    (
+        "Whether to bring the target to the rest pose of the source, so that the source's actions play on "
+        "it. How it stood is kept as an action"
+    ): "是否将目标带到源的静置姿态，使源的动作可以在其上播放。它原来的姿势保存为一个动作",
+    "If It Has Actions": "若源有动作",
+    "If the rig of the source has an action or strips of actions": "源的骨架带有动作或动作片段时",
+    "Always": "始终",
+    "Also for actions that are to come later": "也为以后才有的动作做准备",
+    "Never": "从不",
+    "The pose that the target stands in becomes its rest pose": "目标当前的姿势成为其静置姿态",
+    "Rest Pose": "静置姿态",
+    "a rest pose like the source's": "与源相同的静置姿态",
+    (
+        '"{0}" has the rest pose of "{1}" now, in which the actions of "{2}" play. How it stood is kept as '
+        'the action "{3}".'
+    ): "“{0}”现在处于“{1}”的静置姿态，“{2}”的动作可以在其上播放。它原来的姿势保存为动作“{3}”。",
+    "The rest pose stays as it was, and the source's actions do not play as they should: {0}.": (
+        "静置姿态保持原样，源的动作无法正确播放：{0}。"
+    ),
+    '"{0}" is moved by the armature "{1}" as well': "“{0}”还受骨架“{1}”驱动",
+    '"{0}" has no weights for the bones of "{1}"': "“{0}”没有“{1}”各骨骼的权重",
+    '"{0}" shares its mesh data with other objects': "“{0}”与其他物体共用网格数据",
     (
         "Give the target an Armature modifier, set as the source's, and the armature as its parent if the source "
         "has its own as parent"
@@ -758,6 +841,45 @@ MESSAGES: Final[dict[str, str]] = {
         "the other mesh lacks follow their surroundings"
     ): "将源贴到已匹配的网格上，成为一个形态键，其滑块使一方变形为另一方。另一网格所缺的部分跟随其周围",
     "Symmetrise": "对称化",
+    "Test Poses": "测试姿势",
+    (
+        "Bend every joint of the target's rig in turn, with a marker for each on the timeline; pressed "
+        "again, all of it is taken away"
+    ): "依次弯曲目标骨架的每个关节，并在时间线上为每个关节放置标记；再按一次即全部移除",
+    (
+        "Name of the mesh or armature; if empty, the one picked in the panel, that of the last retarget, or "
+        "else the active object"
+    ): "网格或骨架的名称；为空时使用面板中选取的物体、上次重定向的物体，否则使用活动物体",
+    "Remove": "移除",
+    "Take test poses away, and make none if there are none": "移除测试姿势；若没有则不新建",
+    'The test poses of "{0}" are gone': "已移除“{0}”的测试姿势",
+    'No bone of "{0}" moves a mesh. Transfer the weights first.': "“{0}”没有驱动网格的骨骼。请先传递权重。",
+    '"{0}" bends {1} in {2} frames. Space plays it, the button ends it': (
+        "“{0}”在 {2} 帧内弯曲 {1}。按空格键播放，按此按钮结束"
+    ),
+    "Before and After": "前后对比",
+    (
+        "Show the target as it stood before it got rig and shape keys; pressed again, as it is now, with the "
+        "pose that it was in"
+    ): "显示目标获得骨架和形态键之前的样子；再按一次则恢复现在的样子和姿势",
+    (
+        "Name of the mesh; if empty, the one picked in the panel, that of the last retarget, or else the active object"
+    ): "网格的名称；为空时使用面板中选取的物体、上次重定向的物体，否则使用活动物体",
+    '"{0}" is no mesh. Pick the mesh that got a rig as the Target.': "“{0}”不是网格。请将获得骨架的网格选为目标。",
+    '"{0}" is shown as it is': "“{0}”以现在的样子显示",
+    '"{0}" is shown as it was before': "“{0}”以之前的样子显示",
+    '"{0}" has no rig or shape keys that came from a source. Retarget it first.': (
+        "“{0}”没有来自源的骨架或形态键。请先重定向。"
+    ),
+    "It is open which character is meant. Pick it as the Target, or make it the active object.": (
+        "不清楚指的是哪个角色。请将其选为目标，或设为活动物体。"
+    ),
+    '"{0}" has no armature that could bend it. Retarget it with Rig on first.': (
+        "“{0}”没有可以使其弯曲的骨架。请先开启“骨架”进行重定向。"
+    ),
+    '"{0}" is linked from another file and cannot be posed. Make it local first.': (
+        "“{0}”链接自其他文件，无法摆姿势。请先将其本地化。"
+    ),
     (
         "Take weights, shape keys and colors of one side of a mesh to its other side, also if its pose or its "
         "topology is not symmetric"
@@ -966,11 +1088,30 @@ MESSAGES: Final[dict[str, str]] = {
     "Left and Right": "左右",
     "Time": "时间",
     "none": "无",
-    "unclear": "不明确",
     "kept": "保持",
+    "finished": "已完成",
+    "ended early, at most {gap} from the best": "提前结束，与最优解最多相差 {gap}",
+    "unclear, look at the colors": "不明确，请查看颜色",
+    "good": "良好",
+    "fair": "尚可",
+    "look closely": "请仔细检查",
+    "do not trust it": "不可信",
+    "little": "很小",
+    "some": "有一些",
+    "much, the builds differ": "较大，体型不同",
+    "very much": "非常大",
+    "Search": "搜索",
+    "Details": "详细信息",
+    "Options": "选项",
+    "Demo and Files": "演示与文件",
+    "How distances are measured, and by what a place is recognised in another pose": (
+        "距离如何度量，以及在另一姿势中凭什么识别位置"
+    ),
+    "The first step: a few points, for which all combinations are looked through": "第一步：对少量点检查所有组合",
+    "The steps after: more points, each sought near where those around it lie": (
+        "后续步骤：增加更多点，并在周围各点附近寻找"
+    ),
     "exchanged": "互换",
-    "optimum proven": "已证明最优",
-    "within {gap} of the best": "与最优值相差不超过 {gap}",
     "{count} points matched": "已匹配 {count} 个点",
     "Custom": "自定义",
     "Metric and Descriptor": "度量与描述符",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...transfers.options.rig import RigOptions, rig_settings
+from ...transfers.rest_like_source import RestLikeSource
 from ...transfers.rig import RigTransfer
 from .transfer_operator import TransferOperator
 
@@ -28,5 +29,8 @@ class HIERMATCH_OT_fit_rig(RigOptions, TransferOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
+    optional = True  # the rest pose is; without a rig there is none either
+
     def _transfers(self) -> list[Transfer]:
-        return [RigTransfer(rig_settings(self))]
+        rig = RigTransfer(rig_settings(self))
+        return [rig, RestLikeSource(rig_settings(self), rig)]

@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...common.access import view_layer_of
+from ...common.access import view_layer_of, window_manager_of
 from ...common.errors import ObjectError
+from ...common.redraw import redraw_sidebars
 from ...common.translated_text import translated
 from ...jobs.job import job_options
 from ...jobs.job_operator import JobOperator
-from ...jobs.running import can_start
+from ...jobs.running import can_start, start_soon
 from ...jobs.transfer_job import TransferJob, TransferOptions
+from ...panels.question import draw_question
 from ...properties.freshness import refresh
-from ...properties.panel_state import pick_named, picked, state_of
+from ...properties.panel_state import pick_named, picked, progress_of, state_of
 from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import remember
 from ...scene.character import side_of
@@ -29,11 +31,15 @@ if TYPE_CHECKING:
 
     from ...jobs.transfer import Transfer
     from ...jobs.transfer_job import Carried
+    from ...jobs.verdict import Verdict
     from ...scene.character import Side
 
 __all__ = ["TransferOperator"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+_MENU_WIDTH = 64
+"""Letters in a line of the menu that asks."""
 
 
 class TransferOperator(JobOperator):
@@ -71,6 +77,12 @@ class TransferOperator(JobOperator):
             "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
             default=True,
         ),
+        "accept_doubtful": _props.BoolProperty(
+            name="Accept Doubtful",
+            description="Write the result also if the match is not to be trusted, with a confidence below 30 percent. "
+            "In a window you are asked",
+            options={"SKIP_SAVE"},
+        ),
     }
 
     if TYPE_CHECKING:
@@ -79,6 +91,7 @@ class TransferOperator(JobOperator):
         targets: Any
         prefix: str
         refine: bool
+        accept_doubtful: bool
 
     doing = "Carrying over"
     cancelled = "It was cancelled. Nothing was written"
@@ -87,6 +100,7 @@ class TransferOperator(JobOperator):
 
     _named = ("", "")  # what a script has called source and target
     _left_out = ""  # which parts of the source's own character, as a sentence
+    _asks = False  # whether there is somebody to be asked about a doubtful match
 
     def _transfers(self) -> list[Transfer]:
         """Make the transfers for one target, of the operator's options."""
@@ -108,7 +122,14 @@ class TransferOperator(JobOperator):
         state = state_of(context)
         source, targets = self._pick(context)
         match = replace(job_options(state), prefix=self.prefix or state.prefix)
-        options = TransferOptions(match, self.prefix, refine=self.refine, optional=self.optional)
+        options = TransferOptions(
+            match,
+            self.prefix,
+            refine=self.refine,
+            optional=self.optional,
+            accept_doubtful=self.accept_doubtful,
+            asks=self._asks,
+        )
         job = TransferJob(context, source, targets, self._transfers, options)
         names = [item.name for item in self.targets] or [self.target]
         self._named = self.source, names[0] if len(names) == 1 else ""
@@ -118,6 +139,51 @@ class TransferOperator(JobOperator):
         for target in targets:
             self.targets.add().name = name_of(view_layer_of(context), target)
         return job
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
+        """Do it in slices, and ask about a match that is not to be trusted."""
+        self._asks = True
+        return super().invoke(context, event)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
+        """Go on with the work, but for as long as it is open whether to write what is doubtful."""
+        job = cast("TransferJob", self._job)
+        doubts = job.doubts
+        progress = progress_of(context)
+        if not doubts or progress.cancel or (event.type == "ESC" and event.value == "PRESS"):
+            return super().modal(context, event)
+        if not progress.question:
+            self._ask(context, doubts)
+        if progress.answer == "WRITE":
+            self.accept_doubtful = True  # Adjust Last Operation does not ask again
+            job.accept()
+            progress.question = progress.answer = ""
+        elif progress.answer == "LANDMARKS":
+            self.cancel(context)
+            self.report(
+                {"INFO"}, translated("Nothing was written. Name corresponding places by clicks, and match again")
+            )
+            start_soon(context, "hiermatch.guide_me")
+            return {"CANCELLED"}
+        return {"PASS_THROUGH"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """End the run, and take the question back."""
+        progress_of(context).question = progress_of(context).answer = ""
+        super().cancel(context)
+
+    def _ask(self, context: bpy.types.Context, doubts: list[tuple[str, Verdict]]) -> None:
+        """Ask in a menu under the mouse; the panel asks the same, for as long as there is no answer."""
+        progress = progress_of(context)
+        lines = [f'The match with "{target}" is doubtful. {verdict.said}' for target, verdict in doubts]
+        progress.question, progress.answer = "\n".join(lines), ""
+
+        def draw(menu: bpy.types.UIPopupMenu, _context: bpy.types.Context) -> None:
+            draw_question(cast("Any", menu).layout, lines, _MENU_WIDTH)
+
+        if not bpy.app.background:  # where a menu would bring Blender down
+            window_manager_of(context).popup_menu(draw, title=translated("The match is doubtful"), icon="ERROR")
+        redraw_sidebars(window_manager_of(context))
 
     def _finish(self, context: bpy.types.Context, job: TransferJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
@@ -131,7 +197,7 @@ class TransferOperator(JobOperator):
                 remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
         pick_named(state_of(context), *self._named)
         refresh(scene)
-        remember_transfer(context, carried, self._left_out)
+        remember_transfer(context, self.source, carried, self._left_out)
         self._report(carried)
         return {"FINISHED"}
 
@@ -148,6 +214,8 @@ class TransferOperator(JobOperator):
             done = [report.done for report in one.reports if report.done]
             said = ", ".join(done) if done else "nothing"
             self.report({"INFO"}, translated(f'Carried to "{one.target}" in {one.seconds:.1f} s: {said}'))
+            if one.verdict is not None:
+                self.report({"WARNING" if one.verdict.doubtful else "INFO"}, translated(one.verdict.said))
 
     def _pick(self, context: bpy.types.Context) -> tuple[Side, list[Side]]:
         """Find the source and the targets: by name, else as picked in the panel, else as selected.

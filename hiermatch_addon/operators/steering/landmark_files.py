@@ -14,7 +14,7 @@ from ...common.errors import ObjectError
 from ...common.translated_text import translated
 from ...jobs.running import can_start
 from ...storage.landmark_files import landmarks_from_text, landmarks_to_text
-from ...storage.landmarks import add_landmarks, clear_landmarks, find_landmarks, switch_landmark
+from ...storage.landmarks import add_landmarks, clear_landmarks, find_landmarks, rename_landmark, switch_landmark
 from .landmark_operator import LandmarkOperator
 
 if TYPE_CHECKING:
@@ -115,6 +115,7 @@ class HIERMATCH_OT_load_landmarks(_FileOperator, bpy.types.Operator):
         for read, added in zip(landmarks, add_landmarks(source, target, pairs), strict=True):
             if not read.use:
                 switch_landmark(source, target, added.number, use=False)
+            rename_landmark(source, target, added.number, read.name)
         for note in notes:
             self.report({"WARNING"}, translated(note))
         return f'Loaded {len(landmarks)} landmarks from "{path.name}"'

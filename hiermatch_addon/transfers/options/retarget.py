@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import bpy
 
 from ..attributes import AttributeTransfer
+from ..rest_like_source import RestLikeSource
 from ..rig import RigTransfer
 from ..shape_keys import ShapeKeyTransfer
 from ..uvs import UVTransfer
@@ -80,13 +81,15 @@ def option_names(kind: type[Any]) -> tuple[str, ...]:
 def chosen_transfers(options: RetargetOptions, prefix: str) -> list[Transfer]:
     """Make a transfer for each kind that is switched on, in the order in which they are written.
 
-    The weights come before the rig, so that the rig finds them when it is bound.
+    The weights come before the rig, so that the rig finds them when it is bound; another rest pose comes after all.
     """
+    rig = RigTransfer(rig_settings(options))
     made: list[tuple[bool, Transfer]] = [
         (options.use_weights, WeightTransfer(weight_settings(options, prefix))),
-        (options.use_rig, RigTransfer(rig_settings(options))),
+        (options.use_rig, rig),
         (options.use_shape_keys, ShapeKeyTransfer(shape_key_settings(options))),
         (options.use_uvs, UVTransfer(uv_settings(options))),
         (options.use_attributes, AttributeTransfer(attribute_settings(options))),
+        (options.use_rig, RestLikeSource(rig_settings(options), rig)),
     ]
     return [transfer for chosen, transfer in made if chosen]

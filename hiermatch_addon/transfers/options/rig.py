@@ -29,6 +29,8 @@ class RigSettings:
         Whether the new armature takes it.
     pose : str
         Whether the target is in another pose than the source: "AUTO", "POSED" or "REST".
+    like_source : str
+        Whether the target is brought to a rest pose like the source's: "AUTO" if the source has actions, "ON" or "OFF".
     """
 
     existing: str = "UPDATE"
@@ -36,6 +38,7 @@ class RigSettings:
     rest: bool = False
     rest_shown: bool = False
     pose: str = "AUTO"
+    like_source: str = "AUTO"
 
 
 class RigOptions:
@@ -56,6 +59,17 @@ class RigOptions:
             description="Give the target an Armature modifier, set as the source's, and the armature as its parent if "
             "the source has its own as parent",
             default=True,
+        ),
+        "rest_pose_like_source": _props.EnumProperty(
+            name="Rest Pose like the Source's",
+            description="Whether to bring the target to the rest pose of the source, so that the source's actions play "
+            "on it. How it stood is kept as an action",
+            items=[
+                ("AUTO", "If It Has Actions", "If the rig of the source has an action or strips of actions"),
+                ("ON", "Always", "Also for actions that are to come later"),
+                ("OFF", "Never", "The pose that the target stands in becomes its rest pose"),
+            ],
+            default="AUTO",
         ),
         "rig_rest": _props.BoolProperty(
             name="Also Rest Pose",
@@ -81,6 +95,7 @@ class RigOptions:
     if TYPE_CHECKING:
         rig_existing: str
         rig_bind: bool
+        rest_pose_like_source: str
         rig_rest: bool
         rig_rest_shown: bool
         rig_pose: str
@@ -89,5 +104,10 @@ class RigOptions:
 def rig_settings(options: RigOptions) -> RigSettings:
     """Make the settings of the options."""
     return RigSettings(
-        options.rig_existing, options.rig_bind, options.rig_rest, options.rig_rest_shown, options.rig_pose
+        options.rig_existing,
+        options.rig_bind,
+        options.rig_rest,
+        options.rig_rest_shown,
+        options.rig_pose,
+        options.rest_pose_like_source,
     )

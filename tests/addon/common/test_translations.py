@@ -25,7 +25,15 @@ ADDON = [path for path in sorted((ROOT / "hiermatch_addon").rglob("*.py")) if pa
 INTERFACE = [path for path in ADDON if path.parent.name != "command_line"]
 ENGINE = sorted((ROOT / "engine").rglob("*.py"))
 NAMES = {"HierMatch"}
-SENTENCES = {"NothingToCarryError", "ObjectError", "report", "Progress", "translated", "poll_message_set"}
+SENTENCES = {
+    "DoubtfulMatchError",
+    "NothingToCarryError",
+    "ObjectError",
+    "report",
+    "Progress",
+    "translated",
+    "poll_message_set",
+}
 
 
 def literals(node):

@@ -149,6 +149,7 @@ def test_all_buttons_are_there(context):
     operators = [entry[1] for entry in draw(context) if entry[0] == "operator"]
     assert operators == [
         "hiermatch.swap",
+        "hiermatch.add_demo_pair",  # as long as there is nothing to match
         "hiermatch.match",
         "hiermatch.clear",
         "hiermatch.add_demo_pair",
@@ -183,7 +184,7 @@ def test_it_says_what_to_do_until_there_are_two_meshes(context):
 
 def test_while_a_match_runs_there_are_a_bar_and_a_way_out(context):
     running = SimpleNamespace(bl_idname="HIERMATCH_OT_match", panel="HIERMATCH_PT_match")
-    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring", question="")
     context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
     drawn = draw(context)
     assert ("progress", "Measuring", 0.4) in drawn
@@ -193,7 +194,7 @@ def test_while_a_match_runs_there_are_a_bar_and_a_way_out(context):
 
 def test_while_something_else_runs_the_bar_is_where_it_was_started(context):
     running = SimpleNamespace(bl_idname="HIERMATCH_OT_retarget", panel="HIERMATCH_PT_retarget")
-    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring", question="")
     context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
     drawn = draw(context)
     assert not [entry for entry in drawn if entry[0] == "progress" or entry == ("operator", "hiermatch.cancel")]
@@ -215,7 +216,7 @@ def test_a_button_that_starts_a_job_is_its_name_while_one_runs(context):
     jobs = {"fit_rig", "flip", "retarget", "wrap", *(f"transfer_{kind}" for kind in KINDS)}
     assert starters() == {f"hiermatch.{job}" for job in (*jobs, "match")}
     running = SimpleNamespace(bl_idname="HIERMATCH_OT_flip", panel="HIERMATCH_PT_match")
-    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring", question="")
     context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
     assert starters() == {"hiermatch.retarget", "hiermatch.cancel"}
 
@@ -236,7 +237,7 @@ def test_the_last_result(context):
     shown = texts(draw(context))
     assert "12 points matched" in shown
     assert "Source Source Target Target" in shown
-    assert "optimum proven" in shown
+    assert "Search finished" in shown
     assert "kept" in shown
     assert "Worst Point" in shown
 
@@ -249,8 +250,8 @@ def test_what_is_not_proven_and_what_is_mirrored(context):
     shown = texts(drawn)
     assert ("panel", "hiermatch_notes", True) in drawn
     assert "2 notes" in shown
-    assert "within 25% of the best" in shown
-    assert "exchanged (-0.80)" in shown
+    assert "Search ended early, at most 25% from the best" in shown
+    assert "Left and Right exchanged" in shown
     assert "The source has two parts." in shown
     assert "Mind the gap." in shown
 
@@ -275,9 +276,34 @@ def test_how_far_the_dense_map_can_be_trusted(context):
     summary.verdict, summary.confidence, summary.stretch = "The map can be trusted.", 0.874, 0.123
     shown = texts(draw(context))
     assert "The map can be trusted." in shown
-    assert "Confidence 87%" in shown
-    assert "Distortion 12%" in shown
+    assert "Confidence 87%, good" in shown
+    assert "Distortion 12%, some" in shown
     assert "Worst Point" not in shown
+
+
+@pytest.mark.parametrize("confidence", [0.04, 0.29, 0.3, 0.9])
+def test_a_worthless_match_has_no_check_mark_but_a_way_on(context, monkeypatch, confidence):
+    icons = []
+    monkeypatch.setattr(Layout, "label", lambda _self, *, text, icon="", **_names: icons.append((text, icon)))
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.verdict, summary.confidence = 5, "So it is.", confidence
+    drawn = draw(context)
+    doubtful = confidence < 0.3
+    assert (("So it is.", "CHECKMARK") in icons) == (not doubtful)
+    assert (("So it is.", "ERROR") in icons) == doubtful
+    assert (("operator", "hiermatch.guide_me") in drawn) == doubtful
+
+
+def test_the_button_and_the_result_come_before_all_that_unfolds(context):
+    context.scene.hiermatch.summary.points = 5
+    kinds = [(kind, name) for kind, name, *_ in draw(context)]
+    first = kinds.index(("panel", "hiermatch_details"))
+    assert {("prop", "source"), ("prop", "target"), ("operator", "hiermatch.match")} <= set(kinds[:first])
+    drawn = []
+    panel = SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_retarget")
+    retarget_panels.HIERMATCH_PT_retarget.draw(panel, context)
+    assert drawn[0] == ("operator", "hiermatch.retarget")
+    assert all(closed for kind, _, *closed in [*draw(context), *drawn] if kind == "panel")
 
 
 def test_a_match_that_is_out_of_date(context):

@@ -72,6 +72,7 @@ def test_landmarks(context):
     drawn = draw("HIERMATCH_PT_landmarks", context)
     assert ("list", "HIERMATCH_UL_landmarks") in drawn
     assert operators(drawn) == [
+        "hiermatch.guide_me",
         "hiermatch.pick_landmarks",
         "hiermatch.add_landmark",
         "hiermatch.mirror_landmarks",
@@ -86,7 +87,7 @@ def test_landmarks(context):
 @pytest.mark.parametrize("panel", ["HIERMATCH_PT_landmarks", "HIERMATCH_PT_pairs"])
 def test_while_the_match_is_refined_there_are_a_bar_and_a_way_out(context, panel):
     running = SimpleNamespace(bl_idname="HIERMATCH_OT_refine", panel="HIERMATCH_PT_match")
-    progress = SimpleNamespace(fraction=0.4, label="Measuring")
+    progress = SimpleNamespace(fraction=0.4, label="Measuring", question="")
     context.window_manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running])], hiermatch=progress)
     drawn = draw(panel, context)
     assert ("progress", "Measuring", 0.4) in drawn

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far a match can be trusted that things are carried across, and what is doubtful about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from ...engine import open_ends
+
+if TYPE_CHECKING:
+    from ...engine import MatchQuality, TriangleMesh
+    from ..storage.stored_match import Quality
+
+__all__ = ["ANSWERS", "DOUBTFUL", "Verdict", "advice_on"]
+
+DOUBTFUL: Final = 0.3
+"""Below this confidence nothing is carried across a match unless the user wants it: more of it is wrong than right."""
+
+_ENDS_OF_GARMENT = 2
+"""A skirt has two open ends, trousers three, a shirt four; a bust or half a body is open where it was cut, once."""
+
+_PARTNERED, _MISSED = 0.85, 0.75
+"""One mesh is a part of the other if more of its area than the first has a partner, and less than the second of the
+other's area: a body without its hands still has nine tenths of it."""
+
+ANSWERS: Final = (
+    ("LANDMARKS", "Match Again with Landmarks", "Write nothing, name corresponding places by clicks, and match again"),
+    ("WRITE", "Write Anyway", "Carry everything across the match as it is; one Undo takes it back"),
+    ("CANCEL", "Cancel", "Write nothing"),
+)
+"""What can be done about a match that is not to be trusted, as items of a menu of Blender's."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is known of a match.
+
+    Attributes
+    ----------
+    confidence : float
+        How far it can be trusted, 0 to 1.
+    sentence : str
+        The same for a person to read.
+    advice : str
+        What the two meshes look like, such as a garment and a body, and what to do then; empty if like two bodies.
+    """
+
+    confidence: float
+    sentence: str
+    advice: str = ""
+
+    @classmethod
+    def of(cls, quality: MatchQuality | Quality, advice: str = "") -> Verdict:
+        """Take what matters of a quality."""
+        return cls(float(quality.confidence), quality.sentence, advice)
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether it is better not to carry anything across the match."""
+        return self.confidence < DOUBTFUL
+
+    @property
+    def said(self) -> str:
+        """All of it in a line."""
+        if self.advice:
+            return f"Confidence {self.confidence:.0%}: {self.sentence} Note: {self.advice}"
+        return f"Confidence {self.confidence:.0%}: {self.sentence}"
+
+
+def advice_on(
+    quality: Quality | MatchQuality, names: tuple[str, str], meshes: tuple[TriangleMesh, TriangleMesh]
+) -> str:
+    """Say what to do if one of two matched meshes looks like a garment for the other, or like a part of it.
+
+    Parameters
+    ----------
+    quality : Quality or MatchQuality
+        How far the match can be trusted, and how much of either mesh has a partner.
+    names : tuple of str
+        What source and target are called.
+    meshes : tuple of TriangleMesh
+        The two.
+
+    Returns
+    -------
+    str
+        A sentence; empty if they look like two whole bodies.
+    """
+    shares = (quality.source_coverage, quality.coverage)
+    for own, other in ((0, 1), (1, 0)):
+        if shares[other] >= _MISSED:
+            continue
+        ends = open_ends(meshes[own])
+        if ends >= _ENDS_OF_GARMENT and ends > open_ends(meshes[other]):
+            return (
+                f'"{names[own]}" is open at {ends} ends and looks like a garment for "{names[other]}": fit it with '
+                "Wear instead, or leave out of the other mesh what it lacks."
+            )
+        if shares[own] > _PARTNERED:
+            return (
+                f'"{names[own]}" looks like a part of "{names[other]}": name what it lacks under Leave Out, and match '
+                "again."
+            )
+    return ""

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pose of an armature, put aside in the file for a while, and brought back as it was."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Final, cast
+
+if TYPE_CHECKING:
+    import bpy
+
+__all__ = ["bring_back", "is_aside", "put_aside"]
+
+_STATE: Final = "hiermatch_pose_aside"
+"""Custom property of the armature: what was put aside, as a JSON text."""
+
+_ACTION: Final = "hiermatch_action_aside"
+"""Custom property of the armature: its action, as a pointer that follows renaming."""
+
+_CHANNELS: Final = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
+
+
+def is_aside(armature: bpy.types.Object, why: str) -> bool:
+    """Tell whether the pose of an armature was put aside for a purpose."""
+    return json.loads(cast("Any", armature).get(_STATE, "{}")).get("why") == why
+
+
+def put_aside(armature: bpy.types.Object, why: str) -> None:
+    """Remember pose, action and constraints of an armature, and let it stand at rest, played and held by nothing.
+
+    What another purpose put aside before is brought back first.
+    """
+    bring_back(armature)
+    owner: Any = armature
+    animation: Any = armature.animation_data or armature.animation_data_create()
+    slot = getattr(animation, "action_slot", None)
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    held = [(bone.name, one.name) for bone in bones for one in bone.constraints if not one.mute]
+    owner[_STATE] = json.dumps(
+        {
+            "why": why,
+            "slot": slot.identifier if slot is not None else "",
+            "nla": animation.use_nla,
+            "position": armature.data.pose_position,
+            "pose": {bone.name: [list(getattr(bone, channel)) for channel in _CHANNELS] for bone in bones},
+            "held": held,
+        }
+    )
+    if animation.action is not None:
+        owner[_ACTION] = animation.action
+    animation.action, animation.use_nla = None, False
+    armature.data.pose_position = "POSE"
+    for bone in bones:
+        bone.matrix_basis.identity()
+    for bone, name in held:
+        bones[bone].constraints[name].mute = True
+
+
+def bring_back(armature: bpy.types.Object) -> None:
+    """Undo `put_aside`; nothing if nothing was.  Bones and constraints that are gone since are passed over."""
+    owner: Any = armature
+    if _STATE not in owner:
+        return
+    state = json.loads(owner[_STATE])
+    animation: Any = armature.animation_data or armature.animation_data_create()
+    animation.action = owner.get(_ACTION)
+    if state["slot"] and animation.action is not None and state["slot"] in animation.action.slots:
+        animation.action_slot = animation.action.slots[state["slot"]]
+    animation.use_nla, owner.data.pose_position = state["nla"], state["position"]
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    for name, values in state["pose"].items():
+        if name in bones:
+            for channel, value in zip(_CHANNELS, values, strict=True):
+                setattr(bones[name], channel, value)
+    for name, constraint in state["held"]:
+        if name in bones and constraint in bones[name].constraints:
+            bones[name].constraints[constraint].mute = False
+    del owner[_STATE]
+    if _ACTION in owner:
+        del owner[_ACTION]

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the user calls landmarks, such as "Nose": kept on all meshes of both sides, by the landmarks' numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from ..common.access import mesh_of
+from ..scene.character import parts_of
+
+if TYPE_CHECKING:
+    from ..scene.character import Side
+
+__all__ = ["landmark_names", "name_landmark"]
+
+_NAMES: Final = "HM Landmark Names"
+"""Custom property of the mesh."""
+
+
+def landmark_names(side: Side) -> dict[int, str]:
+    """Return the names of a side's landmarks, by their numbers; those without a name are not there."""
+    found: dict[int, str] = {}
+    for part in parts_of(side):
+        mesh: Any = mesh_of(part)
+        found |= {int(number): str(name) for number, name in mesh.get(_NAMES, {}).items()}
+    return found
+
+
+def name_landmark(side: Side, number: int, name: str) -> None:
+    """Name a landmark of a side; an empty name takes its name away."""
+    for part in parts_of(side):
+        mesh: Any = mesh_of(part)
+        names = landmark_names(part)
+        if names.get(number, "") == name:
+            continue
+        names.pop(number, None)
+        if name:
+            names[number] = name
+        if names:
+            mesh[_NAMES] = {str(key): text for key, text in sorted(names.items())}
+        else:
+            del mesh[_NAMES]

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A target is shown as it was, and then again as it is."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+
+from tests.addon.operators.carrying.test_fit_rig import add_weights, shown
+from tests.addon.operators.carrying.test_fit_rig import fit as fit_rig
+from tests.addon.operators.carrying.test_rest_like_source import fit
+from tests.addon.rigs import add_rigged, add_target, pose
+
+
+@pytest.mark.parametrize("like_source", ["OFF", "ON"])
+def test_there_and_back(like_source):
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    add_weights(source, target)
+    for obj in (source, target):
+        obj.shape_key_add(name="Basis")
+        key = obj.shape_key_add(name="Swell")
+        key.data[0].co.z += 0.5
+        key.value = 0.0
+    own = target.shape_key_add(name="My own")
+    stood = shown(target)
+    made, _ = (fit_rig if like_source == "OFF" else fit)(source, target, like_source=like_source)
+    pose(made, 0.5, {"neck": (0.0, 0.0, 0.5)})
+    target.data.shape_keys.key_blocks["Swell"].value = 1.0
+    now = shown(target)
+    assert np.linalg.norm(now - stood, axis=1).max() > 0.15
+    state = bpy.context.scene.hiermatch
+    state.source, state.target = source, target
+    assert bpy.ops.hiermatch.before_after() == {"FINISHED"}
+    bpy.context.scene.frame_set(1)
+    np.testing.assert_allclose(shown(target), stood, atol=1e-3)
+    assert not own.mute
+    assert bpy.ops.hiermatch.before_after() == {"FINISHED"}
+    bpy.context.scene.frame_set(1)
+    np.testing.assert_allclose(shown(target), now, atol=1e-5)
+    assert not [name for name in (*target.keys(), *made.keys()) if name.startswith("hiermatch_before")]
+
+
+def test_what_got_nothing_has_no_before():
+    add_rigged()
+    with pytest.raises(RuntimeError, match="Retarget it first"):
+        bpy.ops.hiermatch.before_after(target="Source")

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hiermatch.engine import TriangleMesh
+from hiermatch.engine.retarget.open_ends import open_ends
+
+from tests.shapes import cylinder, icosphere, torus
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
+def test_a_tube_has_two_ends_and_closed_surfaces_none(scale):
+    for (vertices, triangles), count in ((cylinder(), 2), (icosphere(), 0), (torus(), 0)):
+        assert open_ends(TriangleMesh(scale * vertices + 5 * scale, triangles)) == count
+
+
+def test_a_small_hole_is_no_end():
+    vertices, triangles = icosphere()
+    assert open_ends(TriangleMesh(vertices, triangles[:-1])) == 0
+
+
+def test_a_seam_is_no_end():
+    """Every triangle on its own, as a mesh that was split everywhere: the tube is still open at its two ends only."""
+    vertices, triangles = cylinder()
+    loose = TriangleMesh(vertices[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
+    assert open_ends(loose) == 2
