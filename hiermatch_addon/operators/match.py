@@ -14,10 +14,10 @@ from ..jobs.job import MatchJob, job_options
 from ..jobs.job_operator import JobOperator
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
-from ..properties.panel_state import pick_named, picked, state_of
+from ..properties.panel_state import picked, state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
-from ..properties.summary import remember
+from ..properties.summary import pick_named, remember
 from ..scene.pair import find_pair, left_out_note, name_of, selected_targets
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     doing = "Matching"
     cancelled = "The match was cancelled. Nothing was written"
 
-    _named = ("", "")  # what a script has called source and target
+    _named = False  # whether a script says which two
     _left_out = ""  # which parts of the source's own character, as a sentence
 
     @classmethod
@@ -78,11 +78,11 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     def _start(self, context: bpy.types.Context) -> MatchJob:
         """Read both objects."""
         state = state_of(context)
+        self._named = bool(self.source and self.target)
         source, target = find_pair(context, (self.source, self.target), picked(state))
         parts = [] if self.target or picked(state)[1] else selected_targets(context, source)[1]
         self._left_out = left_out_note(source, parts) if parts else ""
         job = MatchJob(context, source, target, job_options(self))
-        self._named = self.source, self.target
         # So that Adjust Last Operation repeats the match of the same two, whatever is selected by then.
         layer = view_layer_of(context)
         self.source, self.target = name_of(layer, source), name_of(layer, target)
@@ -91,21 +91,22 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     def _finish(self, context: bpy.types.Context, job: MatchJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
         outcome = job.finish(view_layer_of(context))
+        if self._named:
+            pick_named(cast("bpy.types.Scene", context.scene), self.source, self.target)
         remember(
             state_of(context).summary, outcome.stored, (outcome.source, outcome.target), self.prefix, outcome.seconds
         )
-        pick_named(state_of(context), *self._named)
         refresh(cast("bpy.types.Scene", context.scene))
         if self._left_out:
             self.report({"INFO"}, translated(self._left_out))
         for note in outcome.stored.notes:
             self.report({"WARNING"}, translated(note))
         points, seconds = len(outcome.result.source_points), outcome.seconds
-        pair = f'"{outcome.source}" and "{outcome.target}"'
+        both = f'"{outcome.source}" and "{outcome.target}"'
         verdict = state_of(context).summary.verdict
         if verdict:
-            said = translated(f"Matched {points} points of {pair} in {seconds:.1f} s. {verdict}")
+            said = translated(f"Matched {points} points of {both} in {seconds:.1f} s. {verdict}")
         else:
-            said = translated(f"Matched {points} points of {pair} in {seconds:.1f} s")
+            said = translated(f"Matched {points} points of {both} in {seconds:.1f} s")
         self.report({"INFO"}, said)
         return {"FINISHED"}

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-import bpy
-
 if TYPE_CHECKING:
+    import bpy
+
     from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 
-__all__ = ["pick", "pick_named", "picked", "progress_of", "state_of", "summary_of"]
+__all__ = ["pick", "picked", "progress_of", "state_of", "summary_of"]
 
 
 def state_of(context: bpy.types.Context) -> HIERMATCH_PG_scene:
@@ -28,14 +28,6 @@ def pick(state: HIERMATCH_PG_scene, role: str, chosen: bpy.types.ID | None) -> N
     collection = chosen is not None and chosen.id_type == "COLLECTION"
     setattr(state, f"{role}_collection", chosen if collection else None)
     setattr(state, role, None if collection else chosen)
-
-
-def pick_named(state: HIERMATCH_PG_scene, source: str, target: str) -> None:
-    """Pick what a script has named, if nothing is picked, so that the panel shows what its summary tells of."""
-    chosen = [bpy.data.objects.get(name) or bpy.data.collections.get(name) for name in (source, target)]
-    if not any(picked(state)) and all(chosen):
-        for role, one in zip(("source", "target"), chosen, strict=True):
-            pick(state, role, one)
 
 
 def summary_of(scene: bpy.types.Scene) -> HIERMATCH_PG_summary:

@@ -3,18 +3,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
 
 from ..storage.stored_match import StoredMatch
-from .panel_state import summary_of
+from .panel_state import pick, picked, summary_of
 from .steering_lists import common_match
 
 if TYPE_CHECKING:
-    import bpy
-
     from .properties import HIERMATCH_PG_summary
 
-__all__ = ["remember", "remember_common"]
+__all__ = ["pick_named", "remember", "remember_common"]
 
 
 def remember(
@@ -50,6 +50,22 @@ def remember(
     summary.seconds = seconds
     summary.notes = "\n".join(stored.notes)
     summary.prefix, summary.key = prefix, stored.key
+
+
+def pick_named(scene: bpy.types.Scene, source: str, target: str) -> None:
+    """Show a pair that a script has named in the pickers, unless the user has picked others there.
+
+    To be called before `remember`: what the pickers show of the last match may be replaced.  What has no picker, such
+    as several objects named together, is passed over.
+    """
+    state: Any = cast("Any", scene).hiermatch
+    shown = tuple("" if chosen is None else chosen.name for chosen in picked(state))
+    if shown not in (("", ""), (state.summary.source, state.summary.target)):
+        return
+    found = [bpy.data.objects.get(name) or bpy.data.collections.get(name) for name in (source, target)]
+    for role, chosen in zip(("source", "target"), found, strict=True):
+        if all(found):
+            pick(state, role, chosen)
 
 
 def remember_common(scene: bpy.types.Scene) -> None:

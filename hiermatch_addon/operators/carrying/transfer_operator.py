@@ -19,9 +19,9 @@ from ...jobs.running import can_start, start_soon
 from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...panels.question import draw_question
 from ...properties.freshness import refresh
-from ...properties.panel_state import pick_named, picked, progress_of, state_of
+from ...properties.panel_state import picked, progress_of, state_of
 from ...properties.properties import PREFIX_LENGTH
-from ...properties.summary import remember
+from ...properties.summary import pick_named, remember
 from ...scene.character import side_of
 from ...scene.pair import active_side, left_out_note, name_of, named_side, selected_targets
 from ...transfers.retarget_properties import remember_transfer
@@ -98,8 +98,8 @@ class TransferOperator(JobOperator):
     panel = "HIERMATCH_PT_retarget"
     optional = False
 
-    _named = ("", "")  # what a script has called source and target
     _left_out = ""  # which parts of the source's own character, as a sentence
+    _named = False  # whether a script says which objects
     _asks = False  # whether there is somebody to be asked about a doubtful match
 
     def _transfers(self) -> list[Transfer]:
@@ -120,6 +120,7 @@ class TransferOperator(JobOperator):
     def _start(self, context: bpy.types.Context) -> TransferJob:
         """Read all objects."""
         state = state_of(context)
+        self._named = bool(self.source and (self.target or len(self.targets)))
         source, targets = self._pick(context)
         match = replace(job_options(state), prefix=self.prefix or state.prefix)
         options = TransferOptions(
@@ -131,8 +132,6 @@ class TransferOperator(JobOperator):
             asks=self._asks,
         )
         job = TransferJob(context, source, targets, self._transfers, options)
-        names = [item.name for item in self.targets] or [self.target]
-        self._named = self.source, names[0] if len(names) == 1 else ""
         # So that Adjust Last Operation repeats it with the same ones, whatever is selected by then.
         self.source = name_of(view_layer_of(context), source)
         self.targets.clear()
@@ -189,13 +188,14 @@ class TransferOperator(JobOperator):
         """Write, remember and report."""
         carried = job.finish(context)
         scene = cast("bpy.types.Scene", context.scene)
+        if self._named and len(carried) == 1:
+            pick_named(scene, self.source, self.targets[0].name)
         for one in carried:
             if one.outcome is not None:
                 outcome = one.outcome
                 names = (outcome.source, outcome.target)
                 prefix = self.prefix or state_of(context).prefix
                 remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
-        pick_named(state_of(context), *self._named)
         refresh(scene)
         remember_transfer(context, self.source, carried, self._left_out)
         self._report(carried)

@@ -19,8 +19,17 @@ __all__ = ["bandwidths", "confidence_colors", "distortion_colors", "match_colors
 NEUTRAL = 0.5
 """Grey (sRGB) of the places that no matched point can reach."""
 
-_SATURATION = 0.75
-"""Share of the grey in a colour that `match_colors` takes away."""
+_HUES = 290.0
+"""Degrees of the circle of hues that lie along a shape in `match_colors`: red to violet, so that no two ends meet."""
+
+_SHIFT = 50.0
+"""Degrees of hue between the two sides of a shape that is thin: less than from one limb to the next along it."""
+
+_PALE = 0.45
+"""Saturation at one side of a shape; at the other it is one."""
+
+_BRIGHT = 0.95
+"""Largest of red, green and blue, so that shading is still seen."""
 
 _STRAY = 0.002
 """Part of a surface that may lie beyond either end of the scale of `match_colors`."""
@@ -69,7 +78,8 @@ def match_colors(positions: NDArray[np.float64], weights: NDArray[np.float64] | 
     Returns
     -------
     (k, 3) array of float
-        sRGB colours: the place along the three principal axes as red, green and blue, brightened and made vivid.
+        sRGB colours: the place along the longest principal axis as the hue, from red to violet, along the second as how
+        vivid it is, and along the third as a shift of the hue.
     """
     stray = 0.0 if weights is None else _STRAY
     shares = np.full(len(positions), 1 / len(positions)) if weights is None else weights / weights.sum()
@@ -83,9 +93,10 @@ def match_colors(positions: NDArray[np.float64], weights: NDArray[np.float64] | 
     low, high = _ends(along, shares, stray)
     extent = high - low
     flat = extent <= 1e-6 * float(extent.max())
-    colors = np.where(flat, NEUTRAL, np.clip((along - low) / np.where(flat, 1.0, extent), 0.0, 1.0))
-    colors -= _SATURATION * colors.min(axis=1, keepdims=True)
-    return 0.95 * colors / np.maximum(colors.max(axis=1, keepdims=True), 1e-3)
+    along = np.where(flat, NEUTRAL, np.clip((along - low) / np.where(flat, 1.0, extent), 0.0, 1.0))
+    hue = (_HUES * along[:, :1] + _SHIFT * (along[:, 2:] - 0.5)) / 60 + np.array([0.0, 4.0, 2.0])  # of red, green, blue
+    vivid = np.clip(np.abs(hue % 6 - 3) - 1, 0.0, 1.0)
+    return _BRIGHT * (1 - (_PALE + (1 - _PALE) * along[:, 1:2]) * (1 - vivid))
 
 
 def _ends(

@@ -322,6 +322,19 @@ def test_no_time_is_shown_if_none_is_known(context):
     assert "Time 1.2 s" in texts(draw(context))
 
 
+def test_a_script_s_pair_stands_in_the_pickers(context):
+    """Unless the user has picked others."""
+    state = context.scene.hiermatch
+    pair = add_pair()
+    bpy.ops.hiermatch.match(source="Source", target="Target", **QUICK)
+    assert (state.source, state.target) == pair
+    bpy.ops.hiermatch.match(source="Target", target="Source", **QUICK)
+    assert (state.source, state.target) == pair[::-1]
+    state.source, state.target = pair[0], None
+    bpy.ops.hiermatch.match(source="Target", target="Source", **QUICK)
+    assert (state.source, state.target) == (pair[0], None)
+
+
 def test_drawing_changes_nothing(context):
     add_pair()
     bpy.ops.hiermatch.match(source="Source", target="Target", **QUICK)

@@ -34,6 +34,15 @@ class TestMatchColors:
         left, right = positions[:, 0] < -1.5, positions[:, 0] > 1.5
         assert np.linalg.norm(rgb[left].mean(axis=0) - rgb[right].mean(axis=0)) > 0.4
 
+    def test_all_thirds_of_a_long_shape_differ_wherever_else_they_are(self, random):
+        """Such as head, back and tail of an animal."""
+        positions = random.uniform(-1, 1, size=(3000, 3)) * [3, 1, 0.5]
+        rgb = colors.match_colors(positions)
+        thirds = [rgb[(positions[:, 0] >= low) & (positions[:, 0] < low + 0.6)] for low in (-3.0, -0.3, 2.4)]
+        for one, other in ((0, 1), (1, 2), (0, 2)):
+            apart = np.linalg.norm(thirds[one][:, None] - thirds[other][None], axis=2)
+            assert np.quantile(apart, 0.02) > 0.3
+
     def test_place_size_and_rotation_do_not_matter(self, random):
         positions = random.exponential(size=(60, 3)) * [5, 2, 1]
         turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
