@@ -24,6 +24,7 @@ from .retarget.motion.key_reduction import reduced_keys, slopes_of
 from .retarget.motion.motion_transfer import MotionSettings, TransferredMotion, transfer_motion, transfer_motion_steps
 from .retarget.motion.paired_weights import paired_weights
 from .retarget.motion.posed_motion import LocalTransforms, Motion, local_transforms, posed_motion
+from .retarget.motion.rotation_channels import rotation_channels, rotation_matrices
 from .retarget.open_ends import open_ends
 from .retarget.rig.fitted_rig import FittedRig
 from .retarget.rig.joint_placement import PlacedJoints, place_joints
@@ -136,6 +137,8 @@ __all__ = [
     "rest_pose",
     "retrieve",
     "retrieve_steps",
+    "rotation_channels",
+    "rotation_matrices",
     "row_sums",
     "run",
     "slopes_of",

@@ -16,6 +16,7 @@ from .operators.carrying.fit_rig import HIERMATCH_OT_fit_rig
 from .operators.carrying.retarget import HIERMATCH_OT_retarget
 from .operators.carrying.symmetrise import HIERMATCH_OT_symmetrise
 from .operators.carrying.transfer_attributes import HIERMATCH_OT_transfer_attributes
+from .operators.carrying.transfer_paired_weights import HIERMATCH_OT_transfer_paired_weights
 from .operators.carrying.transfer_shape_keys import HIERMATCH_OT_transfer_shape_keys
 from .operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
 from .operators.carrying.transfer_weights import HIERMATCH_OT_transfer_weights
@@ -28,6 +29,14 @@ from .operators.export_match import HIERMATCH_OT_export_match
 from .operators.flip import HIERMATCH_OT_flip
 from .operators.import_match import HIERMATCH_OT_import_match
 from .operators.match import HIERMATCH_OT_match
+from .operators.motion.bone_pair_files import HIERMATCH_OT_export_bone_pairs, HIERMATCH_OT_import_bone_pairs
+from .operators.motion.edit_bone_pairs import (
+    HIERMATCH_OT_add_bone_pair,
+    HIERMATCH_OT_clear_bone_pairs,
+    HIERMATCH_OT_remove_bone_pair,
+)
+from .operators.motion.pair_bones import HIERMATCH_OT_pair_bones
+from .operators.motion.retarget_action import HIERMATCH_OT_retarget_action, HIERMATCH_OT_retarget_pose
 from .operators.refine import HIERMATCH_OT_refine
 from .operators.show import HIERMATCH_OT_show, HIERMATCH_OT_write_regions
 from .operators.steering.add_landmark import HIERMATCH_OT_add_landmark
@@ -51,6 +60,7 @@ from .operators.use_setup import HIERMATCH_OT_use_setup
 from .overlay.drawing import start_overlay, stop_overlay
 from .overlay.hover import HIERMATCH_GGT_hover, HIERMATCH_GT_hover
 from .panels.match_panels import HIERMATCH_PT_match
+from .panels.motion_panels import HIERMATCH_PT_motion, HIERMATCH_UL_bone_pairs
 from .panels.preset_menu import HIERMATCH_OT_add_preset, HIERMATCH_PT_presets, register_presets, unregister_presets
 from .panels.retarget_panels import HIERMATCH_PT_retarget, HIERMATCH_PT_symmetry
 from .panels.steering_panels import (
@@ -61,6 +71,7 @@ from .panels.steering_panels import (
     HIERMATCH_UL_pairs,
 )
 from .properties.freshness import start_watching, stop_watching
+from .properties.motion_properties import HIERMATCH_PG_bone_pair, HIERMATCH_PG_motion
 from .properties.properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 from .properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
 from .transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
@@ -112,6 +123,18 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_symmetrise,
     HIERMATCH_OT_test_poses,
     HIERMATCH_OT_before_after,
+    HIERMATCH_PG_bone_pair,
+    HIERMATCH_PG_motion,
+    HIERMATCH_OT_pair_bones,
+    HIERMATCH_OT_retarget_action,
+    HIERMATCH_OT_retarget_pose,
+    HIERMATCH_OT_add_bone_pair,
+    HIERMATCH_OT_remove_bone_pair,
+    HIERMATCH_OT_clear_bone_pairs,
+    HIERMATCH_OT_export_bone_pairs,
+    HIERMATCH_OT_import_bone_pairs,
+    HIERMATCH_OT_transfer_paired_weights,
+    HIERMATCH_UL_bone_pairs,
     HIERMATCH_UL_landmarks,
     HIERMATCH_UL_pairs,
     HIERMATCH_OT_add_preset,
@@ -121,6 +144,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PT_landmarks,
     HIERMATCH_PT_pairs,
     HIERMATCH_PT_retarget,
+    HIERMATCH_PT_motion,
     HIERMATCH_PT_symmetry,
     HIERMATCH_GT_hover,
     HIERMATCH_GGT_hover,
@@ -130,10 +154,14 @@ CLASSES: Final[tuple[type[Any], ...]] = (
 _ATTACHMENTS: Final[tuple[tuple[type[Any], str, type[Any]], ...]] = (
     (bpy.types.Scene, "hiermatch", HIERMATCH_PG_scene),
     (bpy.types.Scene, "hiermatch_retarget", HIERMATCH_PG_retarget),
+    (bpy.types.Scene, "hiermatch_motion", HIERMATCH_PG_motion),
     (bpy.types.Scene, "hiermatch_steering", HIERMATCH_PG_steering),
     (bpy.types.WindowManager, "hiermatch", HIERMATCH_PG_progress),
 )
 """Each owner gets a property of that name and group."""
+
+_TABLE: Final = "hiermatch_bone_pairs"
+"""The scene's table of pairs of bones."""
 
 
 def register() -> None:
@@ -144,6 +172,10 @@ def register() -> None:
     properties: Any = bpy.props
     for owner, name, group in _ATTACHMENTS:
         setattr(owner, name, properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group))
+    table = properties.CollectionProperty(
+        name="Bone Pairs", description="Which bones of two armatures belong together", type=HIERMATCH_PG_bone_pair
+    )
+    setattr(bpy.types.Scene, _TABLE, table)
     register_presets()
     start_watching()
     register_command()
@@ -157,6 +189,7 @@ def unregister() -> None:
     unregister_command()
     stop_watching()
     unregister_presets()
+    delattr(bpy.types.Scene, _TABLE)
     for owner, name, _ in reversed(_ATTACHMENTS):
         delattr(owner, name)
     for cls in reversed(CLASSES):

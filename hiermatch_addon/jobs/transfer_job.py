@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from .job import JobOptions, Outcome
     from .transfer import Transfer
 
-__all__ = ["Carried", "TransferJob", "TransferOptions"]
+__all__ = ["Carried", "TransferJob", "TransferOptions", "carry_fresh_match"]
 
 _MATCHED, _FITTED = 0.5, 0.85
 """Where on a target's part of the progress bar a match, and the fitting of the rig, end."""
@@ -102,7 +102,7 @@ class _Leg:
         self.prefix = options.prefix
         self.quality: Quality | None = None
         self.verdict: Verdict | None = None
-        if _carry_fresh_match(source, target, options.prefix):
+        if carry_fresh_match(source, target, options.prefix):
             found = find_maps(source, target, options.prefix)
             self.stored, self.refined, self.prefix = found.maps, found.refined, found.source.prefix
             self.quality = found.quality
@@ -143,7 +143,7 @@ class _Leg:
             self.left_out.append(TransferReport("", remarks=said) if absent else TransferReport("", notes=said))
 
 
-def _carry_fresh_match(source: Side, target: Side, prefix: str) -> bool:
+def carry_fresh_match(source: Side, target: Side, prefix: str) -> bool:
     """Tell whether two sides carry one dense match at least that is not out of date."""
     found = [pair for pair in find_common(source, target) if prefix in ("", pair[0].prefix)]
     fresh = [pair for pair in found if not any(half.staleness() for half in pair)]

@@ -37,8 +37,8 @@ def add_rigged(name="Source", resolution=8, matrix=None):
     """
     vertices, triangles, _ = creature(0.0, resolution)
     armature = add_armature(f"{name} Rig")
-    obj = _add_mesh(name, vertices, triangles)
-    _add_weights(obj, creature_weights(vertices))
+    obj = add_mesh(name, vertices, triangles)
+    add_weights(obj, creature_weights(vertices))
     modifier = obj.modifiers.new("Armature", "ARMATURE")
     modifier.object = armature
     obj.parent = armature
@@ -104,7 +104,7 @@ def add_target(source, name="Target", part=1.0, matrix=None, sizes=None):
     into = matrix @ armature.matrix_world
     joints = {bone.name: (np.array(into @ bone.head), np.array(into @ bone.tail)) for bone in armature.pose.bones}
     unpose(armature)
-    obj = _add_mesh(name, mesh.vertices, mesh.triangles)
+    obj = add_mesh(name, mesh.vertices, mesh.triangles)
     obj.matrix_world = matrix
     bpy.context.view_layer.update()
     return obj, joints
@@ -145,7 +145,8 @@ def true_passage(source, target):
     )
 
 
-def _add_mesh(name, vertices, triangles):
+def add_mesh(name, vertices, triangles):
+    """Add a mesh object."""
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(vertices.tolist(), [], triangles.tolist())
     mesh.update()
@@ -154,9 +155,10 @@ def _add_mesh(name, vertices, triangles):
     return obj
 
 
-def _add_weights(obj, weights):
-    groups = [obj.vertex_groups.new(name=name) for name in CREATURE_BONES if name not in CONTROLS]
-    numbers = [number for number, name in enumerate(CREATURE_BONES) if name not in CONTROLS]
+def add_weights(obj, weights, names=tuple(CREATURE_BONES), without=CONTROLS):
+    """Give an object vertex groups of these names with weights (n, b), but for some."""
+    numbers = [number for number, name in enumerate(names) if name not in without]
+    groups = [obj.vertex_groups.new(name=names[number]) for number in numbers]
     columns = weights[:, numbers].tocoo()
     for vertex, column, weight in zip(columns.row.tolist(), columns.col.tolist(), columns.data.tolist(), strict=True):
         groups[column].add([vertex], weight, "REPLACE")

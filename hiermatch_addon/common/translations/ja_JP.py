@@ -1025,6 +1025,274 @@ MESSAGES: Final[dict[str, str]] = {
         "マッチングしたメッシュにソースを重ね、スライダーで一方からもう一方へモーフするシェイプキーにします。相"
         "手にない部分は周囲に従います"
     ),
+    "Turn": "回転",
+    "How the target's surface is turned against the source's at rest, in the spaces of the armatures": (
+        "レスト時にターゲットの表面がソースに対してどれだけ回転しているか。アーマチュアの空間での値です"
+    ),
+    "Source Bone": "ソースのボーン",
+    "Bone of the source; empty for none": "ソースのボーン。ない場合は空にします",
+    "Target Bone": "ターゲットのボーン",
+    "Bone of the target that stands for it": "それに対応するターゲットのボーン",
+    "Where the head of the source bone lies in the target, in the target armature's space": (
+        "ソースのボーンのヘッドがターゲットのどこにあるか。ターゲットのアーマチュアの空間での値です"
+    ),
+    "Lock": "ロック",
+    "Keep this row when bones are paired again; without a source, the bone stays alone": (
+        "ボーンを再びペアにするときこの行を保ちます。ソースがなければ、そのボーンは単独のままです"
+    ),
+    "Standing": "立ち方",
+    "How the target stands, turned against the source, in the spaces of the armatures": (
+        "ターゲット全体がソースに対してどれだけ回転して立っているか。アーマチュアの空間での値です"
+    ),
+    "Source Rig": "ソースのリグ",
+    "Armature of the source": "ソースのアーマチュア",
+    "Target Rig": "ターゲットのリグ",
+    "Armature of the target": "ターゲットのアーマチュア",
+    "Score": "スコア",
+    "How well the two agree, from 0 to 1": "二つがどれだけ一致するか。0から1",
+    "Seen": "表面で確認",
+    "Whether turn and place were seen on the surface; a row made by hand has none": (
+        "回転と位置が表面から求められたかどうか。手で作った行にはありません"
+    ),
+    "Pair": "ペア",
+    "The row of the table of bones that is active": "ボーンの表でアクティブな行",
+    "Tolerance": "許容誤差",
+    "By how much reduced keys may change a rotation": "キーの削減で回転がどれだけ変わってよいか",
+    "Actions": "アクション",
+    "Which actions of the source are carried over": "ソースのどのアクションを移すか",
+    "The one that the source plays": "ソースが再生しているもの",
+    "All actions of the file that move bones of the source": "ソースのボーンを動かす、ファイル内のすべてのアクション",
+    "Armature that has the motion, or a mesh that it moves": (
+        "モーションを持つアーマチュア、またはそれが動かすメッシュ"
+    ),
+    "Keys": "キー",
+    "At which frames the new action gets keys": "新しいアクションがどのフレームにキーを持つか",
+    "At the source's keys if these are few, else reduced ones": (
+        "ソースのキーが少なければその位置に、多ければ削減したキー"
+    ),
+    "As the Source": "ソースと同じ",
+    "At the keys of the source's bones, with their interpolation": "ソースのボーンのキーの位置に、その補間で",
+    "Reduced": "削減",
+    "As few as keep the motion within the Tolerance": "モーションを許容誤差内に保つ最少のキー",
+    "Every Frame": "全フレーム",
+    "At every frame": "すべてのフレームに",
+    "Armature that is to have it, or a mesh that it moves": (
+        "モーションを受け取るアーマチュア、またはそれが動かすメッシュ"
+    ),
+    "Stride": "歩幅",
+    "How long the way along the ground is; 1 fits the length of the target's legs": (
+        "地面に沿った移動の長さ。1でターゲットの脚の長さに合います"
+    ),
+    "In Place": "その場で",
+    "Take out the way from the first to the last frame, for walk cycles": (
+        "最初から最後のフレームまでの移動を取り除きます。歩行サイクル用です"
+    ),
+    "Keep Feet on Ground": "足を地面に保つ",
+    "Where a foot stands in the source, let it stand in the target: the leg is bent for it. All frames "
+    "are computed then": (
+        "ソースで足が立っているところでは、ターゲットの足も動かないように脚を曲げます。全フレームが計算されます"
+    ),
+    "What became of it, one sentence per line": "結果。一行に一文",
+    "Keep Hands on Body": "手を体に保つ",
+    "Where a hand touches the body or the other hand in the source, bend the target's arm so that it "
+    "does so too. All frames are computed then": (
+        "ソースで手が体や反対の手に触れているところでは、ターゲットの手も触れるように腕を曲げます。全フレームが計"
+        "算されます"
+    ),
+    "Pair Bones": "ボーンをペアにする",
+    "Find out which bones of two rigs belong together by the surface that they move, whatever they are "
+    "called. The bodies are matched first if that has not been done": (
+        "二つのリグのどのボーンが対応するかを、名前に関係なく、動かす表面から求めます。体がまだマッチングされてい"
+        "なければ先に行います"
+    ),
+    "Name of the armature that is to have it, or of a mesh that it moves; if empty, the one picked in "
+    "the panel or else all other selected armatures": (
+        "モーションを受け取るアーマチュア、またはそれが動かすメッシュの名前。空なら、パネルで選んだもの、なければ"
+        "選択中の他のすべてのアーマチュア"
+    ),
+    "Names of several of them": "その複数の名前",
+    "Name of the armature that has the motion, or of a mesh that it moves; if empty, the one picked in "
+    "the panel or else the active object": (
+        "モーションを持つアーマチュア、またはそれが動かすメッシュの名前。空なら、パネルで選んだもの、なければアク"
+        "ティブオブジェクト"
+    ),
+    "Retarget Action": "アクションをリターゲット",
+    "Carry actions of the source's armature to others, whatever their bones are called, how many there "
+    "are, and how they rest. Bones are paired first if that has not been done": (
+        "ソースのアーマチュアのアクションを、ボーンの名前や数やレストポーズに関係なく、他のアーマチュアに移します"
+        "。ボーンがまだペアになっていなければ先に行います"
+    ),
+    "Name of the action to carry over; if empty, those that Actions says": (
+        "移すアクションの名前。空なら「アクション」の設定に従います"
+    ),
+    "Several Actions": "複数のアクション",
+    "Names of several actions to carry over": "移す複数のアクションの名前",
+    "NLA Strips": "NLAストリップ",
+    "Carry the actions of the source's NLA strips over as well, and copy the strips": (
+        "ソースのNLAストリップのアクションも移し、ストリップをコピーします"
+    ),
+    "Play": "再生",
+    "Let the target play the new action, if it is one only": (
+        "新しいアクションが一つだけなら、ターゲットに再生させます"
+    ),
+    "Retarget Pose": "ポーズをリターゲット",
+    "Pose other armatures as the source's stands now. Bones are paired first if that has not been done": (
+        "他のアーマチュアをソースの現在のポーズにします。ボーンがまだペアになっていなければ先に行います"
+    ),
+    "Where a hand touches the body or the other hand in the source, bend the target's arm so that it does so too": (
+        "ソースで手が体や反対の手に触れているところでは、ターゲットの手も触れるように腕を曲げます"
+    ),
+    "Add Bone Pair": "ボーンのペアを追加",
+    "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone": (
+        "二つのボーンを手でペアにしてロックします。ソースのボーンがなければ、ターゲットのボーンは単独のままです"
+    ),
+    "Name of the target's armature; if empty, the one picked in the panel or else selected": (
+        "ターゲットのアーマチュアの名前。空なら、パネルで選んだもの、なければ選択中のもの"
+    ),
+    "Bone of the target; if empty, the active bones of both armatures are paired": (
+        "ターゲットのボーン。空なら、両方のアーマチュアのアクティブなボーンをペアにします"
+    ),
+    "Name of the source's armature; if empty, the one picked in the panel or else the active one": (
+        "ソースのアーマチュアの名前。空なら、パネルで選んだもの、なければアクティブなもの"
+    ),
+    "Remove Bone Pair": "ボーンのペアを削除",
+    "Take a pair of bones out of the table": "ボーンのペアを表から取り除きます",
+    "Remove its pair with this bone only; if empty, all": "このボーンとのペアだけを削除します。空ならすべて",
+    "Bone of the target whose pairs are removed": "ペアを削除するターゲットのボーン",
+    "Clear Bone Pairs": "ボーンのペアを消去",
+    "Take the pairs of two armatures out of the table": "二つのアーマチュアのペアを表から取り除きます",
+    "Locked Too": "ロックも含む",
+    "Take locked pairs out as well": "ロックされたペアも取り除きます",
+    "Export Bone Pairs": "ボーンのペアを書き出し",
+    "Save the pairs of bones of two armatures to a file, for other files with the same rigs": (
+        "二つのアーマチュアのボーンのペアをファイルに保存します。同じリグを使う他のファイルのためです"
+    ),
+    "Path of the file of pairs, a JSON text": "ペアのファイルのパス。JSONテキストです",
+    "Import Bone Pairs": "ボーンのペアを読み込み",
+    "Load pairs of bones from a file in place of those of two armatures": (
+        "二つのアーマチュアのペアの代わりに、ファイルからボーンのペアを読み込みます"
+    ),
+    "Weights to Own Rig": "自身のリグへのウェイト",
+    "Carry the source's weights to the bones that the target has already, through the pairs of bones: "
+    "they are shared out where it has more bones, and added up where it has fewer": (
+        "ソースのウェイトを、ボーンのペアを通じて、ターゲットがすでに持つボーンに移します。ボーンが多いところでは"
+        "分配し、少ないところでは合計します"
+    ),
+    "Limit Bones": "ボーン数を制限",
+    "How many bones may move a vertex at most; 0 for any number": "一つの頂点を動かせるボーンの最大数。0なら無制限",
+    "Motion": "モーション",
+    'The rotation of {0} of "{1}" is locked. Unlock it (in the sidebar: Item), or clear these bones in '
+    "the table of pairs.": (
+        '"{1}"の{0}の回転がロックされています。ロックを解除するか(サイドバー: '
+        "アイテム)、ペアの表からこれらのボーンを消してください。"
+    ),
+    'Constraints hold {0} of "{1}", so they may not follow the new motion. Mute them to see it.': (
+        'コンストレイントが"{1}"の{0}を拘束しているため、新しいモーションに従わないことがあります。見るにはミュー'
+        "トしてください。"
+    ),
+    '{0} moves the object "{1}" as a whole, too. That was left out.': (
+        '{0}はオブジェクト"{1}"全体も動かします。それは移されませんでした。'
+    ),
+    'The action "{0}" was deleted meanwhile. Nothing was written.': (
+        'アクション"{0}"がその間に削除されました。何も書き込まれていません。'
+    ),
+    'Source and Target are both "{0}". Choose two different armatures.': (
+        'ソースとターゲットがどちらも"{0}"です。異なる二つのアーマチュアを選んでください。'
+    ),
+    "Reading motion": "モーションを読み込み中",
+    "Pairing bones": "ボーンをペアにしています",
+    'No bone of "{0}" moves what one of "{1}" moves. Check the match, and that both meshes have weights.': (
+        '"{0}"のどのボーンも、"{1}"のボーンが動かすところを動かしません。マッチングと、両方のメッシュにウェイトが'
+        "あることを確認してください。"
+    ),
+    '"{0}" is in {1}. Switch to Object Mode first.': '"{0}"は{1}です。先にオブジェクトモードに切り替えてください。',
+    'The bones of "{0}" were changed meanwhile. Nothing was written.': (
+        '"{0}"のボーンがその間に変更されました。何も書き込まれていません。'
+    ),
+    "The two bodies could not be matched vertex by vertex, so their bones stay unpaired.": (
+        "二つの体を頂点ごとにマッチングできなかったため、ボーンはペアになりません。"
+    ),
+    "No file is named. Choose where the pairs of bones are kept.": (
+        "ファイルが指定されていません。ボーンのペアの保存先を選んでください。"
+    ),
+    'The file "{0}" cannot be read: {1}': 'ファイル"{0}"を読み込めません: {1}',
+    '"{0}" of "{1}" is not in the table of pairs.': '"{1}"の"{0}"はペアの表にありません。',
+    "Which bones are meant is open. Make one bone of each armature active, in Pose Mode.": (
+        "どのボーンか不明です。ポーズモードで、それぞれのアーマチュアのボーンを一つアクティブにしてください。"
+    ),
+    "Carrying motion over": "モーションを移しています",
+    "Which armature is the Source is open: pick it in the panel, or make it the active object.": (
+        "どのアーマチュアがソースか不明です。パネルで選ぶか、アクティブオブジェクトにしてください。"
+    ),
+    "It is open which armature is the Target. Pick it in the panel, or select one or more beside the Source.": (
+        "どのアーマチュアがターゲットか不明です。パネルで選ぶか、ソースのほかに一つ以上選択してください。"
+    ),
+    'Paired {0} bones of "{1}" with bones of "{2}"': '"{1}"の{0}本のボーンを"{2}"のボーンとペアにしました',
+    '"{0}" has no action that moves its bones. Give it one, or name an action.': (
+        '"{0}"にはボーンを動かすアクションがありません。割り当てるか、アクションを指定してください。'
+    ),
+    'The action "{0}" moves no bone of "{1}". Choose one that does.': (
+        'アクション"{0}"は"{1}"のボーンを動かしません。動かすものを選んでください。'
+    ),
+    'No bones of "{0}" and "{1}" are paired. Pair their bones first.': (
+        '"{0}"と"{1}"のボーンはペアになっていません。先にペアにしてください。'
+    ),
+    'No pair of the file fits the bones of "{0}" and "{1}".': (
+        'ファイルのどのペアも"{0}"と"{1}"のボーンに合いません。'
+    ),
+    '"{0}" has no bone called "{1}".': '"{0}"に"{1}"というボーンはありません。',
+    "The file holds no pairs of bones. Choose one that was exported from HierMatch.": (
+        "ファイルにボーンのペアがありません。HierMatchから書き出したものを選んでください。"
+    ),
+    'There is no action called "{0}".': '"{0}"というアクションはありません。',
+    '"{0}" has no armature. Choose an armature, or a mesh with an Armature modifier.': (
+        '"{0}"にアーマチュアがありません。アーマチュアか、アーマチュアモディファイアーを持つメッシュを選んでください。'
+    ),
+    'The armature "{0}" has no bones.': 'アーマチュア"{0}"にボーンがありません。',
+    'The armature "{0}" is linked from another file and cannot be animated here. Make it local first '
+    "(Object > Relations > Make Local).": (
+        'アーマチュア"{0}"は他のファイルからリンクされているため、ここではアニメーションできません。先にローカル'
+        "化してください(オブジェクト > 関係 > ローカル化)。"
+    ),
+    'The armature "{0}" is a library override and cannot be written to. Make it local first (Object > '
+    "Relations > Make Local).": (
+        'アーマチュア"{0}"はライブラリオーバーライドのため書き込めません。先にローカル化してください(オブジェクト'
+        " > 関係 > ローカル化)。"
+    ),
+    'The armature "{0}" moves no mesh in this view layer. Bones are paired by the surface that they '
+    "move: bind a mesh to it first.": (
+        'アーマチュア"{0}"はこのビューレイヤーのどのメッシュも動かしません。ボーンは動かす表面によってペアになり'
+        "ます。先にメッシュをバインドしてください。"
+    ),
+    '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
+        '"{0}"にはアーマチュアのボーンのウェイトがありません。リグを持つソースを選んでください。'
+    ),
+    'The bones of "{0}" were changed. Pair the bones again.': (
+        '"{0}"のボーンが変更されました。もう一度ボーンをペアにしてください。'
+    ),
+    'The vertex groups of all paired bones of "{0}" are locked on "{1}", or the bones do not deform. '
+    "Unlock some of them.": (
+        '"{0}"のペアになったボーンの頂点グループがすべて"{1}"でロックされているか、ボーンが変形しません。いくつか'
+        "のロックを解除してください。"
+    ),
+    "Transferring rotations": "回転を移しています",
+    "Posing the bones": "ボーンにポーズを付けています",
+    "Keeping the feet": "足を保っています",
+    "Keeping the hands": "手を保っています",
+    '"{0}" has the new action "{1}"': '"{0}"は新しいアクション"{1}"を得ました',
+    '"{0}" was posed': '"{0}"にポーズを付けました',
+    'Paired "{0}" with "{1}"': '"{0}"を"{1}"とペアにしました',
+    '"{0}" stays alone': '"{0}"は単独のままです',
+    '"{0}" was taken out of the table': '"{0}"を表から取り除きました',
+    "{0} pairs were taken out of the table": "{0}組のペアを表から取り除きました",
+    'The pairs of bones were saved to "{0}"': 'ボーンのペアを"{0}"に保存しました',
+    "{0} pairs were loaded": "{0}組のペアを読み込みました",
+    "{0} pairs were loaded. These bones are missing: {1}": "{0}組のペアを読み込みました。次のボーンがありません: {1}",
+    'By their names, left bones of "{0}" are paired with right ones of "{1}". If that is wrong, the '
+    "match is mirrored: flip it, and pair the bones again.": (
+        '名前によると、"{0}"の左のボーンが"{1}"の右のボーンとペアになっています。それが誤りなら、マッチングが左右'
+        "反転しています。反転して、もう一度ボーンをペアにしてください。"
+    ),
     "Symmetrise": "対称化",
     "Test Poses": "ポーズのテスト",
     (

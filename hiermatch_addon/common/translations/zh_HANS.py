@@ -840,6 +840,228 @@ MESSAGES: Final[dict[str, str]] = {
         "Lay the source onto the matched mesh, as a shape key whose slider morphs one into the other. Parts that "
         "the other mesh lacks follow their surroundings"
     ): "将源贴到已匹配的网格上，成为一个形态键，其滑块使一方变形为另一方。另一网格所缺的部分跟随其周围",
+    "Turn": "旋转",
+    "How the target's surface is turned against the source's at rest, in the spaces of the armatures": (
+        "静置时目标表面相对于源表面的旋转，以骨架各自的空间表示"
+    ),
+    "Source Bone": "源骨骼",
+    "Bone of the source; empty for none": "源的骨骼；没有则为空",
+    "Target Bone": "目标骨骼",
+    "Bone of the target that stands for it": "与之对应的目标骨骼",
+    "Where the head of the source bone lies in the target, in the target armature's space": (
+        "源骨骼头端在目标中的位置，以目标骨架的空间表示"
+    ),
+    "Lock": "锁定",
+    "Keep this row when bones are paired again; without a source, the bone stays alone": (
+        "再次配对骨骼时保留此行；没有源时，该骨骼保持单独"
+    ),
+    "Standing": "站立",
+    "How the target stands, turned against the source, in the spaces of the armatures": (
+        "目标整体相对于源的旋转，以骨架各自的空间表示"
+    ),
+    "Source Rig": "源绑定",
+    "Armature of the source": "源的骨架",
+    "Target Rig": "目标绑定",
+    "Armature of the target": "目标的骨架",
+    "Score": "得分",
+    "How well the two agree, from 0 to 1": "两者的吻合程度，0 到 1",
+    "Seen": "已在表面确认",
+    "Whether turn and place were seen on the surface; a row made by hand has none": (
+        "旋转和位置是否由表面得出；手动建立的行没有"
+    ),
+    "Pair": "配对",
+    "The row of the table of bones that is active": "骨骼表中的活动行",
+    "Tolerance": "容差",
+    "By how much reduced keys may change a rotation": "精简关键帧时旋转允许改变的量",
+    "Actions": "动作",
+    "Which actions of the source are carried over": "传递源的哪些动作",
+    "The one that the source plays": "源正在播放的动作",
+    "All actions of the file that move bones of the source": "文件中所有移动源骨骼的动作",
+    "Armature that has the motion, or a mesh that it moves": "带有运动的骨架，或由它带动的网格",
+    "Keys": "关键帧",
+    "At which frames the new action gets keys": "新动作在哪些帧上有关键帧",
+    "At the source's keys if these are few, else reduced ones": "源的关键帧较少时与之相同，否则为精简的关键帧",
+    "As the Source": "与源相同",
+    "At the keys of the source's bones, with their interpolation": "在源骨骼的关键帧处，并采用其插值",
+    "Reduced": "精简",
+    "As few as keep the motion within the Tolerance": "使运动保持在容差内的最少关键帧",
+    "Every Frame": "每一帧",
+    "At every frame": "在每一帧上",
+    "Armature that is to have it, or a mesh that it moves": "要得到运动的骨架，或由它带动的网格",
+    "Stride": "步幅",
+    "How long the way along the ground is; 1 fits the length of the target's legs": (
+        "沿地面移动的距离；1 与目标的腿长相称"
+    ),
+    "In Place": "原地",
+    "Take out the way from the first to the last frame, for walk cycles": (
+        "去除从第一帧到最后一帧的移动，用于行走循环"
+    ),
+    "Keep Feet on Ground": "脚保持着地",
+    "Where a foot stands in the source, let it stand in the target: the leg is bent for it. All frames "
+    "are computed then": ("源的脚站立之处，目标的脚也站立不动：为此弯曲腿部。此时会计算所有帧"),
+    "What became of it, one sentence per line": "结果如何，每行一句",
+    "Keep Hands on Body": "手保持贴身",
+    "Where a hand touches the body or the other hand in the source, bend the target's arm so that it "
+    "does so too. All frames are computed then": (
+        "源的手触及身体或另一只手之处，弯曲目标的手臂使其同样触及。此时会计算所有帧"
+    ),
+    "Pair Bones": "配对骨骼",
+    "Find out which bones of two rigs belong together by the surface that they move, whatever they are "
+    "called. The bodies are matched first if that has not been done": (
+        "根据骨骼所带动的表面找出两套绑定中相互对应的骨骼，与名称无关。若身体尚未匹配，会先进行匹配"
+    ),
+    "Name of the armature that is to have it, or of a mesh that it moves; if empty, the one picked in "
+    "the panel or else all other selected armatures": (
+        "要得到运动的骨架或由它带动的网格的名称；若为空，则为面板中所选的，否则为所有其他选中的骨架"
+    ),
+    "Names of several of them": "其中若干个的名称",
+    "Name of the armature that has the motion, or of a mesh that it moves; if empty, the one picked in "
+    "the panel or else the active object": (
+        "带有运动的骨架或由它带动的网格的名称；若为空，则为面板中所选的，否则为活动物体"
+    ),
+    "Retarget Action": "重定向动作",
+    "Carry actions of the source's armature to others, whatever their bones are called, how many there "
+    "are, and how they rest. Bones are paired first if that has not been done": (
+        "将源骨架的动作传递到其他骨架，无论骨骼的名称、数量和静置姿态如何。若骨骼尚未配对，会先进行配对"
+    ),
+    "Name of the action to carry over; if empty, those that Actions says": "要传递的动作名称；若为空，则按“动作”选项",
+    "Several Actions": "多个动作",
+    "Names of several actions to carry over": "要传递的多个动作的名称",
+    "NLA Strips": "NLA 片段",
+    "Carry the actions of the source's NLA strips over as well, and copy the strips": (
+        "同时传递源的 NLA 片段的动作，并复制这些片段"
+    ),
+    "Play": "播放",
+    "Let the target play the new action, if it is one only": "如果只有一个新动作，让目标播放它",
+    "Retarget Pose": "重定向姿态",
+    "Pose other armatures as the source's stands now. Bones are paired first if that has not been done": (
+        "使其他骨架摆出源骨架当前的姿态。若骨骼尚未配对，会先进行配对"
+    ),
+    "Where a hand touches the body or the other hand in the source, bend the target's arm so that it does so too": (
+        "源的手触及身体或另一只手之处，弯曲目标的手臂使其同样触及"
+    ),
+    "Add Bone Pair": "添加骨骼配对",
+    "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone": (
+        "手动配对两个骨骼并锁定；没有源骨骼时，目标骨骼保持单独"
+    ),
+    "Name of the target's armature; if empty, the one picked in the panel or else selected": (
+        "目标骨架的名称；若为空，则为面板中所选的，否则为选中的"
+    ),
+    "Bone of the target; if empty, the active bones of both armatures are paired": (
+        "目标的骨骼；若为空，则将两个骨架的活动骨骼配对"
+    ),
+    "Name of the source's armature; if empty, the one picked in the panel or else the active one": (
+        "源骨架的名称；若为空，则为面板中所选的，否则为活动的"
+    ),
+    "Remove Bone Pair": "移除骨骼配对",
+    "Take a pair of bones out of the table": "将一对骨骼从表中移除",
+    "Remove its pair with this bone only; if empty, all": "只移除与此骨骼的配对；若为空，则全部移除",
+    "Bone of the target whose pairs are removed": "要移除其配对的目标骨骼",
+    "Clear Bone Pairs": "清除骨骼配对",
+    "Take the pairs of two armatures out of the table": "将两个骨架的配对从表中移除",
+    "Locked Too": "包括锁定的",
+    "Take locked pairs out as well": "也移除锁定的配对",
+    "Export Bone Pairs": "导出骨骼配对",
+    "Save the pairs of bones of two armatures to a file, for other files with the same rigs": (
+        "将两个骨架的骨骼配对保存到文件，供使用相同绑定的其他文件使用"
+    ),
+    "Path of the file of pairs, a JSON text": "配对文件的路径，为 JSON 文本",
+    "Import Bone Pairs": "导入骨骼配对",
+    "Load pairs of bones from a file in place of those of two armatures": (
+        "从文件加载骨骼配对，取代两个骨架现有的配对"
+    ),
+    "Weights to Own Rig": "权重到自身绑定",
+    "Carry the source's weights to the bones that the target has already, through the pairs of bones: "
+    "they are shared out where it has more bones, and added up where it has fewer": (
+        "通过骨骼配对将源的权重传递到目标已有的骨骼：骨骼较多处分配，较少处相加"
+    ),
+    "Limit Bones": "限制骨骼数",
+    "How many bones may move a vertex at most; 0 for any number": "每个顶点最多受多少骨骼带动；0 表示不限",
+    "Motion": "运动",
+    'The rotation of {0} of "{1}" is locked. Unlock it (in the sidebar: Item), or clear these bones in '
+    "the table of pairs.": ('"{1}" 的 {0} 的旋转已锁定。请解除锁定（侧栏：条目），或在配对表中清除这些骨骼。'),
+    'Constraints hold {0} of "{1}", so they may not follow the new motion. Mute them to see it.': (
+        '约束控制着 "{1}" 的 {0}，因此它们可能不会跟随新的运动。请将其静音以查看。'
+    ),
+    '{0} moves the object "{1}" as a whole, too. That was left out.': '{0} 还会移动整个物体 "{1}"。这部分被略去。',
+    'The action "{0}" was deleted meanwhile. Nothing was written.': '动作 "{0}" 在此期间被删除。未写入任何内容。',
+    'Source and Target are both "{0}". Choose two different armatures.': '源和目标都是 "{0}"。请选择两个不同的骨架。',
+    "Reading motion": "正在读取运动",
+    "Pairing bones": "正在配对骨骼",
+    'No bone of "{0}" moves what one of "{1}" moves. Check the match, and that both meshes have weights.': (
+        '"{0}" 没有任何骨骼带动 "{1}" 的骨骼所带动的部位。请检查匹配，以及两个网格是否都有权重。'
+    ),
+    '"{0}" is in {1}. Switch to Object Mode first.': '"{0}" 处于{1}。请先切换到物体模式。',
+    'The bones of "{0}" were changed meanwhile. Nothing was written.': '"{0}" 的骨骼在此期间被更改。未写入任何内容。',
+    "The two bodies could not be matched vertex by vertex, so their bones stay unpaired.": (
+        "两个身体无法逐顶点匹配，因此骨骼未配对。"
+    ),
+    "No file is named. Choose where the pairs of bones are kept.": "未指定文件。请选择骨骼配对的存放位置。",
+    'The file "{0}" cannot be read: {1}': '无法读取文件 "{0}"：{1}',
+    '"{0}" of "{1}" is not in the table of pairs.': '"{1}" 的 "{0}" 不在配对表中。',
+    "Which bones are meant is open. Make one bone of each armature active, in Pose Mode.": (
+        "不清楚指的是哪些骨骼。请在姿态模式下将每个骨架的一个骨骼设为活动。"
+    ),
+    "Carrying motion over": "正在传递运动",
+    "Which armature is the Source is open: pick it in the panel, or make it the active object.": (
+        "不清楚哪个骨架是源：请在面板中选取，或将其设为活动物体。"
+    ),
+    "It is open which armature is the Target. Pick it in the panel, or select one or more beside the Source.": (
+        "不清楚哪个骨架是目标。请在面板中选取，或在源之外选中一个或多个。"
+    ),
+    'Paired {0} bones of "{1}" with bones of "{2}"': '已将 "{1}" 的 {0} 个骨骼与 "{2}" 的骨骼配对',
+    '"{0}" has no action that moves its bones. Give it one, or name an action.': (
+        '"{0}" 没有移动其骨骼的动作。请为其指定一个，或给出动作名称。'
+    ),
+    'The action "{0}" moves no bone of "{1}". Choose one that does.': (
+        '动作 "{0}" 不移动 "{1}" 的任何骨骼。请选择会移动的动作。'
+    ),
+    'No bones of "{0}" and "{1}" are paired. Pair their bones first.': (
+        '"{0}" 和 "{1}" 没有配对的骨骼。请先配对骨骼。'
+    ),
+    'No pair of the file fits the bones of "{0}" and "{1}".': '文件中没有配对适合 "{0}" 和 "{1}" 的骨骼。',
+    '"{0}" has no bone called "{1}".': '"{0}" 没有名为 "{1}" 的骨骼。',
+    "The file holds no pairs of bones. Choose one that was exported from HierMatch.": (
+        "文件中没有骨骼配对。请选择由 HierMatch 导出的文件。"
+    ),
+    'There is no action called "{0}".': '没有名为 "{0}" 的动作。',
+    '"{0}" has no armature. Choose an armature, or a mesh with an Armature modifier.': (
+        '"{0}" 没有骨架。请选择骨架，或带有骨架修改器的网格。'
+    ),
+    'The armature "{0}" has no bones.': '骨架 "{0}" 没有骨骼。',
+    'The armature "{0}" is linked from another file and cannot be animated here. Make it local first '
+    "(Object > Relations > Make Local).": (
+        '骨架 "{0}" 链接自其他文件，无法在此制作动画。请先将其设为本地（物体 > 关系 > 设为本地）。'
+    ),
+    'The armature "{0}" is a library override and cannot be written to. Make it local first (Object > '
+    "Relations > Make Local).": ('骨架 "{0}" 是库重写，无法写入。请先将其设为本地（物体 > 关系 > 设为本地）。'),
+    'The armature "{0}" moves no mesh in this view layer. Bones are paired by the surface that they '
+    "move: bind a mesh to it first.": (
+        '骨架 "{0}" 在此视图层中不带动任何网格。骨骼是按其带动的表面配对的：请先将网格绑定到它。'
+    ),
+    '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
+        '"{0}" 没有骨架骨骼的权重。请选择已绑定的源。'
+    ),
+    'The bones of "{0}" were changed. Pair the bones again.': '"{0}" 的骨骼已被更改。请重新配对骨骼。',
+    'The vertex groups of all paired bones of "{0}" are locked on "{1}", or the bones do not deform. '
+    "Unlock some of them.": ('"{0}" 的所有配对骨骼的顶点组在 "{1}" 上已锁定，或这些骨骼不变形。请解锁其中一些。'),
+    "Transferring rotations": "正在传递旋转",
+    "Posing the bones": "正在摆放骨骼",
+    "Keeping the feet": "正在保持脚部",
+    "Keeping the hands": "正在保持手部",
+    '"{0}" has the new action "{1}"': '"{0}" 有了新动作 "{1}"',
+    '"{0}" was posed': '"{0}" 已摆好姿态',
+    'Paired "{0}" with "{1}"': '已将 "{0}" 与 "{1}" 配对',
+    '"{0}" stays alone': '"{0}" 保持单独',
+    '"{0}" was taken out of the table': '"{0}" 已从表中移除',
+    "{0} pairs were taken out of the table": "已从表中移除 {0} 对",
+    'The pairs of bones were saved to "{0}"': '骨骼配对已保存到 "{0}"',
+    "{0} pairs were loaded": "已加载 {0} 对",
+    "{0} pairs were loaded. These bones are missing: {1}": "已加载 {0} 对。缺少这些骨骼：{1}",
+    'By their names, left bones of "{0}" are paired with right ones of "{1}". If that is wrong, the '
+    "match is mirrored: flip it, and pair the bones again.": (
+        '按名称看，"{0}" 的左侧骨骼与 "{1}" 的右侧骨骼配对。若有误，说明匹配是镜像的：请翻转匹配，再重新配对骨骼。'
+    ),
     "Symmetrise": "对称化",
     "Test Poses": "测试姿势",
     (

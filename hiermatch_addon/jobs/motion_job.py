@@ -1,0 +1,367 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Carrying motion from one armature to others as a piece of work: pairing where needed, computing, writing at last."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+import numpy as np
+
+from ...engine import Motion, MotionSettings, Progress, local_transforms, transfer_motion_steps, within
+from ..common.access import view_layer_of
+from ..common.errors import ObjectError
+from ..common.phrases import listed
+from ..properties.bone_pairs import pairing_of, rows_of
+from ..scene.action_curves import object_curves
+from ..scene.armatures import armature_of
+from ..scene.motion_io import (
+    current_motion,
+    evaluated_frames,
+    needs_evaluation,
+    posed_at,
+    read_keys,
+    set_pose,
+    write_action,
+)
+from ..scene.nla_strips import copy_strips
+from ..scene.rigged_body import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of
+from .action_keys import SIDE_STEP, baked_keys, bone_channels, sparse_frames, sparse_keys
+from .pairing_job import PairingJob, RigLink, found_again
+from .stepped_job import SteppedJob
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from ...engine import BonePairing, Steps, TransferredMotion
+    from ..scene.motion_io import ActionKeys, BoneKeys
+    from .job import JobOptions
+    from .pairing_job import PairedRigs
+
+__all__ = ["CarriedMotion", "MotionJob", "MotionPlan"]
+
+_PAIRED = 0.6
+"""Where on the progress bar pairing ends, if it is needed."""
+
+_CHUNK, _EVALUATED_CHUNK = 240, 4
+"""Frames read at once: from curves, and by letting Blender play them, which takes much longer."""
+
+_FEW = 0.5
+"""A source has few keys if they are at fewer than this part of its frames."""
+
+
+@dataclass(frozen=True)
+class MotionPlan:
+    """What is carried over, and how.
+
+    Attributes
+    ----------
+    actions : tuple of str
+        Names of the actions; none for the pose of the moment.
+    settings : MotionSettings
+        How the target is posed.
+    keys : str
+        "AUTO", "SOURCE", "REDUCED" or "ALL".
+    tolerance : float
+        How much reduced keys may change a rotation, in radians.
+    assign : bool
+        Whether a target plays its new action, if there is one only.
+    strips : bool
+        Whether NLA strips of these actions are copied.
+    """
+
+    actions: tuple[str, ...]
+    settings: MotionSettings
+    keys: str = "AUTO"
+    tolerance: float = 0.0035
+    assign: bool = True
+    strips: bool = False
+
+
+@dataclass(frozen=True)
+class CarriedMotion:
+    """What became of one target.
+
+    Attributes
+    ----------
+    target : str
+        Name of the armature.
+    actions : tuple of str
+        Names of its new actions; none if it was posed.
+    paired : PairedRigs or None
+        The pairs, if they were made on the way.
+    notes : tuple of str
+        What is to be known.
+    seconds : float
+        How long it took until here since the job began.
+    """
+
+    target: str
+    actions: tuple[str, ...]
+    paired: PairedRigs | None
+    notes: tuple[str, ...]
+    seconds: float
+
+
+class MotionJob(SteppedJob):
+    """Carries motion from one armature to several others.
+
+    Nothing is written before `finish`.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where the objects are.
+    source : bpy.types.Object
+        An armature, or a mesh that it moves.
+    targets : sequence of bpy.types.Object
+        Others.
+    plan : MotionPlan
+        What is carried over.
+    match : JobOptions
+        How bodies are matched whose rigs are not paired yet.
+
+    Attributes
+    ----------
+    progress : Progress
+        How far the work is.
+
+    Raises
+    ------
+    HierMatchError
+        If the objects do not allow it.
+    """
+
+    def __init__(
+        self,
+        context: bpy.types.Context,
+        source: bpy.types.Object,
+        targets: Sequence[bpy.types.Object],
+        plan: MotionPlan,
+        match: JobOptions,
+    ) -> None:
+        self._begun, self._plan = time.perf_counter(), plan
+        rig = rig_of(source)
+        check_armature(rig, written=False)
+        rigs = [rig_of(target) for target in targets]
+        for each in rigs:
+            check_armature(each, written=True)
+            if each == rig:
+                raise ObjectError(f'Source and Target are both "{rig.name}". Choose two different armatures.')
+        scene = cast("bpy.types.Scene", context.scene)
+        waiting = [target for target, each in zip(targets, rigs, strict=True) if not rows_of(scene, rig, each)]
+        self._pairing = PairingJob(context, source, waiting, match) if waiting else None
+        self._unpaired = [rig_of(target).session_uid for target in waiting]
+        self._source, self._targets = RigLink.of(rig), [RigLink.of(each) for each in rigs]
+        for each in rigs:
+            if rows_of(scene, rig, each):
+                _check_channels(each, pairing_of(scene, rig, each))
+        self._scene, self._view_layer = scene.name, view_layer_of(context)
+        self._found: dict[tuple[str, str], list[BoneKeys]] = {}
+        self._poses: dict[str, TransferredMotion] = {}
+        super().__init__()
+
+    def close(self) -> None:
+        """Drop the work, and a pairing that is being made."""
+        super().close()
+        if self._pairing is not None:
+            self._pairing.close()
+
+    def finish(self, context: bpy.types.Context) -> list[CarriedMotion]:
+        """Write the actions or poses of all targets.
+
+        Raises
+        ------
+        HierMatchError
+            If an armature or an action has changed since it was read.
+        """
+        if not self._done:
+            raise RuntimeError("The work has not come to its end yet.")
+        rigs = self._rigs()
+        for rig in rigs[1:]:
+            check_armature(rig, written=True)
+        actions = [self._action(name) for name in self._plan.actions]
+        paired = {one.target: one for one in self._pairing.finish(context)} if self._pairing is not None else {}
+        done = []
+        for rig in rigs[1:]:
+            made = {
+                action.name: write_action(
+                    f"{action.name} {rig.name}",
+                    rig,
+                    action,
+                    self._found[rig.name, action.name],
+                    assign=self._plan.assign and len(actions) == 1,
+                )
+                for action in actions
+            }
+            if rig.name in self._poses:
+                _set_pose(rig, self._poses[rig.name])
+            if self._plan.strips:
+                copy_strips(rigs[0], rig, made)
+            names = tuple(action.name for action in made.values())
+            one = paired.get(rig.name)
+            notes = (*(one.notes if one is not None else ()), *_notes(rigs[0], rig, actions, self._moved(context, rig)))
+            done.append(CarriedMotion(rig.name, names, one, notes, time.perf_counter() - self._begun))
+        return done
+
+    def _rigs(self) -> list[bpy.types.Object]:
+        return [found_again(link) for link in (self._source, *self._targets)]
+
+    def _action(self, name: str) -> bpy.types.Action:
+        """Look an action up again."""
+        action = bpy.data.actions.get(name)
+        if action is None:
+            raise ObjectError(f'The action "{name}" was deleted meanwhile. Nothing was written.')
+        return action
+
+    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
+        self._view_layer = view_layer
+        self._rigs()
+
+    def _moved(self, context: bpy.types.Context, rig: bpy.types.Object) -> list[str]:
+        """Names of the target's bones that get a motion."""
+        scene = cast("bpy.types.Scene", context.scene)
+        return [row.target for row in rows_of(scene, found_again(self._source), rig) if row.source]
+
+    def _all_steps(self) -> Steps[None]:
+        """Pair what is not paired, read each motion once, and compute it for each target."""
+        begin = 0.0
+        if self._pairing is not None:
+            while not self._pairing.advance(self._view_layer, 0.0):
+                yield Progress(_PAIRED * self._pairing.progress.fraction, self._pairing.progress.label)
+            begin = _PAIRED
+        pairings = [self._pairs(number) for number in range(len(self._targets))]
+        works = self._plan.actions or ("",)
+        for number, name in enumerate(works):
+            start, end = (begin + (1 - begin) * (number + step) / len(works) for step in range(2))
+            steps = self._action_steps(name, pairings) if name else self._pose_steps(pairings)
+            yield from within(steps, start, end)
+
+    def _pairs(self, number: int) -> BonePairing:
+        """Return the pairs of one target: from the table, or just made."""
+        rigs = found_again(self._source), found_again(self._targets[number])
+        if rigs[1].session_uid not in self._unpaired:
+            return pairing_of(bpy.data.scenes[self._scene], *rigs)
+        pairing = cast("PairingJob", self._pairing).pairing(self._unpaired.index(rigs[1].session_uid))
+        _check_channels(rigs[1], pairing)
+        return pairing
+
+    def _pose_steps(self, pairings: list[BonePairing]) -> Steps[None]:
+        """Carry the pose of the moment over."""
+        motion = current_motion(found_again(self._source))
+        for link, pairing in zip(self._targets, pairings, strict=True):
+            steps = self._transfer_steps(motion, pairing, link, MotionSettings(hands=self._plan.settings.hands))
+            self._poses[link.name] = yield from steps
+
+    def _action_steps(self, name: str, pairings: list[BonePairing]) -> Steps[None]:
+        """Carry an action over."""
+        keys = read_keys(self._action(name), found_again(self._source))
+        first, last = np.floor(keys.frames[0]), np.ceil(keys.frames[1])
+        sparse = self._is_sparse(keys, last - first + 1)
+        frames = sparse_frames(keys) if sparse else np.arange(first, last + 1)
+        sampled = (frames[:, None] + np.array([-SIDE_STEP, 0, SIDE_STEP])).ravel() if sparse else frames
+        motion = yield from within(self._reading_steps(name, sampled), 0.0, 0.5)
+        settings = self._plan.settings
+        if sparse:
+            settings = MotionSettings(stride=settings.stride, in_place=settings.in_place, rate=settings.rate)
+        count = len(self._targets)
+        for number, (link, pairing) in enumerate(zip(self._targets, pairings, strict=True)):
+            start, end = (0.5 + 0.5 * (number + step) / count for step in range(2))
+            found = yield from within(self._transfer_steps(motion, pairing, link, settings), start, end)
+            rigs = found_again(self._source), found_again(link)
+            channels = bone_channels(rigs[1], found)
+            if sparse:
+                made = sparse_keys(channels, frames, keys, pairing, rigs)
+            else:
+                made = baked_keys(channels, frames, None if self._plan.keys == "ALL" else self._plan.tolerance, keys)
+            self._found[link.name, name] = made
+
+    def _is_sparse(self, keys: ActionKeys, count: float) -> bool:
+        """Tell whether the target gets keys where the source has them."""
+        plan = self._plan
+        if plan.settings.feet or plan.settings.hands or plan.keys in {"ALL", "REDUCED"}:
+            return False
+        if plan.keys == "SOURCE":
+            return True
+        return len(sparse_frames(keys)) < _FEW * count and not needs_evaluation(found_again(self._source))
+
+    def _reading_steps(self, name: str, frames: NDArray[np.float64]) -> Steps[Motion]:
+        """Read the source's poses in frames (f,), some at a time."""
+        parts = []
+        evaluated = needs_evaluation(found_again(self._source))
+        size = _EVALUATED_CHUNK if evaluated else _CHUNK
+        for start in range(0, len(frames), size):
+            yield Progress(start / len(frames), "Reading motion")
+            rig, action, some = found_again(self._source), self._action(name), frames[start : start + size]
+            if evaluated:
+                parts.append(evaluated_frames(bpy.data.scenes[self._scene], action, rig, some))
+            else:
+                parts.append(posed_at(action, rig, some))
+        turns, heads = (np.concatenate([getattr(part, what) for part in parts]) for what in ("turns", "heads"))
+        return Motion(parts[0].skeleton, turns, heads)
+
+    def _transfer_steps(
+        self, motion: Motion, pairing: BonePairing, link: RigLink, settings: MotionSettings
+    ) -> Steps[TransferredMotion]:
+        """Compute the motion of one target."""
+        rigs = found_again(self._source), found_again(link)
+        ups = np.array([object_rotation(rig)[2] for rig in rigs])  # the world's z axis in their spaces
+        return (yield from transfer_motion_steps(motion, pairing, own_skeleton(rigs[1]), settings, ups=ups))
+
+
+def _check_channels(rig: bpy.types.Object, pairing: BonePairing) -> None:
+    """Make sure that the rotations of all bones with partners may be changed.
+
+    Raises
+    ------
+    ObjectError
+        If some are locked.
+    """
+    bones = cast("bpy.types.Pose", rig.pose).bones
+    paired = [bones[int(number)] for number in np.unique(pairing.targets)]
+    locked = [bone.name for bone in paired if any(cast("Any", bone.lock_rotation))]
+    if locked:
+        raise ObjectError(
+            f'The rotation of {listed(locked)} of "{rig.name}" is locked. Unlock it (in the sidebar: Item), or clear '
+            "these bones in the table of pairs."
+        )
+
+
+def _set_pose(rig: bpy.types.Object, found: TransferredMotion) -> None:
+    """Pose an armature as computed: bones with partners only."""
+    bones = cast("bpy.types.Pose", rig.pose).bones
+    inherits = np.array([bone.use_inherit_rotation for bone in armature_of(rig).bones], bool)
+    local = local_transforms(found.motion, rest_matrices(rig)[:, :3, :3], inherits)
+    bases = {}
+    for number, bone in enumerate(bones):
+        if found.moved[number]:
+            basis = np.eye(4)
+            basis[:3, :3] = local.rotations[0, number]
+            basis[:3, 3] = local.locations[0, number] if found.placed[number] else bone.location
+            bases[bone.name] = basis
+    set_pose(rig, bases)
+
+
+def _notes(
+    source: bpy.types.Object, target: bpy.types.Object, actions: list[bpy.types.Action], moved: list[str]
+) -> list[str]:
+    """Say what is to be known of a target."""
+    notes = []
+    held = [
+        bone.name
+        for bone in cast("bpy.types.Pose", target.pose).bones
+        if bone.name in moved and any(not constraint.mute for constraint in bone.constraints)
+    ]
+    if held:
+        notes.append(
+            f'Constraints hold {listed(held)} of "{target.name}", so they may not follow the new motion. Mute them to '
+            "see it."
+        )
+    whole = [action.name for action in actions if object_curves(action, source)]
+    if whole:
+        notes.append(f'{listed(whole)} moves the object "{source.name}" as a whole, too. That was left out.')
+    return notes

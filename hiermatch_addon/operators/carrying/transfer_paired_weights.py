@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Carry weights to meshes that have a rig of their own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...transfers.paired_weights import PairedWeightTransfer
+from .transfer_operator import TransferOperator
+
+if TYPE_CHECKING:
+    from ...jobs.transfer import Transfer
+
+__all__ = ["HIERMATCH_OT_transfer_paired_weights"]
+
+
+class HIERMATCH_OT_transfer_paired_weights(TransferOperator, bpy.types.Operator):
+    """Carry weights to another rig."""
+
+    bl_idname = "hiermatch.transfer_paired_weights"
+    bl_label = "Weights to Own Rig"
+    bl_description = (
+        "Carry the source's weights to the bones that the target has already, through the pairs of bones: they are "
+        "shared out where it has more bones, and added up where it has fewer"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    limit: bpy.props.IntProperty(
+        name="Limit Bones", description="How many bones may move a vertex at most; 0 for any number", min=0, default=4
+    )
+
+    def _transfers(self) -> list[Transfer]:
+        return [PairedWeightTransfer(self.limit)]

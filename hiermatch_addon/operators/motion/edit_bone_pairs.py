@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Change the table of pairs of bones by hand."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from ....engine import HierMatchError
+from ...common.errors import ObjectError
+from ...common.translated_text import translated
+from ...jobs.running import is_running
+from ...properties.bone_pairs import add_row, clear_rows, rows_of
+from ...properties.motion_properties import bone_pairs_of, motion_of
+from .motion_operator import picked_rigs
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+__all__ = ["HIERMATCH_OT_add_bone_pair", "HIERMATCH_OT_clear_bone_pairs", "HIERMATCH_OT_remove_bone_pair", "PairEditor"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+class PairEditor:
+    """What operators on the table of two armatures have in common."""
+
+    __annotations__ = {
+        "source": _props.StringProperty(
+            name="Source",
+            description="Name of the source's armature; if empty, the one picked in the panel or else the active one",
+            options={"SKIP_SAVE"},
+        ),
+        "target": _props.StringProperty(
+            name="Target",
+            description="Name of the target's armature; if empty, the one picked in the panel or else selected",
+            options={"SKIP_SAVE"},
+        ),
+    }
+
+    if TYPE_CHECKING:
+        source: str
+        target: str
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it when nothing else is running."""
+        return not is_running(cast("bpy.types.WindowManager", context.window_manager))
+
+    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
+        """Do it, and report."""
+        operator = cast("bpy.types.Operator", self)
+        try:
+            said = self._do(context, picked_rigs(context, (self.source, self.target)))
+        except HierMatchError as error:
+            operator.report({"ERROR"}, translated(str(error)))
+            return {"CANCELLED"}
+        operator.report({"INFO"}, translated(said))
+        return {"FINISHED"}
+
+    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
+        """Do it to two armatures; return what was done."""
+        raise NotImplementedError
+
+
+class HIERMATCH_OT_add_bone_pair(PairEditor, bpy.types.Operator):
+    """Add a pair of bones."""
+
+    bl_idname = "hiermatch.add_bone_pair"
+    bl_label = "Add Bone Pair"
+    bl_description = "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone"
+    bl_options = {"REGISTER", "UNDO"}
+
+    source_bone: bpy.props.StringProperty(
+        name="Source Bone", description="Bone of the source; empty for none", options={"SKIP_SAVE"}
+    )
+    target_bone: bpy.props.StringProperty(
+        name="Target Bone",
+        description="Bone of the target; if empty, the active bones of both armatures are paired",
+        options={"SKIP_SAVE"},
+    )
+
+    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
+        bones = self.source_bone, self.target_bone
+        if not bones[1]:
+            active = [cast("bpy.types.Armature", rig.data).bones.active for rig in rigs]
+            if active[0] is None or active[1] is None:
+                raise ObjectError("Which bones are meant is open. Make one bone of each armature active, in Pose Mode.")
+            bones = active[0].name, active[1].name
+        scene = cast("bpy.types.Scene", context.scene)
+        add_row(scene, rigs, bones)
+        motion_of(context).index = len(bone_pairs_of(scene)) - 1
+        return f'Paired "{bones[0]}" with "{bones[1]}"' if bones[0] else f'"{bones[1]}" stays alone'
+
+
+class HIERMATCH_OT_remove_bone_pair(PairEditor, bpy.types.Operator):
+    """Remove a pair of bones."""
+
+    bl_idname = "hiermatch.remove_bone_pair"
+    bl_label = "Remove Bone Pair"
+    bl_description = "Take a pair of bones out of the table"
+    bl_options = {"REGISTER", "UNDO"}
+
+    target_bone: bpy.props.StringProperty(
+        name="Target Bone", description="Bone of the target whose pairs are removed", options={"SKIP_SAVE"}
+    )
+    source_bone: bpy.props.StringProperty(
+        name="Source Bone", description="Remove its pair with this bone only; if empty, all", options={"SKIP_SAVE"}
+    )
+
+    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
+        scene = cast("bpy.types.Scene", context.scene)
+        gone = {
+            row.as_pointer()
+            for row in rows_of(scene, *rigs)
+            if row.target == self.target_bone and self.source_bone in {"", row.source}
+        }
+        if not gone:
+            raise ObjectError(f'"{self.target_bone}" of "{rigs[1].name}" is not in the table of pairs.')
+        table = bone_pairs_of(scene)
+        for number in [number for number, row in enumerate(table) if row.as_pointer() in gone][::-1]:
+            table.remove(number)
+        return f'"{self.target_bone}" was taken out of the table'
+
+
+class HIERMATCH_OT_clear_bone_pairs(PairEditor, bpy.types.Operator):
+    """Clear the table of pairs."""
+
+    bl_idname = "hiermatch.clear_bone_pairs"
+    bl_label = "Clear Bone Pairs"
+    bl_description = "Take the pairs of two armatures out of the table"
+    bl_options = {"REGISTER", "UNDO"}
+
+    locked: bpy.props.BoolProperty(name="Locked Too", description="Take locked pairs out as well")
+
+    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
+        count = clear_rows(cast("bpy.types.Scene", context.scene), rigs, locked=self.locked)
+        return f"{count} pairs were taken out of the table"

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The table of pairs of bones on a scene: read and written as pairs of numbers, and as text."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from mathutils import Matrix, Quaternion, Vector
+
+from ...engine import BonePairing
+from ..common.errors import ObjectError
+from ..scene.armatures import armature_of
+from ..scene.rigged_body import object_rotation, own_skeleton
+from .motion_properties import bone_pairs_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import bpy
+    from numpy.typing import NDArray
+
+__all__ = [
+    "add_row",
+    "clear_rows",
+    "held_pairs",
+    "pairing_of",
+    "pairs_from_text",
+    "pairs_to_text",
+    "rows_of",
+    "write_pairing",
+]
+
+_FORMAT, _VERSION = "HierMatch bone pairs", 1
+
+_VALUES = ("turn", "place", "upright")
+
+
+def rows_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> list[Any]:
+    """Return the rows of two armatures."""
+    return [row for row in bone_pairs_of(scene) if row.source_rig == source and row.target_rig == target]
+
+
+def held_pairs(
+    scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object
+) -> tuple[list[tuple[int, int]], list[int]]:
+    """Return what the locked rows say: pairs of numbers of bones, and bones of the target that stay alone.
+
+    Rows whose bones there are no more count for nothing.
+    """
+    numbers = [{bone.name: number for number, bone in enumerate(armature_of(rig).bones)} for rig in (source, target)]
+    locked = [row for row in rows_of(scene, source, target) if row.locked and row.target in numbers[1]]
+    pairs = [(numbers[0][row.source], numbers[1][row.target]) for row in locked if row.source in numbers[0]]
+    return pairs, [numbers[1][row.target] for row in locked if not row.source]
+
+
+def write_pairing(
+    scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object, pairing: BonePairing
+) -> None:
+    """Write pairs, in the armatures' own spaces, into the table, in place of those that are not locked."""
+    names = [tuple(bone.name for bone in armature_of(rig).bones) for rig in (source, target)]
+    locked = {(row.source, row.target) for row in rows_of(scene, source, target) if row.locked}
+    _remove(scene, [row for row in rows_of(scene, source, target) if not row.locked or row.source])
+    upright = _quaternion(pairing.upright)
+    for number in range(len(pairing)):
+        row = bone_pairs_of(scene).add()
+        row.source, row.target = names[0][pairing.sources[number]], names[1][pairing.targets[number]]
+        row.name = row.target
+        row.source_rig, row.target_rig = source, target
+        row.score = min(1.0, max(0.0, float(pairing.scores[number])))
+        row.locked = (row.source, row.target) in locked
+        row.turn = _quaternion(pairing.rotations[number])
+        row.place = pairing.places[number].tolist()
+        row.upright, row.is_seen = upright, True
+
+
+def pairing_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> BonePairing:
+    """Read the pairs of two armatures, in the armatures' own spaces.
+
+    A row that was made by hand is turned as the bones are: its turn takes the direction of the one to the other's.
+
+    Raises
+    ------
+    ObjectError
+        If there is none.
+    """
+    numbers = [{bone.name: number for number, bone in enumerate(armature_of(rig).bones)} for rig in (source, target)]
+    rows = [row for row in rows_of(scene, source, target) if row.source in numbers[0] and row.target in numbers[1]]
+    if not rows:
+        raise ObjectError(f'No bones of "{source.name}" and "{target.name}" are paired. Pair their bones first.')
+    trees = own_skeleton(source), own_skeleton(target)
+    sources = np.array([numbers[0][row.source] for row in rows], np.int64)
+    targets = np.array([numbers[1][row.target] for row in rows], np.int64)
+    seen = next((row for row in rows if row.is_seen), None)
+    upright = _matrix(seen.upright) if seen else object_rotation(target).T @ object_rotation(source)
+    turns, places = [], []
+    for row, one, other in zip(rows, sources, targets, strict=True):
+        if row.is_seen:
+            turns.append(_matrix(row.turn))
+            places.append(np.array(row.place, np.float64))
+            continue
+        start, goal = (
+            upright @ (trees[0].tails[one] - trees[0].heads[one]),
+            trees[1].tails[other] - trees[1].heads[other],
+        )
+        swing = Matrix.Identity(3)
+        if np.linalg.norm(start) > 0 and np.linalg.norm(goal) > 0:
+            swing = Vector(start.tolist()).rotation_difference(Vector(goal.tolist())).to_matrix()
+        turns.append(np.array(swing, np.float64) @ upright)
+        places.append(trees[1].heads[other])
+    order = np.argsort(targets, kind="stable")
+    scores = np.array([row.score for row in rows], np.float64)
+    return BonePairing(
+        sources[order], targets[order], scores[order], np.array(turns)[order], np.array(places)[order], upright
+    )
+
+
+def add_row(scene: bpy.types.Scene, rigs: tuple[bpy.types.Object, bpy.types.Object], bones: tuple[str, str]) -> None:
+    """Add a locked row that was made by hand; with an empty name of a source bone, the target's bone stays alone.
+
+    Other rows of the same target bone go.
+
+    Raises
+    ------
+    ObjectError
+        If an armature has no such bone.
+    """
+    for rig, name in zip(rigs, bones, strict=True):
+        if name not in armature_of(rig).bones and (name or rig == rigs[1]):
+            raise ObjectError(f'"{rig.name}" has no bone called "{name}".')
+    _remove(scene, [row for row in rows_of(scene, *rigs) if row.target == bones[1]])
+    row = bone_pairs_of(scene).add()
+    row.source_rig, row.target_rig = rigs
+    row.source, row.target = bones
+    row.name, row.locked = bones[1], True
+
+
+def clear_rows(scene: bpy.types.Scene, rigs: tuple[bpy.types.Object, bpy.types.Object], *, locked: bool) -> int:
+    """Take all rows of two armatures out of the table, the locked ones as well if wanted; return how many."""
+    gone = [row for row in rows_of(scene, *rigs) if locked or not row.locked]
+    _remove(scene, gone)
+    return len(gone)
+
+
+def pairs_to_text(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> str:
+    """Write the table of two armatures as JSON.
+
+    Raises
+    ------
+    ObjectError
+        If it is empty.
+    """
+    rows = rows_of(scene, source, target)
+    if not rows:
+        raise ObjectError(f'No bones of "{source.name}" and "{target.name}" are paired. Pair their bones first.')
+    pairs = [
+        {"source": row.source, "target": row.target, "score": row.score, "locked": row.locked}
+        | ({name: list(getattr(row, name)) for name in _VALUES} if row.is_seen else {})
+        for row in rows
+    ]
+    text = {"format": _FORMAT, "version": _VERSION, "source": source.name, "target": target.name, "pairs": pairs}
+    return json.dumps(text, indent=1)
+
+
+def pairs_from_text(
+    scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object, text: str
+) -> tuple[int, list[str]]:
+    """Read a table from JSON in place of that of two armatures.
+
+    Returns
+    -------
+    count : int
+        How many pairs were read.
+    missing : list of str
+        Names of bones that the armatures do not have; their pairs were left out.
+
+    Raises
+    ------
+    ObjectError
+        If it is no such text, or no pair fits; nothing is changed then.
+    """
+    try:
+        read = json.loads(text)
+        if read["format"] != _FORMAT or read["version"] != _VERSION:
+            raise ValueError  # noqa: TRY301 - told below
+        pairs = [_checked(pair) for pair in read["pairs"]]
+    except (ValueError, KeyError, TypeError) as error:
+        raise ObjectError("The file holds no pairs of bones. Choose one that was exported from HierMatch.") from error
+    bones = [set(armature_of(rig).bones.keys()) for rig in (source, target)]
+    wanted = [[pair[side] for pair in pairs if pair[side]] for side in ("source", "target")]
+    missing = [name for names, known in zip(wanted, bones, strict=True) for name in names if name not in known]
+    fitting = [
+        pair for pair in pairs if pair["target"] in bones[1] and (not pair["source"] or pair["source"] in bones[0])
+    ]
+    if not fitting:
+        raise ObjectError(f'No pair of the file fits the bones of "{source.name}" and "{target.name}".')
+    _remove(scene, rows_of(scene, source, target))
+    for pair in fitting:
+        row = bone_pairs_of(scene).add()
+        row.source_rig, row.target_rig, row.name = source, target, pair["target"]
+        for name, value in pair.items():
+            setattr(row, name, value)
+        row.is_seen = all(name in pair for name in _VALUES)
+    return len(fitting), list(dict.fromkeys(missing))
+
+
+def _checked(pair: dict[str, Any]) -> dict[str, Any]:
+    """Take what is known of a pair.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError
+        If it is no pair.
+    """
+    found: dict[str, Any] = {"source": str(pair["source"]), "target": str(pair["target"])}
+    found |= {"score": float(pair.get("score", 1.0)), "locked": bool(pair.get("locked", False))}
+    if all(name in pair for name in _VALUES):
+        found |= {name: [float(value) for value in pair[name]] for name in _VALUES}
+        if [len(found[name]) for name in _VALUES] != [4, 3, 4]:
+            raise ValueError
+    return found
+
+
+def _remove(scene: bpy.types.Scene, rows: Sequence[Any]) -> None:
+    """Take rows out of the table."""
+    table, gone = bone_pairs_of(scene), {row.as_pointer() for row in rows}
+    for number in [number for number, row in enumerate(table) if row.as_pointer() in gone][::-1]:
+        table.remove(number)
+
+
+def _quaternion(matrix: NDArray[np.float64]) -> Quaternion:
+    return Matrix(matrix.tolist()).to_quaternion()
+
+
+def _matrix(values: Any) -> NDArray[np.float64]:  # noqa: ANN401 - a vector of Blender's
+    return np.array(Quaternion(values).normalized().to_matrix(), np.float64)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curves of actions in any version of Blender: with slots and layers from 4.4 on, without before."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from ..common.errors import ObjectError
+from .armatures import armature_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = [
+    "CurveMaker",
+    "actions_of",
+    "assign_action",
+    "bone_curves",
+    "named_action",
+    "object_curves",
+    "played_action",
+    "slot_for",
+]
+
+_BONE = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]\.(?P<channel>\w+)$')
+
+
+def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
+    """Return the action that an armature plays; None for none."""
+    animation = armature.animation_data
+    return None if animation is None else animation.action
+
+
+def named_action(name: str) -> bpy.types.Action:
+    """Return the action of that name.
+
+    Raises
+    ------
+    ObjectError
+        If there is none.
+    """
+    action = bpy.data.actions.get(name)
+    if action is None:
+        raise ObjectError(f'There is no action called "{name}".')
+    return action
+
+
+def actions_of(armature: bpy.types.Object) -> list[bpy.types.Action]:
+    """Return all actions of the file that move bones of an armature."""
+    return [action for action in bpy.data.actions if any(True for _ in bone_curves(action, armature))]
+
+
+def slot_for(action: bpy.types.Action, armature: bpy.types.Object) -> Any:  # noqa: ANN401 - new in Blender 4.4
+    """Return the slot of an action that is meant for an armature; None before 4.4, or if it has none."""
+    slots = getattr(action, "slots", None)
+    if not slots:
+        return None
+    animation = armature.animation_data
+    if animation is not None and animation.action == action and animation.action_slot is not None:
+        return animation.action_slot
+    fitting = [slot for slot in slots if slot.target_id_type in {"OBJECT", "UNSPECIFIED"}]
+    named = [slot for slot in fitting if slot.identifier == f"OB{armature.name}"]
+    # Of several the one that moves most of the bones.
+    return max(named or fitting, key=lambda slot: _matching(action, slot, armature), default=None)
+
+
+def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterator[tuple[str, str, Any]]:
+    """Go through the curves of an action that move bones of an armature: bone, channel, and the curve."""
+    bones = armature_of(armature).bones
+    for curve in _curves(action, slot_for(action, armature)):
+        found = _BONE.match(curve.data_path)
+        if found is not None:
+            name = bpy.utils.unescape_identifier(found["name"])
+            if name in bones:
+                yield name, found["channel"], curve
+
+
+def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> list[str]:
+    """Return which channels of the object itself an action moves."""
+    moving = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
+    paths = {curve.data_path for curve in _curves(action, slot_for(action, armature))}
+    return [path for path in moving if path in paths]
+
+
+def assign_action(armature: bpy.types.Object, action: bpy.types.Action) -> None:
+    """Let an armature play an action; the one that it played before is kept in the file."""
+    animation: Any = armature.animation_data or armature.animation_data_create()
+    if animation.action is not None and animation.action != action:
+        animation.action.use_fake_user = True
+    animation.action = action
+    slot = slot_for(action, armature)
+    if slot is not None:
+        animation.action_slot = slot
+
+
+class CurveMaker:
+    """Makes an action for an armature, curve by curve.
+
+    Parameters
+    ----------
+    name : str
+        Name of the action.
+    armature : bpy.types.Object
+        Whom it is for.
+    model : bpy.types.Action
+        Whose frame range and cycle it takes over.
+    """
+
+    def __init__(self, name: str, armature: bpy.types.Object, model: bpy.types.Action) -> None:
+        made: Any = bpy.data.actions.new(name)
+        made.use_fake_user = True
+        self.action = made
+        self._bag = None
+        if hasattr(made, "slots"):
+            slot = made.slots.new("OBJECT", armature.name)
+            strip = made.layers.new("Layer").strips.new(type="KEYFRAME")
+            self._bag = strip.channelbag(slot, ensure=True)
+        for option in ("use_frame_range", "frame_start", "frame_end", "use_cyclic"):
+            setattr(made, option, getattr(model, option))
+
+    def curve(self, bone: str, channel: str, index: int) -> Any:  # noqa: ANN401 - Blender's types differ
+        """Make a curve of a bone's channel, in the bone's group."""
+        path = f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{channel}'
+        if self._bag is None:
+            return self.action.fcurves.new(path, index=index, action_group=bone)
+        curve = self._bag.fcurves.new(path, index=index)
+        curve.group = self._bag.groups.get(bone) or self._bag.groups.new(bone)
+        return curve
+
+
+def _curves(action: bpy.types.Action, slot: Any) -> Iterator[Any]:  # noqa: ANN401 - new in Blender 4.4
+    """Go through the curves of a slot of an action."""
+    if not hasattr(action, "slots"):
+        yield from cast("Any", action).fcurves
+        return
+    if slot is None:
+        return
+    for layer in action.layers:
+        for strip in layer.strips:
+            bag = cast("Any", strip).channelbag(slot)
+            if bag is not None:
+                yield from bag.fcurves
+
+
+def _matching(action: bpy.types.Action, slot: Any, armature: bpy.types.Object) -> int:  # noqa: ANN401 - see above
+    """Count the curves of a slot that move bones of an armature."""
+    bones = armature_of(armature).bones
+    found = (_BONE.match(curve.data_path) for curve in _curves(action, slot))
+    return sum(match is not None and bpy.utils.unescape_identifier(match["name"]) in bones for match in found)

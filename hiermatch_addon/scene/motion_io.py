@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion of armatures as arrays: read from actions and poses, and written as keys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from mathutils import Matrix
+
+from ...engine import Motion, posed_motion, rotation_matrices
+from .action_curves import CurveMaker, assign_action, bone_curves, slot_for
+from .armatures import armature_of
+from .rigged_body import own_skeleton, rest_matrices
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import bpy
+    from numpy.typing import NDArray
+
+__all__ = [
+    "ActionKeys",
+    "BoneKeys",
+    "current_motion",
+    "evaluated_frames",
+    "needs_evaluation",
+    "posed_at",
+    "read_keys",
+    "rotation_channel",
+    "set_pose",
+    "write_action",
+]
+
+_ROTATIONS = {"QUATERNION": ("rotation_quaternion", 4), "AXIS_ANGLE": ("rotation_axis_angle", 4)}
+_EULER = ("rotation_euler", 3)
+
+
+@dataclass(frozen=True, eq=False)
+class ActionKeys:
+    """Where an action has its keys.
+
+    Attributes
+    ----------
+    frames : (2,) array of float
+        First and last frame.
+    times : dict
+        For each bone that it moves the frames of its keys, (k,).
+    interpolations : dict
+        For each bone the interpolation after each of these keys, and the easing.
+    cycles : dict
+        For each bone that has one the settings of the modifier that repeats its curves.
+    extrapolations : dict
+        For each bone how its curves go on beyond the keys.
+    """
+
+    frames: NDArray[np.float64]
+    times: dict[str, NDArray[np.float64]]
+    interpolations: dict[str, list[tuple[str, str]]]
+    cycles: dict[str, dict[str, Any]]
+    extrapolations: dict[str, str]
+
+
+@dataclass(frozen=True, eq=False)
+class BoneKeys:
+    """Keys of one channel of a bone, such as its rotation, c numbers in k frames.
+
+    Attributes
+    ----------
+    bone, channel : str
+        Which.
+    frames : (k,) array of float
+        When.
+    values : (k, c) array of float
+        The values.
+    slopes : (2, k, c) array of float
+        Their change per frame before and after each key.
+    interpolations : list of (str, str)
+        Interpolation and easing after each key; Bézier if empty.
+    cycle : dict
+        Settings of a modifier that repeats the curves; none if empty.
+    extrapolation : str
+        How they go on beyond the keys.
+    """
+
+    bone: str
+    channel: str
+    frames: NDArray[np.float64]
+    values: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+    interpolations: list[tuple[str, str]] = field(default_factory=list)
+    cycle: dict[str, Any] = field(default_factory=dict)
+    extrapolation: str = "CONSTANT"
+
+
+_CYCLE = ("mode_before", "cycles_before", "mode_after", "cycles_after")
+
+
+def needs_evaluation(armature: bpy.types.Object) -> bool:
+    """Tell whether more than the curves of its bones decides how an armature stands: constraints, drivers and such."""
+    pose = cast("bpy.types.Pose", armature.pose)
+    if any(not constraint.mute for bone in pose.bones for constraint in bone.constraints):
+        return True
+    if any(
+        not bone.use_inherit_rotation or not bone.use_local_location or bone.inherit_scale != "FULL"
+        for bone in armature_of(armature).bones
+    ):
+        return True
+    animations = (armature.animation_data, armature_of(armature).animation_data)
+    return any(animation is not None and len(animation.drivers) > 0 for animation in animations)
+
+
+def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKeys:
+    """Read where an action has its keys."""
+    times: dict[str, dict[float, tuple[str, str]]] = {}
+    cycles: dict[str, dict[str, Any]] = {}
+    extrapolations: dict[str, str] = {}
+    for bone, _, curve in bone_curves(action, armature):
+        keys = times.setdefault(bone, {})
+        for point in curve.keyframe_points:
+            keys.setdefault(float(point.co[0]), (point.interpolation, point.easing))
+        extrapolations.setdefault(bone, curve.extrapolation)
+        for modifier in curve.modifiers:
+            if modifier.type == "CYCLES" and not modifier.mute:
+                cycles.setdefault(bone, {name: getattr(modifier, name) for name in _CYCLE})
+    frames = {bone: np.array(sorted(keys), np.float64) for bone, keys in times.items()}
+    curved = {bone: [times[bone][float(frame)] for frame in found] for bone, found in frames.items()}
+    return ActionKeys(np.array(action.frame_range, np.float64), frames, curved, cycles, extrapolations)
+
+
+def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]) -> Motion:
+    """Pose an armature as the curves of an action say, at frames (f,), in its own space.
+
+    Channels without curves are as the bones stand, as if the action were played now.
+    """
+    pose = cast("bpy.types.Pose", armature.pose)
+    curves: dict[tuple[str, str], dict[int, Any]] = {}
+    for bone, channel, curve in bone_curves(action, armature):
+        curves.setdefault((bone, channel), {})[curve.array_index] = curve
+    basis = np.tile(np.eye(4), (len(frames), len(pose.bones), 1, 1))
+    for number, bone in enumerate(pose.bones):
+        channel, _ = _ROTATIONS.get(bone.rotation_mode, _EULER)
+        read = {}
+        for name in (channel, "location", "scale"):
+            found = curves.get((bone.name, name), {})
+            values = np.tile(np.array(getattr(bone, name), np.float64), (len(frames), 1))
+            for index, curve in found.items():
+                values[:, index] = [curve.evaluate(frame) for frame in frames]
+            read[name] = values
+        turn = rotation_matrices(read[channel], bone.rotation_mode)
+        basis[:, number, :3, :3] = turn * read["scale"][:, None]
+        basis[:, number, :3, 3] = read["location"]
+    return posed_motion(own_skeleton(armature), rest_matrices(armature), basis)
+
+
+def current_motion(armature: bpy.types.Object) -> Motion:
+    """Read the pose in which an armature stands now, after constraints, in its own space: a motion of one pose."""
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    posed = np.array([bone.matrix for bone in bones], np.float64).reshape(1, -1, 4, 4)
+    return _motion_of(armature, posed)
+
+
+def evaluated_frames(
+    scene: bpy.types.Scene, action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]
+) -> Motion:
+    """Let Blender play an action at frames (f,), with all constraints and drivers, and leave everything as it was."""
+    animation: Any = armature.animation_data or armature.animation_data_create()
+    before = animation.action, getattr(animation, "action_slot", None), animation.use_nla
+    frame, part = scene.frame_current, scene.frame_subframe
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    bases = [bone.matrix_basis.copy() for bone in bones]
+    posed = np.empty((len(frames), len(bones), 4, 4))
+    slot = slot_for(action, armature)
+    try:
+        animation.use_nla = False
+        animation.action = action
+        if slot is not None:
+            animation.action_slot = slot
+        for number, time in enumerate(frames):
+            scene.frame_set(int(np.floor(time)), subframe=float(time - np.floor(time)))
+            posed[number] = [bone.matrix for bone in bones]
+    finally:
+        animation.action, animation.use_nla = before[0], before[2]
+        if before[0] is not None and before[1] is not None:
+            animation.action_slot = before[1]
+        scene.frame_set(frame, subframe=part)
+        for bone, basis in zip(bones, bases, strict=True):
+            bone.matrix_basis = basis
+    return _motion_of(armature, posed)
+
+
+def _motion_of(armature: bpy.types.Object, posed: NDArray[np.float64]) -> Motion:
+    """Make a motion of the matrices of the bones (f, b, 4, 4) in the armature's space."""
+    skeleton, rest = own_skeleton(armature), rest_matrices(armature)
+    # As if nothing hung on anything: each matrix is against its rest.
+    loose = type(skeleton)(np.full(len(skeleton), -1), skeleton.heads, skeleton.tails)
+    motion = posed_motion(loose, rest, np.linalg.inv(rest) @ posed)
+    return Motion(skeleton, motion.turns, motion.heads)
+
+
+def write_action(
+    name: str, armature: bpy.types.Object, model: bpy.types.Action, keys: Sequence[BoneKeys], *, assign: bool
+) -> bpy.types.Action:
+    """Make an action of keys, named and ranged like another one.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    armature : bpy.types.Object
+        Whom it is for.
+    model : bpy.types.Action
+        Whose frame range it takes over.
+    keys : sequence of BoneKeys
+        The keys.
+    assign : bool
+        Whether the armature plays it.
+
+    Returns
+    -------
+    bpy.types.Action
+        The action.
+    """
+    maker = CurveMaker(name, armature, model)
+    for channel in keys:
+        for index in range(channel.values.shape[1]):
+            _write_curve(maker.curve(channel.bone, channel.channel, index), channel, index)
+    if assign:
+        assign_action(armature, maker.action)
+    return maker.action
+
+
+def _write_curve(curve: Any, keys: BoneKeys, index: int) -> None:  # noqa: ANN401 - Blender's types differ
+    """Write the keys of one number."""
+    count, points = len(keys.frames), curve.keyframe_points
+    points.add(count)
+    values = keys.values[:, index]
+    points.foreach_set("co", np.stack([keys.frames, values], axis=1).astype(np.float32).ravel())
+    steps = np.diff(keys.frames, prepend=keys.frames[:1] - 1, append=keys.frames[-1:] + 1) / 3
+    for side, sign, lengths in (("left", -1, steps[:-1]), ("right", 1, steps[1:])):
+        slopes = keys.slopes[0 if side == "left" else 1, :, index]
+        ends = np.stack([keys.frames + sign * lengths, values + sign * lengths * slopes], axis=1)
+        points.foreach_set(f"handle_{side}", ends.astype(np.float32).ravel())
+    for point, (interpolation, easing) in zip(points, keys.interpolations or [("BEZIER", "AUTO")] * count, strict=True):
+        point.handle_left_type = point.handle_right_type = "FREE"
+        point.interpolation, point.easing = interpolation, easing
+    curve.extrapolation = keys.extrapolation
+    if keys.cycle:
+        modifier = curve.modifiers.new("CYCLES")
+        for name, value in keys.cycle.items():
+            setattr(modifier, name, value)
+
+
+def set_pose(armature: bpy.types.Object, bases: dict[str, NDArray[np.float64]]) -> None:
+    """Pose bones by their transforms (4, 4) against their parents; scales stay."""
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    for name, basis in bases.items():
+        scale = bones[name].scale.copy()
+        bones[name].matrix_basis = Matrix(basis.tolist())
+        bones[name].scale = scale
+
+
+def rotation_channel(mode: str) -> str:
+    """Return the channel in which a bone of such a rotation mode keeps its rotation."""
+    return _ROTATIONS.get(mode, _EULER)[0]

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Strips of actions in the NLA editor, copied from one object to another that has actions of its own in their place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .action_curves import slot_for
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import bpy
+
+__all__ = ["copy_strips", "strip_actions"]
+
+_TRACK = ("mute", "lock")
+_STRIP = (
+    "action_frame_start",
+    "action_frame_end",
+    "scale",
+    "repeat",
+    "use_auto_blend",
+    "blend_in",
+    "blend_out",
+    "blend_type",
+    "extrapolation",
+    "use_reverse",
+    "use_sync_length",
+    "influence",
+    "mute",
+)
+"""What copies take over, in this order: lengths follow from the first ones."""
+
+
+def strip_actions(source: bpy.types.Object) -> list[str]:
+    """Return the names of all actions that strips of an object play."""
+    animation = source.animation_data
+    tracks = animation.nla_tracks if animation is not None else ()
+    return list(dict.fromkeys(strip.action.name for track in tracks for strip in track.strips if strip.action))
+
+
+def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mapping[str, bpy.types.Action]) -> None:
+    """Copy the tracks of an object with those strips whose actions have a counterpart.
+
+    Parameters
+    ----------
+    source, target : bpy.types.Object
+        From where, and where to.
+    made : mapping
+        The target's action for the name of each of the source's.
+    """
+    animation = source.animation_data
+    if animation is None:
+        return
+    theirs: Any = target.animation_data or target.animation_data_create()
+    for track in animation.nla_tracks:
+        strips = [strip for strip in track.strips if strip.action is not None and strip.action.name in made]
+        if not strips:
+            continue
+        copy = theirs.nla_tracks.new()
+        copy.name = track.name
+        for strip in strips:
+            action = made[strip.action.name]  # type: ignore[union-attr]
+            new = copy.strips.new(strip.name, int(strip.frame_start), action)
+            slot = slot_for(action, target)
+            if slot is not None:
+                new.action_slot = slot
+            for name in _STRIP:
+                setattr(new, name, getattr(strip, name))
+            new.frame_start, new.frame_end = strip.frame_start, strip.frame_end
+        for name in _TRACK:
+            setattr(copy, name, getattr(track, name))

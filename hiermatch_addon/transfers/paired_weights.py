@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Weights for the rig that the target has already: the source's, handed to the bones paired with its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from scipy.sparse import csr_array, hstack
+
+from ...engine import Columns, carry_weights_steps, paired_weights, put_in
+from ..common.errors import ObjectError
+from ..common.phrases import counted, listed
+from ..jobs.transfer import TransferReport
+from ..properties.bone_pairs import pairing_of
+from ..scene.armatures import armature_of, find_armature, read_rig, read_skeleton
+from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
+from ..scene.rigged_body import rig_of
+from .weight_groups import locked_groups
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ...engine import BonePairing, Skeleton, Steps
+    from ..jobs.transfer import Passage
+    from ..scene.armatures import SourceRig
+
+__all__ = ["PairedWeightTransfer"]
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """What was read: the source's rig, the pairs, and bones and weights of the target."""
+
+    rig: SourceRig
+    pairing: BonePairing
+    skeleton: Skeleton
+    names: tuple[str, ...]
+    before: csr_array
+    columns: Columns
+
+
+class PairedWeightTransfer:
+    """Carries weights to other bones; see `Transfer`.
+
+    Parameters
+    ----------
+    limit : int
+        How many bones may move a vertex; 0 for any number.
+    """
+
+    label = "Weights"
+    uses_rig = True
+
+    def __init__(self, limit: int) -> None:
+        self._limit = limit
+        self._task: _Task | None = None
+        self._result: csr_array = csr_array((0, 0))
+
+    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        """Read the weights, and the pairs of the two rigs."""
+        check_weights_writable(target)
+        rig, armature = read_rig(source), find_armature(source)
+        if rig is None or armature is None:
+            raise ObjectError(f'"{source.name}" has no weights for the bones of an armature. Choose a rigged Source.')
+        own = rig_of(target)
+        pairing = pairing_of(cast("bpy.types.Scene", context.scene), armature, own)
+        names = tuple(bone.name for bone in armature_of(own).bones)
+        if pairing.sources.max() >= len(rig.names):
+            raise ObjectError(f'The bones of "{armature.name}" were changed. Pair the bones again.')
+        matrix = np.array(own.matrix_world, np.float64)
+        placed = pairing.places @ matrix[:3, :3].T + matrix[:3, 3]
+        worldly = type(pairing)(
+            pairing.sources, pairing.targets, pairing.scores, pairing.rotations, placed, pairing.upright
+        )
+        locked = locked_groups(target)
+        deforming = np.array([bone.use_deform for bone in armature_of(own).bones], bool)
+        held = np.array([name in locked for name in names], bool)
+        if not (deforming & ~held)[pairing.targets].any():
+            raise ObjectError(
+                f'The vertex groups of all paired bones of "{own.name}" are locked on "{target.name}", or the bones do '
+                "not deform. Unlock some of them."
+            )
+        groups = [target.vertex_groups.find(name) for name in names]
+        there = read_weights(target).tocsc()
+        before = [there[:, [group]] if group >= 0 else csr_array((there.shape[0], 1)) for group in groups]
+        columns = Columns(held, deforming, deforming, yielding=True)
+        self._task = _Task(rig, worldly, read_skeleton(own), names, _side_by_side(before), columns)
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Compute the weights of the target."""
+        task = self._read_task
+        carried = yield from carry_weights_steps(
+            task.rig.weights, passage.pair.source, passage.pair.target, passage.pair.target_to_source
+        )
+        vertices = passage.pair.target.vertices
+        handed = paired_weights(carried.weights, vertices, task.pairing, task.rig.skeleton, task.skeleton)
+        self._result = put_in(task.before, handed, task.columns, limit=self._limit)
+
+    def write(self, _context: bpy.types.Context, _source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+        """Write the groups of the target's bones."""
+        task = self._read_task
+        written = task.columns.new & ~task.columns.locked
+        present = np.array([name in target.vertex_groups for name in task.names], bool)
+        used = np.asarray((self._result != 0).sum(axis=0)).ravel() > 0
+        numbers = np.flatnonzero(written & (used | present))
+        write_weights(target, [task.names[number] for number in numbers], csr_array(self._result[:, numbers]))
+        held = [task.names[number] for number in np.flatnonzero(task.columns.locked)]
+        notes = (f'Locked vertex groups of "{target.name}" were left alone: {listed(held)}.',) if held else ()
+        return TransferReport(counted(len(numbers), "vertex group"), notes)
+
+    @property
+    def _read_task(self) -> _Task:
+        if self._task is None:
+            raise RuntimeError("Nothing was read yet.")
+        return self._task
+
+
+def _side_by_side(columns: list[Any]) -> csr_array:
+    """Put sparse columns together."""
+    return csr_array(hstack(columns, format="csr"))

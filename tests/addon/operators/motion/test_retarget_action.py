@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Actions and poses carried from one rig to another, as scripts do."""
+
+from math import radians
+
+import bpy
+import numpy as np
+import pytest
+from hiermatch.hiermatch_addon.jobs import motion_job
+from mathutils import Matrix
+
+from tests.addon.characters import add_action, add_person, match_at_once, posed_vertices
+
+carry, pose = bpy.ops.hiermatch.retarget_action, bpy.ops.hiermatch.retarget_pose
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch):
+    """Match without work."""
+    match_at_once(monkeypatch)
+
+
+def curves_of(action):
+    """Data path and index -> curve, in any version."""
+    if hasattr(action, "slots"):
+        bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
+        return {(curve.data_path, curve.array_index): curve for bag in bags for curve in bag.fcurves}
+    return {(curve.data_path, curve.array_index): curve for curve in action.fcurves}
+
+
+def worst(source, target, frames):
+    """Mean distance of the target's vertices from the source's, in the worst of some frames, by the height."""
+    errors = []
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        errors.append(np.linalg.norm(posed_vertices(source) - posed_vertices(target), axis=1).mean())
+    return max(errors) / 1.8
+
+
+@pytest.mark.parametrize(
+    ("options", "most"),
+    [
+        ({"rig": "renamed", "rolls": 0.7}, 2e-3),
+        ({"rig": "renamed", "rolls": -1.1, "hanging": True, "mode": "XZY"}, 0.012),
+        ({"rig": "fine", "mode": "AXIS_ANGLE"}, 0.012),
+        ({"rig": "renamed", "matrix": Matrix.Rotation(radians(90), 4, "X") @ Matrix.Scale(0.01, 4)}, 2e-3),
+    ],
+    ids=["renamed", "hanging", "fine", "scaled"],
+)
+def test_the_target_moves_as_the_source_does(options, most):
+    source, _ = add_person("A")
+    if matrix := options.pop("matrix", None):
+        target, _ = add_person("B", **options)
+        for obj in (target,):  # as files of other programs are: the armature turned and scaled, its data the other way
+            obj.data.transform(matrix.inverted())
+            obj.matrix_world = matrix
+            for child in obj.children:
+                child.matrix_parent_inverse.identity()
+                child.data.transform(matrix.inverted())
+        bpy.context.view_layer.update()
+    else:
+        target, _ = add_person("B", **options)
+    add_action(source)
+    assert carry(source="A", target="B", action="Wave") == {"FINISHED"}
+    assert target.animation_data.action.name == "Wave B"
+    assert worst(source, target, (1, 11, 21)) < most
+    assert worst(source, target, (6, 16)) < max(0.02, most)
+    assert source.animation_data.action.name == "Wave"
+
+
+def test_sparse_keys_stay_sparse_with_their_interpolation():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed", rolls=0.4)
+    action = add_action(source)
+    for curve in curves_of(action).values():
+        curve.keyframe_points[0].interpolation = "LINEAR"
+        curve.keyframe_points[1].interpolation = "CONSTANT"
+        curve.modifiers.new("CYCLES")
+    carry(source="A", target="B")
+    curves = curves_of(bpy.data.actions["Wave B"])
+    arm = made.names[[origin == frozenset(["forearm.L"]) for origin in made.origins].index(True)]
+    curve = curves[f'pose.bones["{arm}"].rotation_quaternion', 1]
+    assert [point.co[0] for point in curve.keyframe_points] == [1, 11, 21]
+    assert [point.interpolation for point in curve.keyframe_points] == ["LINEAR", "CONSTANT", "BEZIER"]
+    assert [modifier.type for modifier in curve.modifiers] == ["CYCLES"]
+    still = made.names[[origin == frozenset(["hand.R"]) for origin in made.origins].index(True)]
+    assert len(curves[f'pose.bones["{still}"].rotation_quaternion', 0].keyframe_points) == 1
+    assert worst(source, target, (1, 6, 15, 21)) < 5e-3
+
+
+def test_baked_keys_are_few_and_true():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    counts = {}
+    for keys in ("REDUCED", "ALL"):
+        carry(source="A", target="B", keys=keys)
+        counts[keys] = sum(len(curve.keyframe_points) for curve in curves_of(target.animation_data.action).values())
+        assert worst(source, target, (1, 4, 9, 17, 21)) < 4e-3
+    assert counts["REDUCED"] < 0.6 * counts["ALL"]
+
+
+def test_what_constraints_do_to_the_source_is_carried_too():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    constraint = source.pose.bones["head"].constraints.new("LIMIT_ROTATION")
+    constraint.use_limit_x, constraint.min_x, constraint.max_x = True, 0.5, 0.5
+    constraint.owner_space = "LOCAL"
+    bpy.context.scene.frame_set(7)
+    carry(source="A", target="B", keys="ALL")
+    assert bpy.context.scene.frame_current == 7
+    assert source.animation_data.action.name == "Wave"
+    assert worst(source, target, (1, 6, 21)) < 2e-3
+
+
+def test_all_actions_go_to_several_targets_and_strips_are_copied():
+    source, _ = add_person("A")
+    targets = [add_person(name, "renamed")[0] for name in ("B", "C")]
+    add_action(source, "Wave")
+    track = source.animation_data.nla_tracks.new()
+    strip = track.strips.new("Wave", 30, bpy.data.actions["Wave"])
+    strip.repeat, strip.blend_type = 2, "ADD"
+    bpy.data.actions["Wave"].use_fake_user = True
+    add_action(source, "Nod", ["neck", "head"])
+    source.animation_data.nla_tracks.new().strips.new("Wave", 30, bpy.data.actions["Wave"]).repeat = 2
+    names = [{"name": name} for name in "BC"]
+    assert carry(source="A", targets=names, actions="ALL", strips=True) == {"FINISHED"}
+    for target in targets:
+        assert {f"Wave {target.name}", f"Nod {target.name}"} <= set(bpy.data.actions.keys())
+        (copy,) = target.animation_data.nla_tracks[0].strips
+        assert copy.action.name == f"Wave {target.name}"
+        assert (copy.frame_start, copy.repeat) == (30, 2)
+
+
+def test_the_pose_of_the_moment():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed", rolls=0.3, hanging=True)
+    add_action(source)
+    bpy.context.scene.frame_set(14)
+    assert pose(source="A", target="B") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    assert np.linalg.norm(posed_vertices(source) - posed_vertices(target), axis=1).mean() / 1.8 < 0.012
+    assert target.animation_data is None
+
+
+def test_in_place_and_stride():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source, way=(0.0, 0.0, -0.4))  # the axes of the hips: z is behind
+    ways = []
+    for options in ({}, {"stride": 0.5}, {"in_place": True}):
+        carry(source="A", target="B", **options)
+        places = []
+        for frame in (1, 21):
+            bpy.context.scene.frame_set(frame)
+            places.append(posed_vertices(bpy.data.objects["B"])[:, :2].mean(axis=0))
+        ways.append(np.linalg.norm(places[1] - places[0]))
+    assert ways[0] > 0.5
+    assert ways[1] < 0.65 * ways[0]
+    assert ways[2] < 0.3 * ways[0]
+
+
+def test_the_table_is_kept_and_a_second_run_uses_it(monkeypatch):
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source)
+    carry(source="A", target="B")
+    assert len(bpy.context.scene.hiermatch_bone_pairs) == 22
+    monkeypatch.setattr(motion_job, "PairingJob", None)
+    assert carry(source="A", target="B") == {"FINISHED"}
+
+
+def snapshot(target):
+    """What must stay as it is after a refusal."""
+    return (
+        sorted(bpy.data.actions.keys()),
+        [list(bone.matrix_basis.to_quaternion()) for bone in target.pose.bones],
+        target.animation_data and target.animation_data.action,
+        len(bpy.context.scene.hiermatch_bone_pairs),
+    )
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda _source, _target: None, 'There is no action called "Run"'),
+        (
+            lambda _source, target: target.pose.bones["B03"].__setattr__("lock_rotation", (True, False, False)),
+            "is locked",
+        ),
+        (lambda _source, target: bpy.data.objects.remove(target), 'no object called "B"'),
+        (
+            lambda source, _target: source.data.transform(Matrix.Scale(0, 4)) or source.__setattr__("scale", (0, 0, 0)),
+            "scale of zero",
+        ),
+    ],
+    ids=["missing", "locked", "gone", "flat"],
+)
+def test_what_cannot_be_done_is_told_and_changes_nothing(spoil, said):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    spoil(source, target)
+    bpy.context.view_layer.update()
+    there = "B" in bpy.data.objects
+    before = snapshot(target) if there else None
+    with pytest.raises(RuntimeError, match=said):
+        carry(source="A", target="B", action="Run" if "Run" in said else "Wave")
+    assert not there or snapshot(target) == before
+
+
+def test_an_armature_in_edit_mode_and_an_action_of_others_are_refused():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    bpy.data.actions.new("Empty")
+    with pytest.raises(RuntimeError, match='The action "Empty" moves no bone of "A"'):
+        carry(source="A", target="B", action="Empty")
+    with pytest.raises(RuntimeError, match="both"):
+        carry(source="A", target="A Body")
+    source.animation_data_clear()
+    with pytest.raises(RuntimeError, match="has no action that moves its bones"):
+        carry(source="A", target="B")
+    bpy.context.view_layer.objects.active = target
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert not carry.poll()
+    bpy.ops.object.mode_set(mode="OBJECT")
