@@ -39,6 +39,8 @@ from .retarget.values.face_transfer import carry_face_values
 from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
 from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
+from .retarget.wear.pose_mending import MendedWeights, mend_weights_steps
+from .retarget.wear.wearing import FittedItem, WornItem, wear_steps
 from .retarget.weights.skin_weights import carried as carry_weights
 from .retarget.weights.skin_weights import row_sums, with_rows
 from .retarget.weights.weight_transfer import CarriedWeights, Columns, carry_weights_steps, put_in
@@ -64,6 +66,7 @@ __all__ = [
     "DenseMatch",
     "Domain",
     "FacePlaces",
+    "FittedItem",
     "FittedRig",
     "GeodesicSolver",
     "HierMatchError",
@@ -74,6 +77,7 @@ __all__ = [
     "MatchQuality",
     "MatchResult",
     "MatchSettings",
+    "MendedWeights",
     "MeshError",
     "Motion",
     "MotionSettings",
@@ -96,6 +100,7 @@ __all__ = [
     "SymmetryResult",
     "TransferredMotion",
     "TriangleMesh",
+    "WornItem",
     "WrappedSurface",
     "at_rest",
     "bone_frames",
@@ -123,6 +128,7 @@ __all__ = [
     "local_transforms",
     "match",
     "match_steps",
+    "mend_weights_steps",
     "nearest_regions",
     "open_ends",
     "pair_bones",
@@ -149,6 +155,7 @@ __all__ = [
     "transfer_motion_steps",
     "unposed",
     "use_processes",
+    "wear_steps",
     "with_rows",
     "within",
     "wrap_steps",

@@ -20,6 +20,7 @@ from .operators.carrying.transfer_paired_weights import HIERMATCH_OT_transfer_pa
 from .operators.carrying.transfer_shape_keys import HIERMATCH_OT_transfer_shape_keys
 from .operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
 from .operators.carrying.transfer_weights import HIERMATCH_OT_transfer_weights
+from .operators.carrying.wear import HIERMATCH_OT_wear
 from .operators.carrying.wrap import HIERMATCH_OT_wrap
 from .operators.checking.before_after import HIERMATCH_OT_before_after
 from .operators.checking.bend_joints import HIERMATCH_OT_test_poses
@@ -70,10 +71,12 @@ from .panels.steering_panels import (
     HIERMATCH_UL_landmarks,
     HIERMATCH_UL_pairs,
 )
+from .panels.wear_panel import HIERMATCH_PT_wear
 from .properties.freshness import start_watching, stop_watching
 from .properties.motion_properties import HIERMATCH_PG_bone_pair, HIERMATCH_PG_motion
 from .properties.properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 from .properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
+from .transfers.options.wear import HIERMATCH_PG_worn
 from .transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
 
 __all__ = ["CLASSES", "register", "unregister"]
@@ -113,6 +116,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_write_regions,
     HIERMATCH_PG_report,
     HIERMATCH_PG_retarget,
+    HIERMATCH_PG_worn,
     HIERMATCH_OT_retarget,
     HIERMATCH_OT_fit_rig,
     HIERMATCH_OT_transfer_weights,
@@ -120,6 +124,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_transfer_uvs,
     HIERMATCH_OT_transfer_attributes,
     HIERMATCH_OT_wrap,
+    HIERMATCH_OT_wear,
     HIERMATCH_OT_symmetrise,
     HIERMATCH_OT_test_poses,
     HIERMATCH_OT_before_after,
@@ -145,6 +150,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PT_pairs,
     HIERMATCH_PT_retarget,
     HIERMATCH_PT_motion,
+    HIERMATCH_PT_wear,
     HIERMATCH_PT_symmetry,
     HIERMATCH_GT_hover,
     HIERMATCH_GGT_hover,
@@ -156,6 +162,7 @@ _ATTACHMENTS: Final[tuple[tuple[type[Any], str, type[Any]], ...]] = (
     (bpy.types.Scene, "hiermatch_retarget", HIERMATCH_PG_retarget),
     (bpy.types.Scene, "hiermatch_motion", HIERMATCH_PG_motion),
     (bpy.types.Scene, "hiermatch_steering", HIERMATCH_PG_steering),
+    (bpy.types.Object, "hiermatch_wear", HIERMATCH_PG_worn),
     (bpy.types.WindowManager, "hiermatch", HIERMATCH_PG_progress),
 )
 """Each owner gets a property of that name and group."""

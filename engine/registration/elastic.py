@@ -236,6 +236,10 @@ class ElasticSurface:
         stretch = np.einsum("nab,nb,ncb->nac", vectors, np.exp(np.sign(logarithms) * accepted), vectors)
         return ElasticSurface(self._vertices, self._laplace, self._at_edges(stretch))
 
+    def resized(self, scales: NDArray[np.float64]) -> ElasticSurface:
+        """Take the surface as at rest in other sizes, so many times as large at each vertex (n,)."""
+        return ElasticSurface(self._vertices, self._laplace, self._at_edges(scales[:, None, None] * np.eye(3)))
+
     def _stretches(
         self, positions: NDArray[np.float64], averaged: Callable[[NDArray[np.float64]], NDArray[np.float64]]
     ) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ import bpy
 
 from .options.retarget import RetargetOptions
 from .options.symmetrise import SymmetriseOptions
+from .options.wear import WearOptions
 from .options.wrap import WrapOptions
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class HIERMATCH_PG_report(bpy.types.PropertyGroup):
     seconds: _props.FloatProperty(name="Seconds", description="How long it took")
 
 
-class HIERMATCH_PG_retarget(RetargetOptions, WrapOptions, SymmetriseOptions, bpy.types.PropertyGroup):
+class HIERMATCH_PG_retarget(RetargetOptions, WrapOptions, WearOptions, SymmetriseOptions, bpy.types.PropertyGroup):
     """The state of the retargeting panels on a scene."""
 
     refine: _props.BoolProperty(

@@ -1423,6 +1423,144 @@ MESSAGES: Final[dict[str, str]] = {
         "二つのメッシュを指定するか、選択してください。アクティブな方がソースです"
     ),
     "Measuring the matched points": "対応点を計測しています",
+    "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
+    "there closer to those of the skin": (
+        "相手のボディのリグの各関節を曲げてみて、肌がアイテムを突き抜けるところでは、ウェイトを肌のものに近づけます"
+    ),
+    "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
+    "Without named items it takes the selected ones, or else all that the source's armature moves": (
+        "ソースの服・髪・アクセサリー（それぞれ独立したオブジェクト）を、マッチングしたボディに合わせます。アイテ"
+        "ムの指定がなければ選択中のもの、それもなければソースのアーマチュアが動かすすべてのものを使います"
+    ),
+    "Names of the objects to fit; if empty, those in the collection, or else the selected ones, or else all "
+    "that the source's armature moves": (
+        "合わせるオブジェクトの名前。空の場合はコレクション内のもの、なければ選択中のもの、それもなければソースの"
+        "アーマチュアが動かすすべてのもの"
+    ),
+    "Their own, if the other body's rig has these bones, or else those of its skin": (
+        "相手のボディのリグに同じボーンがあれば自身のウェイト、なければ肌のウェイト"
+    ),
+    "Those of the other body's skin, from where the items lie on it": (
+        "アイテムが載っている場所の、相手のボディの肌のウェイト"
+    ),
+    '"{0}" has no armature, so what was fitted to it is not bound. Give it one by Retarget, and fit it again.': (
+        '"{0}"にはアーマチュアがないため、合わせたものはバインドされていません。リターゲットでアーマチュアを与え'
+        "てから、もう一度合わせてください。"
+    ),
+    '"{0}" is far from "{1}". Move it to where the body wears it, or pick that body as the Source.': (
+        '"{0}"は"{1}"から遠く離れています。ボディが身に着ける位置に移動するか、そのボディをソースに選んでください。'
+    ),
+    '"{0}" is not a mesh but of type {1}. Convert a copy of it (Object > Convert > Mesh), and fit that.': (
+        '"{0}"はメッシュではなく{1}タイプです。コピーを変換して（オブジェクト > 変換 > メッシュ）、それを合わせて'
+        "ください。"
+    ),
+    '"{0}" is the body itself, picked as the {1}. Take it out of the items, or pick another body.': (
+        '"{0}"は{1}に選ばれているボディそのものです。アイテムから外すか、別のボディを選んでください。'
+    ),
+    '"{0}" lies on "{1}", not on "{2}". Swap Source and Target, or take it out of the items.': (
+        '"{0}"は"{2}"ではなく"{1}"の上にあります。ソースとターゲットを入れ替えるか、アイテムから外してください。'
+    ),
+    "A copy of each item, in a collection of its own": "各アイテムのコピーを専用のコレクションに作ります",
+    "A shape key on each item that moves it to the other body": (
+        "各アイテムに、相手のボディへ移すシェイプキーを作ります"
+    ),
+    "As It Is": "そのまま",
+    "Body Below": "下のボディ",
+    "Clearance": "すき間",
+    "Close to the skin it follows each form of it, far from it only the body as a whole": (
+        "肌の近くではその形に沿い、離れたところではボディ全体にだけ従います"
+    ),
+    "Collection": "コレクション",
+    "Find Rigid Parts": "硬いパーツを探す",
+    "Fit": "フィット",
+    "Fitted Copies": "合わせたコピー",
+    "Fitting clothes": "服を合わせています",
+    "From the Skin": "肌から",
+    "How many bones may move a vertex: the smallest weights go. 0 for any number": (
+        "一つの頂点を動かせるボーンの数。小さいウェイトから除かれます。0なら無制限"
+    ),
+    "How the item follows the body": "アイテムがボディにどう従うか",
+    "If the other body has no armature, give it that of the first, with its weights, as Retarget does, so that "
+    "body and clothes move": (
+        "相手のボディにアーマチュアがなければ、リターゲットと同じように元のアーマチュアとウェイトを与え、ボディと"
+        "服が動くようにします"
+    ),
+    "It follows each form of the skin, such as tights or a second skin": "タイツのように、肌の形にぴったり沿います",
+    "It gets a Mask modifier with a vertex group that hides it below clothes": (
+        "服の下を隠す頂点グループを使ったマスクモディファイアーを付けます"
+    ),
+    "It gets a shape key that draws it in below clothes": "服の下を引っ込めるシェイプキーを付けます",
+    "It is left as it is": "そのままにします",
+    "It is moved along with the body, but not pushed out of it": "ボディと一緒に移動しますが、外へ押し出しません",
+    "It keeps its own shape and hangs as it did, such as a coat or long hair": (
+        "コートや長い髪のように、自身の形を保ち、元のように垂れます"
+    ),
+    "It keeps its shape wholly and only grows, such as a helmet": (
+        "ヘルメットのように、形を完全に保ち大きさだけ変わります"
+    ),
+    "Items": "アイテム",
+    "Keep small solid parts as they are, such as buttons, buckles and glasses. Others can be named by a vertex "
+    'group called "Rigid"': (
+        "ボタン、バックル、眼鏡などの小さく硬いパーツをそのままの形に保ちます。ほかのものは「Rigid」という頂点グ"
+        "ループで指定できます"
+    ),
+    "Least distance from the skin. With 0 it is what the items had on their own body, in the size of the other": (
+        "肌からの最小距離。0なら、元のボディでの距離を相手の大きさに合わせたもの"
+    ),
+    "Leave": "そのまま",
+    "Let the weights of all bones sum to one at each vertex. Locked groups keep theirs": (
+        "各頂点ですべてのボーンのウェイトの合計を1にします。ロックされたグループは変わりません"
+    ),
+    "Loose": "ゆったり",
+    "Mask": "マスク",
+    "Measuring": "測定中",
+    "Moving items along": "アイテムを移動しています",
+    "Moving the skin": "肌を移動しています",
+    "Name of a collection whose meshes are fitted": "メッシュを合わせるコレクションの名前",
+    'No clothes of "{0}" were found: no other mesh is bound to its armature. Select the items together with '
+    "both bodies, or name them.": (
+        '"{0}"の服が見つかりません。アーマチュアにバインドされたほかのメッシュがありません。両方のボディと一緒に'
+        "アイテムを選択するか、名前を指定してください。"
+    ),
+    "Own": "自身",
+    "Pushing items out": "アイテムを外へ押し出しています",
+    "Rigid": "硬い",
+    "Show Fit": "フィットを表示",
+    "Shrink Key": "縮小キー",
+    "Test Poses": "テストポーズ",
+    'The armature "{0}" has no bones {1} of "{2}". What they moved is moved by the bones of the skin below.': (
+        'アーマチュア"{0}"には"{2}"のボーン{1}がありません。それらが動かしていた部分は、下の肌のボーンで動きます。'
+    ),
+    'The collection "{0}" has no meshes that could be fitted.': (
+        'コレクション"{0}"には合わせられるメッシュがありません。'
+    ),
+    "Their own, whatever bones the other body has": "相手のボディのボーンにかかわらず、自身のウェイト",
+    'There is no body under most of "{0}": "{1}" has no surface there. Pick the whole body as the Source, or '
+    "take the item out.": (
+        '"{0}"の大部分の下にボディがありません。"{1}"はそこに面がありません。ボディ全体をソースに選ぶか、アイテム'
+        "を外してください。"
+    ),
+    'There is no collection called "{0}".': '"{0}"というコレクションはありません。',
+    "Tight": "ぴったり",
+    "Trying poses": "ポーズを試しています",
+    "Wear": "着せる",
+    "What becomes of the body where clothes cover it": "服に覆われた部分のボディをどうするか",
+    "Which weights the fitted items get": "合わせたアイテムが得るウェイト",
+    "Write color attributes that show how far each vertex is from the skin, how far it was pushed, and where "
+    "it is uncertain": ("各頂点の肌からの距離、押し出された量、不確かなところを示すカラー属性を書き込みます"),
+    '"{0}" was fitted.': '"{0}"を合わせました。',
+    '"{0}" was fitted: {1}.': '"{0}"を合わせました: {1}。',
+    '"{0}" should be checked: {1}.': '"{0}"を確認してください: {1}。',
+    "kept {0} as they are": "{0}の形を保持",
+    "pushed {0} of it out of what is below": "{0}を下のものの外へ押し出し",
+    "what is below still shows through {0} of it": "下のものがまだ{0}で突き抜けています",
+    "the match is uncertain below {0} of it": "その{0}の下でマッチングが不確かです",
+    'Weights of {0} of "{1}" were mended for poses.': 'ポーズのために"{1}"の{0}のウェイトを直しました。',
+    "1 item": "1個のアイテム",
+    "{0} items": "{0}個のアイテム",
+    "1 rigid part": "1個の硬いパーツ",
+    "{0} rigid parts": "{0}個の硬いパーツ",
+    "Clothes": "服",
     "Wrap and Morph": "ラップとモーフ",
     "Switch to Object Mode first": "先にオブジェクトモードに切り替えてください",
     "Mirror": "ミラー",

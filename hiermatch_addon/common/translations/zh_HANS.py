@@ -1167,6 +1167,123 @@ MESSAGES: Final[dict[str, str]] = {
     "Write": "写入",
     "Pick two meshes, or select them: the active one is the source": "选取两个网格，或直接选中它们：活动网格为源",
     "Measuring the matched points": "正在测量匹配点",
+    "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
+    "there closer to those of the skin": (
+        "弯曲另一身体绑定的每个关节，若皮肤此时穿出物品，则使该处的权重更接近皮肤的权重"
+    ),
+    "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
+    "Without named items it takes the selected ones, or else all that the source's armature moves": (
+        "将源的服装、头发和配饰（各自为独立的物体）适配到匹配的身体上。未指定物品时使用所选物体，否则使用源的骨架"
+        "所带动的全部物体"
+    ),
+    "Names of the objects to fit; if empty, those in the collection, or else the selected ones, or else all "
+    "that the source's armature moves": (
+        "要适配的物体名称；为空时使用集合中的物体，否则使用所选物体，再否则使用源的骨架所带动的全部物体"
+    ),
+    "Their own, if the other body's rig has these bones, or else those of its skin": (
+        "若另一身体的绑定有这些骨骼则用自身的权重，否则用其皮肤的权重"
+    ),
+    "Those of the other body's skin, from where the items lie on it": "取自另一身体皮肤上物品所在之处的权重",
+    '"{0}" has no armature, so what was fitted to it is not bound. Give it one by Retarget, and fit it again.': (
+        '"{0}"没有骨架，因此适配到它上面的物品未绑定。请通过"重定向"为其添加骨架，然后重新适配。'
+    ),
+    '"{0}" is far from "{1}". Move it to where the body wears it, or pick that body as the Source.': (
+        '"{0}"距离"{1}"太远。请将其移到身体穿戴它的位置，或选择相应的身体作为源。'
+    ),
+    '"{0}" is not a mesh but of type {1}. Convert a copy of it (Object > Convert > Mesh), and fit that.': (
+        '"{0}"不是网格，而是{1}类型。请转换其副本（物体 > 转换 > 网格），再适配该副本。'
+    ),
+    '"{0}" is the body itself, picked as the {1}. Take it out of the items, or pick another body.': (
+        '"{0}"就是被选为{1}的身体本身。请将其从物品中移除，或选择另一身体。'
+    ),
+    '"{0}" lies on "{1}", not on "{2}". Swap Source and Target, or take it out of the items.': (
+        '"{0}"位于"{1}"上，而不在"{2}"上。请交换源和目标，或将其从物品中移除。'
+    ),
+    "A copy of each item, in a collection of its own": "每件物品的副本，放在单独的集合中",
+    "A shape key on each item that moves it to the other body": "在每件物品上添加一个将其移到另一身体的形态键",
+    "As It Is": "保持原样",
+    "Body Below": "下方的身体",
+    "Clearance": "间隙",
+    "Close to the skin it follows each form of it, far from it only the body as a whole": (
+        "靠近皮肤处贴合其每处形状，远离处只跟随整个身体"
+    ),
+    "Collection": "集合",
+    "Find Rigid Parts": "查找刚性部件",
+    "Fit": "贴合方式",
+    "Fitted Copies": "适配的副本",
+    "Fitting clothes": "正在适配服装",
+    "From the Skin": "取自皮肤",
+    "How many bones may move a vertex: the smallest weights go. 0 for any number": (
+        "一个顶点最多受多少骨骼影响：去除最小的权重。0表示不限"
+    ),
+    "How the item follows the body": "物品如何跟随身体",
+    "If the other body has no armature, give it that of the first, with its weights, as Retarget does, so that "
+    "body and clothes move": ("若另一身体没有骨架，则像“重定向”那样给它原身体的骨架及权重，使身体和服装都能活动"),
+    "It follows each form of the skin, such as tights or a second skin": "贴合皮肤的每处形状，例如紧身裤",
+    "It gets a Mask modifier with a vertex group that hides it below clothes": (
+        "添加遮罩修改器及顶点组，隐藏服装下的身体"
+    ),
+    "It gets a shape key that draws it in below clothes": "添加形态键，将服装下的身体向内收缩",
+    "It is left as it is": "保持不变",
+    "It is moved along with the body, but not pushed out of it": "随身体移动，但不会被推出身体",
+    "It keeps its own shape and hangs as it did, such as a coat or long hair": (
+        "保持自身形状并像原来那样垂挂，例如外套或长发"
+    ),
+    "It keeps its shape wholly and only grows, such as a helmet": "完全保持形状，仅改变大小，例如头盔",
+    "Items": "物品",
+    "Keep small solid parts as they are, such as buttons, buckles and glasses. Others can be named by a vertex "
+    'group called "Rigid"': ("保持小而坚硬的部件不变形，如纽扣、带扣和眼镜。其他部件可用名为“Rigid”的顶点组指定"),
+    "Least distance from the skin. With 0 it is what the items had on their own body, in the size of the other": (
+        "与皮肤的最小距离。为0时沿用物品在原身体上的距离，并按另一身体的大小缩放"
+    ),
+    "Leave": "保留",
+    "Let the weights of all bones sum to one at each vertex. Locked groups keep theirs": (
+        "使每个顶点上所有骨骼的权重之和为1。锁定的组保持不变"
+    ),
+    "Loose": "宽松",
+    "Mask": "遮罩",
+    "Measuring": "正在测量",
+    "Moving items along": "正在移动物品",
+    "Moving the skin": "正在移动皮肤",
+    "Name of a collection whose meshes are fitted": "要适配其中网格的集合名称",
+    'No clothes of "{0}" were found: no other mesh is bound to its armature. Select the items together with '
+    "both bodies, or name them.": (
+        '未找到"{0}"的服装：没有其他网格绑定到它的骨架。请将物品与两个身体一起选中，或指定其名称。'
+    ),
+    "Own": "自身",
+    "Pushing items out": "正在将物品向外推",
+    "Rigid": "刚性",
+    "Show Fit": "显示贴合情况",
+    "Shrink Key": "收缩键",
+    "Test Poses": "测试姿势",
+    'The armature "{0}" has no bones {1} of "{2}". What they moved is moved by the bones of the skin below.': (
+        '骨架"{0}"没有"{2}"的骨骼{1}。它们所带动的部分改由下方皮肤的骨骼带动。'
+    ),
+    'The collection "{0}" has no meshes that could be fitted.': '集合"{0}"中没有可适配的网格。',
+    "Their own, whatever bones the other body has": "无论另一身体有哪些骨骼，都用自身的权重",
+    'There is no body under most of "{0}": "{1}" has no surface there. Pick the whole body as the Source, or '
+    "take the item out.": ('"{0}"的大部分下方没有身体："{1}"在那里没有表面。请选择完整的身体作为源，或移除该物品。'),
+    'There is no collection called "{0}".': '没有名为"{0}"的集合。',
+    "Tight": "紧身",
+    "Trying poses": "正在测试姿势",
+    "Wear": "穿戴",
+    "What becomes of the body where clothes cover it": "被服装遮盖的身体如何处理",
+    "Which weights the fitted items get": "适配后的物品使用哪种权重",
+    "Write color attributes that show how far each vertex is from the skin, how far it was pushed, and where "
+    "it is uncertain": ("写入颜色属性，显示每个顶点与皮肤的距离、被推出的距离以及不确定之处"),
+    '"{0}" was fitted.': '已适配"{0}"。',
+    '"{0}" was fitted: {1}.': '已适配"{0}"：{1}。',
+    '"{0}" should be checked: {1}.': '请检查"{0}"：{1}。',
+    "kept {0} as they are": "保持{0}不变形",
+    "pushed {0} of it out of what is below": "将其{0}推出下方之物",
+    "what is below still shows through {0} of it": "下方之物仍从其{0}处穿出",
+    "the match is uncertain below {0} of it": "其{0}下方的匹配不确定",
+    'Weights of {0} of "{1}" were mended for poses.': '已为姿势修正"{1}"的{0}的权重。',
+    "1 item": "1件物品",
+    "{0} items": "{0}件物品",
+    "1 rigid part": "1个刚性部件",
+    "{0} rigid parts": "{0}个刚性部件",
+    "Clothes": "服装",
     "Wrap and Morph": "包裹与变形",
     "Switch to Object Mode first": "请先切换到物体模式",
     "Mirror": "镜像",

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How space around a body moves with it, when the body becomes another one: what it wears moves like that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array, vstack
+from scipy.spatial import cKDTree
+
+from ...geometry.procrustes import nearest_rotations
+from ...mesh.closest_points import ClosestPoints
+from ...mesh.unit_vectors import unit_vectors
+from ..values.deformation_gradients import surface_frames
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+
+__all__ = ["BodyMotion", "Motion"]
+
+_TURN_RADIUS = 0.02
+"""Over what distance rotations of the skin are averaged, in sqrt(area): about the breadth of a finger."""
+
+_SCALE_RADIUS = 0.08
+"""The same for scales: a button is as large as what is around it on the whole, not as the skin under it."""
+
+_NEIGHBOURS = 48
+"""Places on the skin that carry a point."""
+
+_POOL = 192
+"""How many are looked at to find them: those of other limbs may be nearer."""
+
+_WIDTH = 0.6
+"""How wide the surroundings are that carry a point, as a part of its distance from the skin."""
+
+_LEAST_WIDTH = 0.006
+"""Least width, in sqrt(area): skin is moved to a map that is not exact to less."""
+
+_OTHER_LIMB = 3.0
+"""How many times further away skin counts as that is moved by wholly other bones than the point."""
+
+_BEHIND = 1.0
+"""How much further, as a part of the distance, skin counts as that looks away from the point."""
+
+_TOUCHING = 0.003
+"""Distance from the skin, in sqrt(area), below which it says nothing which way the skin looks."""
+
+_FEWEST = 4 * _NEIGHBOURS
+"""No coarser set of places is made of fewer than these."""
+
+_CHUNK = 2048
+"""Points treated at once, which bounds the memory."""
+
+_TINY = np.finfo(float).tiny
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """How points move with a body.
+
+    Attributes
+    ----------
+    positions : (k, 3) array of float
+        Where they come to be.
+    rotations : (k, 3, 3) array of float
+        How the space around each turns.
+    scales : (k,) array of float
+        How many times as large it becomes.
+    places : csr_array of float
+        For each point (k) what part of it each vertex of the body carries; rows sum to one.
+    """
+
+    positions: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    scales: NDArray[np.float64]
+    places: csr_array
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Places on the skin (p, ...), so far apart; which vertices each stands for is a matrix (p, n) of shares."""
+
+    spacing: float
+    positions: NDArray[np.float64]
+    images: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    scales: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    areas: NDArray[np.float64]
+    bones: NDArray[np.float64]
+    shares: csr_array
+
+    def averaged(self, number: NDArray[np.int64]) -> _Places:
+        """Put places together that have the same number (p,)."""
+        count = int(number.max()) + 1
+        # A least area, so that places of needles only have a mean as well.
+        areas = np.maximum(self.areas, 1e-9 * self.areas.mean())
+        totals = np.bincount(number, areas, count)
+        mean = csr_array((areas / totals[number], (number, np.arange(len(number)))), shape=(count, len(number)))
+        turned = mean @ (self.rotations * self.scales[:, None, None]).reshape(-1, 9)
+        return _Places(
+            2 * self.spacing,
+            mean @ self.positions,
+            mean @ self.images,
+            nearest_rotations(turned.reshape(-1, 3, 3)),
+            mean @ self.scales,
+            unit_vectors(mean @ self.normals),
+            totals,
+            mean @ self.bones,
+            csr_array(mean @ self.shares),
+        )
+
+
+class BodyMotion:
+    r"""The motion of space around a body.
+
+    A point x moves as skin near it would take it along: vertex i of the skin, which goes from :math:`a_i` to
+    :math:`b_i` and turns and scales what is around it by :math:`R_i` and :math:`s_i`, takes x to
+    :math:`b_i + s_i R_i (x - a_i)`, and x goes to the mean of these.  The further away from the skin it is, the wider
+    the skin that carries it: a shirt follows the chest, a coat the body.  Skin moved by other bones than x, or
+    looking away from it, counts as further away.
+
+    Parameters
+    ----------
+    body : TriangleMesh
+        The body, before.
+    images : (n, 3) array of float
+        Where its vertices come to be.
+    bones : (n, b) csr_array of float, optional
+        How much each of some bones moves each vertex.
+    """
+
+    def __init__(self, body: TriangleMesh, images: NDArray[np.float64], bones: csr_array | None = None) -> None:
+        turning = surface_frames(body, images, radius=_TURN_RADIUS)
+        growing = surface_frames(body, images, radius=_SCALE_RADIUS)
+        self.body, self.images = body, images
+        self.skin = ClosestPoints(body)
+        self.bones = bones
+        self._size = float(np.sqrt(body.area))
+        used = np.flatnonzero(body.vertex_areas > 0)
+        n = body.vertex_count
+        known = np.zeros((n, 1)) if bones is None else bones.toarray()
+        first = _Places(
+            float(np.sqrt(body.area / max(len(used), 1))),
+            body.vertices[used],
+            images[used],
+            turning.rotations[used],
+            growing.scales[used],
+            body.vertex_normals[used],
+            body.vertex_areas[used],
+            known[used],
+            csr_array((np.ones(len(used)), (np.arange(len(used)), used)), shape=(len(used), n)),
+        )
+        self._levels = [first]
+        while (coarser := _coarser(self._levels[-1])) is not None:
+            self._levels.append(coarser)
+        self._trees = [cKDTree(level.positions, balanced_tree=False, compact_nodes=False) for level in self._levels]
+
+    @property
+    def overall(self) -> float:
+        """How many times as long lengths become on the whole."""
+        return float(np.average(self._levels[0].scales, weights=self._levels[0].areas))
+
+    def move(self, points: NDArray[np.float64], distances: NDArray[np.float64], bones: csr_array | None) -> Motion:
+        """Move points along.
+
+        Parameters
+        ----------
+        points : (k, 3) array of float
+            Points around the body before.
+        distances : (k,) array of float
+            How wide each looks around: its distance from the skin, or more.
+        bones : (k, b) csr_array of float, optional
+            How much the same bones move each point.
+
+        Returns
+        -------
+        Motion
+            Where they go.
+        """
+        k = len(points)
+        width = np.maximum(_WIDTH * distances, _LEAST_WIDTH * self._size)
+        spacings = np.array([level.spacing for level in self._levels])
+        levels = (np.searchsorted(spacings, width / 2, side="right") - 1).clip(min=0)
+        result = Motion(np.empty((k, 3)), np.empty((k, 3, 3)), np.empty(k), csr_array((k, self.body.vertex_count)))
+        rows: list[NDArray[np.int64]] = []
+        parts: list[csr_array] = []
+        for number in np.unique(levels):
+            chosen = np.flatnonzero(levels == number)
+            for start in range(0, len(chosen), _CHUNK):
+                part = chosen[start : start + _CHUNK]
+                known = None if bones is None or self.bones is None else bones[part].toarray()
+                parts.append(self._move(result, part, points[part], width[part], bones=known, number=int(number)))
+                rows.append(part)
+        if not rows:
+            return result
+        order = np.argsort(np.concatenate(rows), kind="stable")
+        return replace(result, places=csr_array(csr_array(vstack(parts))[order]))
+
+    def _move(
+        self,
+        result: Motion,
+        part: NDArray[np.int64],
+        points: NDArray[np.float64],
+        width: NDArray[np.float64],
+        *,
+        bones: NDArray[np.float64] | None,
+        number: int,
+    ) -> csr_array:
+        """Move some points; return the shares of the vertices."""
+        level, tree = self._levels[number], self._trees[number]
+        pool = min(_POOL, len(level.positions))
+        count = min(_NEIGHBOURS, pool)
+        distances, near = (found.reshape(-1, pool) for found in tree.query(points, pool))
+        away = points[:, None] - level.positions[near]
+        cost = np.ones_like(distances)
+        if bones is not None:
+            total = np.minimum(bones.sum(axis=1), level.bones[near].sum(axis=2).max(axis=1))
+            same = np.minimum(bones[:, None], level.bones[near]).sum(axis=2)
+            cost += _OTHER_LIMB * (total[:, None] - same).clip(0, 1)
+        front = np.einsum("kpi,kpi->kp", away, level.normals[near]) / np.maximum(distances, _TINY)
+        cost += _BEHIND * (1 - front.clip(0, 1)) * (distances > _TOUCHING * self._size)
+        cost *= distances
+        best = np.argsort(cost, axis=1, kind="stable")[:, :count]
+        near, cost = np.take_along_axis(near, best, 1), np.take_along_axis(cost, best, 1)
+        away = np.take_along_axis(away, best[:, :, None], 1)
+        weights = level.areas[near] * np.exp(-(cost**2 - cost[:, :1] ** 2) / (2 * width[:, None] ** 2))
+        weights = np.where(weights.sum(axis=1, keepdims=True) > 0, weights, 1.0)
+        weights /= weights.sum(axis=1, keepdims=True)
+        turned = np.einsum("kp,kpij->kij", weights * level.scales[near], level.rotations[near])
+        rotations = nearest_rotations(turned)
+        scales = np.einsum("kp,kp->k", weights, level.scales[near])
+        moved = np.einsum("kij,kj->ki", rotations, np.einsum("kp,kpi->ki", weights, away))
+        result.positions[part] = np.einsum("kp,kpi->ki", weights, level.images[near]) + scales[:, None] * moved
+        result.rotations[part], result.scales[part] = rotations, scales
+        starts = np.arange(0, near.size + 1, count)
+        chosen = csr_array((weights.ravel(), near.ravel(), starts), shape=(len(part), len(level.positions)))
+        return csr_array(chosen @ level.shares)
+
+
+def _coarser(places: _Places) -> _Places | None:
+    """Average places in the cells of a grid, twice as far apart; none if too few would be left.
+
+    Places that look to opposite sides stay apart, such as both sides of a hand.
+    """
+    cells = np.floor((places.positions - places.positions.min(axis=0)) / (2 * places.spacing)).astype(np.int64)
+    octants = (places.normals > 0) @ np.array([1, 2, 4])
+    keys = np.column_stack([cells, octants])
+    _, number = np.unique(keys, axis=0, return_inverse=True)
+    number = number.ravel()
+    if int(number.max()) + 1 < _FEWEST or int(number.max()) + 1 > 0.7 * len(number):
+        return None
+    return places.averaged(number)

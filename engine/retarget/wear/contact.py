@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far clothes are from skin, or from what is worn below, and which way they have to move where they are inside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...mesh.closest_points import ClosestPoints
+from ...mesh.unit_vectors import unit_vectors
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+
+__all__ = ["Clearance", "Surface", "surface_samples"]
+
+_MOST_PARTS = 6
+"""Into how many parts the side of a triangle is divided at most, so that nothing pokes through it unseen."""
+
+_INSIDE = 0.02
+"""Barycentric coordinate from which on a point counts as inside its triangle, whose own normal then tells its sides."""
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """How far points are from a surface.
+
+    Attributes
+    ----------
+    distances : (k,) array of float
+        Distance to the nearest point of it, negative inside.
+    feet : (k, 3) array of float
+        The nearest points.
+    normals : (k, 3) array of float
+        Directions out of the surface there.
+    vertices : (k,) array of int
+        The nearest of its vertices, of those of the triangle.
+    known : (k,) array of bool
+        False where the nearest point lies on the rim of a hole, so that there is no inside.
+    """
+
+    distances: NDArray[np.float64]
+    feet: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    vertices: NDArray[np.int64]
+    known: NDArray[np.bool_]
+
+
+class Surface:
+    """A surface that things lie on.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    search : ClosestPoints, optional
+        A search on it, if there is one already.
+
+    Attributes
+    ----------
+    normals : (n, 3) array of float
+        Unit normals of the vertices, weighted by angles: they tell inside from outside.
+    rim : (n,) array of bool
+        Which vertices lie on the rim of a hole.
+    """
+
+    def __init__(self, mesh: TriangleMesh, search: ClosestPoints | None = None) -> None:
+        self.mesh = mesh
+        self.search = search or ClosestPoints(mesh)
+        self.rim = np.zeros(mesh.vertex_count, bool)
+        self.rim[mesh.boundary_edges] = True
+        self.normals = _angle_normals(mesh)
+
+    def clearance(self, points: NDArray[np.float64], starts: NDArray[np.int64] | None = None) -> Clearance:
+        """Measure how far points (k, 3) are from the surface.
+
+        Parameters
+        ----------
+        points : (k, 3) array of float
+            The points.
+        starts : (k,) array of int, optional
+            A vertex from which to search along the surface, which so never leaves its limb; else all of it counts.
+        """
+        found = self.search.nearest(points) if starts is None else self.search.walk(points, starts)
+        corners, barycentric = self.mesh.triangles[found.triangles], found.barycentric
+        feet = np.einsum("kc,kci->ki", barycentric, self.mesh.vertices[corners])
+        inside = (barycentric > _INSIDE).all(axis=1)
+        blended = unit_vectors(np.einsum("kc,kci->ki", barycentric, self.normals[corners]))
+        normals = np.where(inside[:, None], self.mesh.triangle_normals[found.triangles], blended)
+        away = points - feet
+        distances = np.sqrt(found.squared_distances)
+        distances = np.where(np.einsum("ki,ki->k", away, normals) < 0, -distances, distances)
+        known = ~((barycentric > _INSIDE) <= self.rim[corners]).all(axis=1) | inside
+        return Clearance(distances, feet, blended, found.nearest_vertices(self.mesh.triangles), known)
+
+
+def surface_samples(mesh: TriangleMesh, spacing: float) -> csr_array:
+    """Spread points over a surface: all its vertices, and grids in triangles whose sides are longer than a spacing.
+
+    Returns
+    -------
+    (s, n) csr_array of float
+        For each point the shares of the vertices.  The vertices come first.
+    """
+    n = mesh.vertex_count
+    a, b, c = (mesh.vertices[corner] for corner in mesh.triangles.T)
+    longest = np.sqrt(np.max([np.square(side).sum(axis=1) for side in (b - a, c - b, a - c)], axis=0))
+    parts = np.clip(np.ceil(longest / spacing), 2, _MOST_PARTS).astype(np.int64)
+    corners, shares = [np.arange(n)[:, None].repeat(3, axis=1)], [np.tile([1.0, 0.0, 0.0], (n, 1))]
+    for count in np.unique(parts):
+        i, j = (grid.ravel() for grid in np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij"))
+        grid = np.stack([i, j, count - i - j], axis=1)
+        grid = grid[(grid >= 0).all(axis=1) & (grid < count).all(axis=1)]
+        if count == 2:
+            grid = np.array([[2 / 3, 2 / 3, 2 / 3]])
+        chosen = mesh.triangles[parts == count]
+        corners.append(chosen.repeat(len(grid), axis=0))
+        shares.append(np.tile(grid / count, (len(chosen), 1)))
+    columns, values = np.concatenate(corners), np.concatenate(shares)
+    samples = csr_array((values.ravel(), columns.ravel(), np.arange(0, values.size + 1, 3)), shape=(len(values), n))
+    samples.sum_duplicates()
+    return samples
+
+
+def _angle_normals(mesh: TriangleMesh) -> NDArray[np.float64]:
+    """Find the normals of the vertices, weighted by the angles of the triangles, (n, 3)."""
+    sums = np.zeros((mesh.vertex_count, 3))
+    for corner in range(3):
+        a, b, c = (mesh.vertices[mesh.triangles[:, (corner + turn) % 3]] for turn in range(3))
+        angle = np.arccos(np.einsum("mi,mi->m", unit_vectors(b - a), unit_vectors(c - a)).clip(-1, 1))
+        weighted = angle[:, None] * mesh.triangle_normals
+        for axis in range(3):
+            sums[:, axis] += np.bincount(mesh.triangles[:, corner], weighted[:, axis], mesh.vertex_count)
+    return unit_vectors(sums)

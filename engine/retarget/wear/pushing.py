@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Clothes that are pushed out of what is below them, smoothly, until nothing pokes through."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array, vstack
+
+from ...geometry.symmetric_factor import symmetric_factor
+from .contact import Surface
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from ...geometry.laplacian import LaplaceBeltrami
+    from ...mesh.triangle_mesh import TriangleMesh
+
+__all__ = ["Layer", "Pushed", "layer_of", "pushed_out"]
+
+_ROUNDS = 8
+"""How often is looked anew where something pokes through."""
+
+_OWN_LIMB = 4
+"""In how many of these rounds an item looks for the limb that it was on; then all of the surface below counts, as where
+limbs touch."""
+
+_SMOOTHLY = 6
+"""In how many of them items are pushed smoothly; the last are for what little is left."""
+
+_SPREAD = 0.012
+"""How far a push spreads over the cloth, in sqrt(area of the body)."""
+
+_FIRM = 30.0
+"""How much a place that has to move counts against the smoothness of the push."""
+
+_FREE = 0.05
+"""How much a place that need not move counts."""
+
+_LARGEST_STEP = 0.02
+"""How far, in the same unit, anything is pushed at once."""
+
+_NEAR = 0.03
+"""Distance on the first body, in the same unit, within which a layer below is looked at."""
+
+_POKING = 0.022
+"""How far through the cloth, in the same unit, a vertex of the skin is looked for."""
+
+_STRAIGHT = 0.5
+"""Least cosine between the way from such a vertex to the cloth and its normal."""
+
+_MOSTLY = 0.3
+"""Part of a place of the item by its corners that has to have lain outside, for the skin not to show above it."""
+
+_INSIDE = -0.001
+"""Distance from the surface below, in the same unit, down to which a place counts as lying on it: what is further
+inside, as the inner side of a sole, was meant to."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """What an item lies on: the skin, or an item below.
+
+    Attributes
+    ----------
+    surface : Surface
+        As it is now, on the second body.
+    wanted : (s,) array of float
+        For each sample of the item the least distance from it; minus infinity where it does not lie on it.
+    starts : (s,) array of int
+        The vertex of the surface from which to search, near where it lay on it before.
+    outside : (n,) array of bool
+        Which vertices of the item lay outside.
+    """
+
+    surface: Surface
+    wanted: NDArray[np.float64]
+    starts: NDArray[np.int64]
+    outside: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Pushed:
+    """An item that was pushed out.
+
+    Attributes
+    ----------
+    positions : (n, 3) array of float
+        Where its vertices are now.
+    through : float
+        What part of its samples is still below what it lies on.
+    """
+
+    positions: NDArray[np.float64]
+    through: float
+
+
+def layer_of(
+    surface_before: Surface,
+    surface: Surface,
+    samples: csr_array,
+    before: NDArray[np.float64],
+    *,
+    places: NDArray[np.int64] | None,
+    scales: NDArray[np.float64],
+    unit: float,
+    least: float,
+    margin: float,
+) -> Layer:
+    """Find how an item lay on a surface, and so how it has to lie on it now.
+
+    Parameters
+    ----------
+    surface_before, surface : Surface
+        The skin, or an item below, on the first body and as it is now.
+    samples : (s, n) csr_array of float
+        Samples of the item.
+    before : (n, 3) array of float
+        The item on the first body.
+    places : (m,) array of int, optional
+        For each vertex of the surface before, the vertex of the other that it came to be; none if they are the same.
+    scales : (n,) array of float
+        How many times as large it becomes.
+    unit : float
+        Root of the area of the first body.
+    least : float
+        Distance that is enough, now: where the item was further away, nothing is asked beyond it.
+    margin : float
+        Least distance, now, of all that lay outside.
+    """
+    points = samples @ before
+    found = surface_before.clearance(points)
+    reached = found.known & (found.distances < _NEAR * unit) & (found.distances > _INSIDE * unit)
+    wanted = np.minimum((samples @ scales) * found.distances.clip(min=0), least)
+    starts = found.vertices if places is None else places[found.vertices]
+    outside = (found.distances[: len(before)] > _INSIDE * unit) | ~found.known[: len(before)]
+    return Layer(surface, np.where(reached, np.maximum(wanted, margin), -np.inf), starts, outside)
+
+
+def pushed_out(
+    mesh: TriangleMesh,
+    positions: NDArray[np.float64],
+    laplace: LaplaceBeltrami,
+    samples: csr_array,
+    *,
+    layers: Sequence[Layer],
+    fixed: NDArray[np.bool_],
+    unit: float,
+) -> Pushed:
+    """Push an item out of what is below it.
+
+    Where samples of it are below, or vertices of what is below are above it, the cloth is moved along the normals
+    there; the move is as smooth as that allows, so that folds and seams keep their shape.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The item, on the first body.
+    positions : (n, 3) array of float
+        Where it is.
+    laplace : LaplaceBeltrami
+        Operator of the item where it is.
+    samples : (s, n) csr_array of float
+        Samples of it, its vertices first.
+    layers : sequence of Layer
+        What it lies on.
+    fixed : (n,) array of bool
+        Vertices that stay: rigid pieces, and what is to be left alone.
+    unit : float
+        Root of the area of the second body.
+    """
+    free = ~fixed
+    mass = np.where(laplace.mass > 0, laplace.mass, laplace.mass.mean())
+    smooth = (_SPREAD * unit) ** 2 * laplace.stiffness + diags_array(_FREE * mass + 1e6 * mass * fixed)
+    shares = np.asarray((samples != 0).sum(axis=0)).ravel()
+    sample_mass = samples @ (mass / np.maximum(shares, 1))
+    tolerance = 1e-4 * unit
+    through = 0.0
+    for number in range(_ROUNDS):
+        rows, moves, counts = _needed(
+            (mesh, positions), samples, sample_mass, layers, free=free, unit=unit, own_limb=number < _OWN_LIMB
+        )
+        if rows is None:
+            through = 0.0
+            if number >= _OWN_LIMB:
+                break
+            continue
+        needed = np.linalg.norm(moves, axis=1)
+        through = float((needed > 5 * tolerance).sum() / samples.shape[0])
+        if needed.max() < tolerance:
+            if number >= _OWN_LIMB:
+                break
+            continue
+        moves *= np.minimum(1, _LARGEST_STEP * unit / np.maximum(needed, tolerance))[:, None]
+        if number < _SMOOTHLY:
+            weighted = csr_array(diags_array(_FIRM * counts) @ rows)
+            factor = symmetric_factor(csr_array(smooth + rows.T @ weighted))
+            positions = positions + factor.solve(weighted.T @ moves) * free[:, None]
+        else:
+            positions = positions + _directly(rows, moves) * free[:, None]
+    return Pushed(positions, through)
+
+
+def _needed(
+    item: tuple[TriangleMesh, NDArray[np.float64]],
+    samples: csr_array,
+    sample_mass: NDArray[np.float64],
+    layers: Sequence[Layer],
+    *,
+    free: NDArray[np.bool_],
+    unit: float,
+    own_limb: bool,
+) -> tuple[csr_array | None, NDArray[np.float64], NDArray[np.float64]]:
+    """Places of the item that have to move: shares of the vertices (k, n), the moves (k, 3), and weights (k,)."""
+    mesh, positions = item
+    points = samples @ positions
+    rows: list[csr_array] = []
+    moves: list[NDArray[np.float64]] = []
+    weights: list[NDArray[np.float64]] = []
+    movable = np.asarray(samples @ free.astype(float)).ravel() > 0.5
+    for layer in layers:
+        lying = np.flatnonzero(np.isfinite(layer.wanted) & movable)
+        found = own = layer.surface.clearance(points[lying], layer.starts[lying])
+        if not own_limb:
+            found = layer.surface.clearance(points[lying])
+        lack = layer.wanted[lying] - found.distances
+        # Between two limbs that touch there is no room: there the own one counts.
+        aligned = np.einsum("ki,ki->k", own.normals, found.normals) > 0
+        chosen = np.flatnonzero((lack > 0) & found.known & aligned)
+        at = lying[chosen]
+        rows.append(csr_array(samples[at]))
+        moves.append(lack[chosen, None] * found.normals[chosen])
+        weights.append(sample_mass[at])
+        poked = _poking(mesh, positions, layer, free, unit)
+        if poked is not None:
+            rows.append(poked[0])
+            moves.append(poked[1])
+            weights.append(np.full(len(poked[1]), sample_mass.mean()))
+    if not sum(len(move) for move in moves):
+        return None, np.empty((0, 3)), np.empty(0)
+    return csr_array(vstack(rows)), np.concatenate(moves), np.concatenate(weights)
+
+
+def _poking(
+    mesh: TriangleMesh, positions: NDArray[np.float64], layer: Layer, free: NDArray[np.bool_], unit: float
+) -> tuple[csr_array, NDArray[np.float64]] | None:
+    """Find vertices of the surface below that are above the item, and the moves of the item over them."""
+    surface, reach = layer.surface, _POKING * unit
+    vertices, normals = surface.mesh.vertices, surface.normals
+    low, high = positions.min(axis=0) - reach, positions.max(axis=0) + reach
+    near = np.flatnonzero(((vertices > low) & (vertices < high)).all(axis=1))
+    if not len(near):
+        return None
+    item = Surface(type(mesh)(positions, mesh.triangles))
+    found = item.search.nearest(vertices[near])
+    corners = mesh.triangles[found.triangles]
+    feet = np.einsum("kc,kci->ki", found.barycentric, positions[corners])
+    away = feet - vertices[near]
+    height = np.einsum("ki,ki->k", away, normals[near])
+    distance = np.sqrt(found.squared_distances)
+    under = (height < 0) & (distance < reach) & (-height > _STRAIGHT * distance)
+    under &= np.einsum("kc,kc->k", found.barycentric, layer.outside[corners]) > _MOSTLY
+    under &= free[corners].any(axis=1)
+    # What is at the rim of the item is beside it, not above it.
+    rim = item.rim[corners]
+    under &= ~((found.barycentric > 1e-3) <= rim).all(axis=1)
+    if not under.any():
+        return None
+    k = int(under.sum())
+    rows = csr_array(
+        (found.barycentric[under].ravel(), corners[under].ravel(), np.arange(0, 3 * k + 1, 3)),
+        shape=(k, len(positions)),
+    )
+    margin = 0.0005 * unit
+    return rows, (margin - height[under])[:, None] * normals[near[under]]
+
+
+def _directly(rows: csr_array, moves: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Move every vertex as far as any place near it has to: the mean of the moves, as long as the longest."""
+    shares = csr_array(rows.T)
+    total = np.asarray(shares.sum(axis=1)).ravel()
+    mean = (shares @ moves) / np.where(total > 0, total, 1)[:, None]
+    length = np.linalg.norm(moves, axis=1)
+    longest = np.asarray(csr_array((rows != 0).T.astype(float)).multiply(length[None]).max(axis=1).todense()).ravel()
+    return mean * (longest / np.maximum(np.linalg.norm(mean, axis=1), 1e-300))[:, None]

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pieces of clothes that do not bend: buttons, buckles, glasses, jewellery."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...mesh.connectivity.welded_parts import WeldedParts
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+
+__all__ = ["placed_rigidly", "rigid_pieces"]
+
+_TINY, _SMALL = 0.02, 0.12
+"""Size of a loose part, in units of the root of the body's area, up to which it is rigid whatever its shape, and up to
+which it is if it is solid: 3 and 16 cm for a human."""
+
+_SOLID = 0.5
+"""How much of a part's area may be left over when normals cancel out: 0 for closed surfaces, 1 for flat ones, such as
+strands of hair."""
+
+_TOGETHER = 0.012
+"""How near, in the same unit, parts are that are one piece: the frame of glasses and their lenses."""
+
+_NAMED_TOGETHER = 0.05
+"""The same for what is said to be rigid as a whole, such as a helmet and its visor."""
+
+_LEAST_VERTICES = 3
+
+
+def rigid_pieces(
+    item: TriangleMesh, unit: float, named: NDArray[np.bool_] | None = None, *, search: bool = True
+) -> NDArray[np.int64]:
+    """Find the rigid pieces of an item.
+
+    Parameters
+    ----------
+    item : TriangleMesh
+        The item.
+    unit : float
+        Root of the area of the body that wears it.
+    named : (n,) array of bool, optional
+        Vertices that are known to be rigid: those that hang together, or nearly so, are one piece each.
+    search : bool
+        Whether to look for others: small loose parts that are solid.
+
+    Returns
+    -------
+    (n,) array of int
+        The piece that each vertex belongs to, numbered from 0; -1 where the item bends.
+    """
+    labels = np.full(item.vertex_count, -1)
+    count = 0
+    if named is not None and named.any():
+        labels[named] = _groups(item, named, _NAMED_TOGETHER * unit, np.inf)[named]
+        count = int(labels.max()) + 1
+    if search:
+        parts = WeldedParts.of(item)
+        rigid = _solid_parts(parts, unit)[parts.vertex_labels] & (labels < 0)
+        if rigid.any():
+            labels[rigid] = count + _groups(item, rigid, _TOGETHER * unit, _SMALL * unit, parts)[rigid]
+    return labels
+
+
+def placed_rigidly(
+    before: NDArray[np.float64], after: NDArray[np.float64], scale: float | None = None
+) -> NDArray[np.float64]:
+    """Move points by the similarity that takes them nearest to where they should go.
+
+    Parameters
+    ----------
+    before, after : (n, 3) array of float
+        The points, and where they should go.
+    scale : float, optional
+        How many times as large they become, if that is known.
+
+    Returns
+    -------
+    (n, 3) array of float
+        The points, moved by one rotation, scale and translation.
+    """
+    start, end = before.mean(axis=0), after.mean(axis=0)
+    x, y = before - start, after - end
+    left, values, right = np.linalg.svd(y.T @ x)
+    sign = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
+    squares = float(np.square(x).sum())
+    if scale is None:
+        scale = float(values @ sign) / squares if squares > 0 else 1.0
+    moved: NDArray[np.float64] = scale * x @ ((left * sign) @ right).T + end
+    return moved
+
+
+def _solid_parts(parts: WeldedParts, unit: float) -> NDArray[np.bool_]:
+    """Tell which parts are small and solid, (p,)."""
+    closed = parts.closed
+    labels = parts.labels[closed.triangles[:, 0]]
+    count = parts.part_count
+    areas = np.bincount(labels, closed.triangle_areas, count)
+    vectors = closed.triangle_normals * closed.triangle_areas[:, None]
+    left = np.linalg.norm(np.stack([np.bincount(labels, axis, count) for axis in vectors.T], axis=1), axis=1)
+    solid = left <= _SOLID * areas
+    vertices = np.bincount(parts.labels, minlength=count)
+    fits = (parts.sizes <= _TINY * unit) | ((parts.sizes <= _SMALL * unit) & solid)
+    rigid: NDArray[np.bool_] = fits & (vertices >= _LEAST_VERTICES) & (areas > 0)
+    return rigid
+
+
+def _groups(
+    item: TriangleMesh,
+    chosen: NDArray[np.bool_],
+    gap: float,
+    largest: float,
+    parts: WeldedParts | None = None,
+) -> NDArray[np.int64]:
+    """Give the chosen vertices numbers of pieces, (n,): parts that nearly touch are one, if that is not too large."""
+    n = item.vertex_count
+    inside = chosen[item.edges].all(axis=1)
+    tails, heads = item.edges[inside].T
+    welded = np.arange(n) if parts is None else np.unique(parts.welded, return_index=True)[1][parts.welded]
+    joined = coo_array(
+        (np.ones(len(tails) + n, bool), (np.append(tails, np.arange(n)), np.append(heads, welded))), shape=(n, n)
+    )
+    labels = connected_components(joined, directed=False)[1]
+    vertices = np.flatnonzero(chosen)
+    pairs = cKDTree(item.vertices[vertices]).query_pairs(gap, output_type="ndarray")
+    pairs = labels[vertices[pairs]]
+    pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+    count = int(labels.max()) + 1
+    groups = connected_components(
+        coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count)), directed=False
+    )[1][labels]
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(low, groups[vertices], item.vertices[vertices])
+    np.maximum.at(high, groups[vertices], item.vertices[vertices])
+    too_large = ((high - low).max(axis=1) > largest)[groups]
+    pieces = np.where(too_large, count + labels, groups)
+    numbers = np.full(n, -1)
+    numbers[chosen] = np.unique(pieces[chosen], return_inverse=True)[1].ravel()
+    return numbers

@@ -1,0 +1,391 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Items that one body wears, fitted to another body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+from scipy.spatial import cKDTree
+
+from ...geometry.laplacian import laplace_beltrami
+from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.triangle_mesh import TriangleMesh
+from ...registration.elastic import ElasticSurface
+from ...runtime.blas_threads import on_one_thread
+from ...runtime.errors import MeshError
+from ...runtime.progress import Progress
+from .body_motion import BodyMotion
+from .contact import Surface, surface_samples
+from .pushing import Layer, layer_of, pushed_out
+from .rigid_pieces import placed_rigidly, rigid_pieces
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from ...mesh.surface_map import SurfaceMap
+    from ...runtime.progress import Steps
+    from .body_motion import Motion
+
+__all__ = ["FittedItem", "WornItem", "wear_steps"]
+
+_HOLD = 0.010
+"""Over what length, in sqrt(area) of the body, an item at the skin smooths out how the skin under it moves."""
+
+_HOLD_AWAY = 0.6
+"""The same far from the skin, as a part of the distance."""
+
+_ROUNDS = 4
+"""How often positions and rotations are found in turn."""
+
+_TURN_RADIUS = 0.5
+"""Over what part of the length above rotations are averaged."""
+
+_ENOUGH = 0.0012
+"""Distance from the skin, in the same unit, that is enough for cloth: about 1.5 mm on a human."""
+
+_LAYERS = 0.0008
+"""The same between layers of cloth."""
+
+_FASTENED = 0.02
+"""How far from a rigid piece, in the same unit, cloth is that it is fastened to."""
+
+_TIGHT, _LOOSE = 0.4, 2.5
+"""What tight and loose items multiply the length by over which they smooth."""
+
+
+@dataclass(frozen=True, eq=False)
+class WornItem:
+    """Something that the first body wears.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        Its surface, around the body, n vertices.
+    bones : (n, b) csr_array of float, optional
+        How much each of the body's bones moves each vertex.
+    fit : str
+        "AUTO"; "TIGHT", which follows each form of the skin; "LOOSE", which keeps its own shape; "RIGID", which keeps
+        it wholly and only grows; or "LEAVE", which is moved along but not pushed out.
+    rigid : (n,) array of bool, optional
+        Vertices of rigid pieces.
+    find_rigid : bool
+        Whether others are looked for.
+    tightness : (n,) array of float, optional
+        From -1, loose, to 1, tight, at each vertex.
+    left : (n,) array of bool, optional
+        Vertices that are not pushed out.
+    margin : float
+        Least distance from the skin where the item was outside, in the second body's units.
+    """
+
+    mesh: TriangleMesh
+    bones: csr_array | None = None
+    fit: str = "AUTO"
+    rigid: NDArray[np.bool_] | None = None
+    find_rigid: bool = True
+    tightness: NDArray[np.float64] | None = None
+    left: NDArray[np.bool_] | None = None
+    margin: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class FittedItem:
+    """An item on the second body.
+
+    Attributes
+    ----------
+    positions : (n, 3) array of float
+        Its vertices.
+    rotations : (n, 3, 3) array of float
+        How it turned around each.
+    scales : (n,) array of float
+        How many times as large it became.
+    places : (n, m) csr_array of float
+        What part of each vertex each of the m vertices of the first body carried; rows sum to one.
+    pieces : (n,) array of int
+        The rigid piece that each vertex belongs to, -1 where it bends.
+    clearance_before, clearance : (n,) array of float
+        Distance from the skin on the first body and on the second, each in its units, negative inside.
+    pushed : (n,) array of float
+        How far each was pushed, so that nothing pokes through.
+    confidence : (n,) array of float
+        How far the map may be trusted that it was carried by, 0 to 1.
+    through : float
+        What part of the item is still below what it should lie on, 0 to 1.
+    """
+
+    positions: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    scales: NDArray[np.float64]
+    places: csr_array
+    pieces: NDArray[np.int64]
+    clearance_before: NDArray[np.float64]
+    clearance: NDArray[np.float64]
+    pushed: NDArray[np.float64]
+    confidence: NDArray[np.float64]
+    through: float = 0.0
+
+    def __repr__(self) -> str:
+        return f"<FittedItem: {len(self.positions)} vertices, {self.pieces.max(initial=-1) + 1} rigid pieces>"
+
+
+@dataclass
+class _Work:
+    """An item while it is fitted."""
+
+    item: WornItem
+    motion: Motion
+    distances: NDArray[np.float64]
+    pieces: NDArray[np.int64]
+    positions: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
+    pushed: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    through: float = 0.0
+
+
+@on_one_thread
+def wear_steps(
+    source: TriangleMesh,
+    target: TriangleMesh,
+    source_to_target: SurfaceMap,
+    images: NDArray[np.float64],
+    items: Sequence[WornItem],
+    *,
+    bones: csr_array | None = None,
+) -> Steps[list[FittedItem]]:
+    """Fit what one body wears to another body.
+
+    Each item moves with the skin near it, see `BodyMotion`, as an elastic surface that smooths this out: close to the
+    skin hardly, far from it widely.  Rigid pieces are moved as they are and scaled.  Then items are pushed out of the
+    skin and of the items below them, from the innermost to the outermost, where they lay outside before.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        The bodies.
+    source_to_target : SurfaceMap
+        The map from the one to the other.
+    images : (n_x, 3) array of float
+        Where the vertices of the source come to be, as one surface without folds: see `wrap_steps`.
+    items : sequence of WornItem
+        What the source wears.
+    bones : (n_x, b) csr_array of float, optional
+        How much each bone moves each vertex of the source.
+
+    Yields
+    ------
+    Progress
+        After each item's steps.
+
+    Returns
+    -------
+    list of FittedItem
+        The items on the target, in the same order.
+
+    Raises
+    ------
+    MeshError
+        If the map or positions are those of other meshes.
+    """
+    if images.shape != source.vertices.shape or len(source_to_target) != source.vertex_count:
+        raise MeshError("The map belongs to other meshes than the bodies. Match them again.")
+    yield Progress(0.0, "Moving the skin")
+    motion = BodyMotion(source, images, bones)
+    unit, new_unit = float(np.sqrt(source.area)), motion.overall * float(np.sqrt(source.area))
+    skin_before, skin = Surface(source, motion.skin), Surface(target)
+    works: list[_Work] = []
+    count = max(len(items), 1)
+    for number, item in enumerate(items):
+        yield Progress(0.05 + 0.45 * number / count, "Moving items along")
+        works.append(_carried(item, motion, skin_before, unit))
+        _elastic(works[-1], unit)
+    for work in works:
+        _place_pieces(work, works, unit)
+    order = sorted(range(len(works)), key=lambda number: (_height(works[number]), number))
+    spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
+    for done, number in enumerate(order):
+        yield Progress(0.5 + 0.45 * done / count, "Pushing items out")
+        below = [works[other] for other in order[:done]]
+        _push(
+            works[number],
+            below,
+            (skin_before, skin),
+            source_to_target.nearest_vertices,
+            units=(unit, new_unit),
+            spacing=spacing,
+        )
+    yield Progress(0.95, "Measuring")
+    return [_fitted(work, skin, source_to_target) for work in works]
+
+
+def _carried(item: WornItem, motion: BodyMotion, skin: Surface, unit: float) -> _Work:
+    """Move an item with the skin."""
+    distances = skin.clearance(item.mesh.vertices).distances
+    reach = np.abs(distances)
+    if item.fit == "LOOSE":
+        reach = reach + 0.05 * unit
+    moved = motion.move(item.mesh.vertices, reach, item.bones)
+    named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
+    pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
+    return _Work(item, moved, distances, pieces, moved.positions)
+
+
+def _elastic(work: _Work, unit: float) -> None:
+    """Let an item smooth out how the skin moved it."""
+    item, moved = work.item, work.motion
+    length = _HOLD * unit + _HOLD_AWAY * np.maximum(work.distances, 0)
+    length *= {"TIGHT": _TIGHT, "LOOSE": _LOOSE}.get(item.fit, 1.0)
+    if item.tightness is not None:
+        length *= np.where(
+            item.tightness > 0, _TIGHT ** item.tightness.clip(0, 1), _LOOSE ** (-item.tightness).clip(0, 1)
+        )
+    laplace = laplace_beltrami(item.mesh)
+    mass = np.where(laplace.mass > 0, laplace.mass, laplace.mass.mean())
+    # The item at rest in the size that it has on the other body, which differs from place to place.
+    smooth = symmetric_factor(diags_array(mass) + (2 * _HOLD * unit) ** 2 * laplace.stiffness)
+    scales = smooth.solve(mass * moved.scales)
+    surface = ElasticSurface(item.mesh.vertices, laplace).resized(scales)
+    drawn = mass / length**2
+    factor = symmetric_factor(csr_array(surface.stiffness + diags_array(drawn)))
+    positions = moved.positions
+    rotations = moved.rotations
+    for _ in range(_ROUNDS):
+        positions = factor.solve(surface.pull(rotations) + drawn[:, None] * moved.positions)
+        rotations = surface.rotations(positions, _TURN_RADIUS * _HOLD * unit)
+    work.positions = positions
+    work.motion = replace(moved, rotations=rotations, scales=scales)
+
+
+def _place_pieces(work: _Work, works: Sequence[_Work], unit: float) -> None:
+    """Put rigid pieces where the skin takes them, or what they are fastened to."""
+    if work.pieces.max(initial=-1) < 0:
+        return
+    before = work.item.mesh.vertices
+    bending = [(other.item.mesh.vertices[other.pieces < 0], other) for other in works]
+    points = np.concatenate([vertices for vertices, _ in bending])
+    shifts = np.concatenate([(other.positions - other.motion.positions)[other.pieces < 0] for _, other in bending])
+    tree = cKDTree(points) if len(points) else None
+    positions = work.positions.copy()
+    for piece in range(int(work.pieces.max()) + 1):
+        inside = work.pieces == piece
+        goal = work.motion.positions[inside]
+        if tree is not None:
+            distances, near = tree.query(before[inside])
+            close = distances < _FASTENED * unit
+            if close.any():
+                goal = goal + shifts[near[close]].mean(axis=0)
+        positions[inside] = placed_rigidly(before[inside], goal, float(work.motion.scales[inside].mean()))
+    work.positions = positions
+
+
+def _height(work: _Work) -> float:
+    """How far an item is from the skin where it lies on it."""
+    return float(np.quantile(work.distances, 0.25))
+
+
+def _push(
+    work: _Work,
+    below: Sequence[_Work],
+    skins: tuple[Surface, Surface],
+    places: NDArray[np.int64],
+    *,
+    units: tuple[float, float],
+    spacing: float,
+) -> None:
+    """Push an item out of the skin and of the items below it."""
+    item, (unit, new_unit) = work.item, units
+    start = work.positions
+    work.pushed = np.zeros(len(start))
+    if item.fit == "LEAVE":
+        return
+    mesh = item.mesh
+    now = TriangleMesh(start, mesh.triangles)
+    samples = surface_samples(now, spacing)
+    scales = work.motion.scales
+    layers = [
+        layer_of(
+            *skins,
+            samples,
+            mesh.vertices,
+            places=places,
+            scales=scales,
+            unit=unit,
+            least=_ENOUGH * new_unit,
+            margin=item.margin,
+        )
+    ]
+    for other in below:
+        beneath = other.item.mesh
+        if not _near(mesh.vertices, beneath.vertices, unit):
+            continue
+        surfaces = Surface(beneath), Surface(TriangleMesh(other.positions, beneath.triangles))
+        least = _LAYERS * new_unit
+        layers.append(
+            layer_of(*surfaces, samples, mesh.vertices, places=None, scales=scales, unit=unit, least=least, margin=0.0)
+        )
+    rigid = work.pieces >= 0
+    fixed = rigid if item.left is None else rigid | item.left
+    laplace = laplace_beltrami(now)
+    pushed = pushed_out(mesh, start, laplace, samples, layers=layers, fixed=fixed, unit=new_unit)
+    positions = pushed.positions
+    if rigid.any():
+        positions = _with_pieces(work, positions, layers)
+    work.positions, work.through = positions, pushed.through
+    work.pushed = np.linalg.norm(positions - start, axis=1)
+
+
+def _near(points: NDArray[np.float64], others: NDArray[np.float64], unit: float) -> bool:
+    """Tell whether two items touch or nearly so."""
+    reach = 0.03 * unit
+    return bool(
+        ((points.min(axis=0) - reach < others.max(axis=0)) & (others.min(axis=0) - reach < points.max(axis=0))).all()
+    )
+
+
+def _with_pieces(work: _Work, positions: NDArray[np.float64], layers: Sequence[Layer]) -> NDArray[np.float64]:
+    """Move rigid pieces with the cloth around them, and out of what is below."""
+    mesh = work.item.mesh
+    moved = positions.copy()
+    soft = np.flatnonzero(work.pieces < 0)
+    tree = cKDTree(mesh.vertices[soft]) if len(soft) else None
+    for piece in range(int(work.pieces.max()) + 1):
+        inside = np.flatnonzero(work.pieces == piece)
+        shift = np.zeros(3)
+        if tree is not None:
+            _, near = tree.query(mesh.vertices[inside])
+            near = soft[near]
+            shift = (positions - work.positions)[near].mean(axis=0)
+        for _ in range(3):
+            push = np.zeros(3)
+            for layer in layers:
+                found = layer.surface.clearance(moved[inside] + shift, layer.starts[inside])
+                lack = np.where(found.known, layer.wanted[inside] - found.distances, -np.inf)
+                worst = int(np.argmax(lack))
+                if lack[worst] > 0:
+                    push += lack[worst] * found.normals[worst]
+            shift = shift + push
+            if not push.any():
+                break
+        moved[inside] += shift
+    return moved
+
+
+def _fitted(work: _Work, skin: Surface, source_to_target: SurfaceMap) -> FittedItem:
+    """Put together what is known of an item."""
+    moved = work.motion
+    return FittedItem(
+        positions=work.positions,
+        rotations=moved.rotations,
+        scales=moved.scales,
+        places=moved.places,
+        pieces=work.pieces,
+        clearance_before=work.distances,
+        clearance=skin.clearance(work.positions).distances,
+        pushed=work.pushed,
+        confidence=moved.places @ source_to_target.confidence,
+        through=work.through,
+    )

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Fit clothes, hair and accessories of one body to others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ...common.access import view_layer_of
+from ...common.errors import ObjectError
+from ...scene.garments import BODY
+from ...transfers.options.wear import WearOptions, wear_settings
+from ...transfers.wear import WearTransfer
+from .transfer_operator import TransferOperator
+
+if TYPE_CHECKING:
+    from ...jobs.transfer import Transfer
+    from ...jobs.transfer_job import TransferJob
+
+__all__ = ["HIERMATCH_OT_wear"]
+
+
+_SHAPES = frozenset({"MESH", "CURVE", "CURVES", "SURFACE", "FONT", "META"})
+"""Types of objects that have a shape."""
+
+
+class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
+    """Fit clothes to another body."""
+
+    bl_idname = "hiermatch.wear"
+    bl_label = "Wear"
+    bl_description = (
+        "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
+        "Without named items it takes the selected ones, or else all that the source's armature moves"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    items: bpy.props.CollectionProperty(
+        name="Items",
+        description="Names of the objects to fit; if empty, those in the collection, or else the selected "
+        "ones, or else all that the source's armature moves",
+        type=bpy.types.OperatorFileListElement,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    collection: bpy.props.StringProperty(
+        name="Collection",
+        description="Name of a collection whose meshes are fitted",
+        options={"SKIP_SAVE"},
+    )
+
+    doing = "Fitting clothes"
+    panel = "HIERMATCH_PT_wear"
+
+    _chosen: tuple[str, ...] = ()
+
+    def _start(self, context: bpy.types.Context) -> TransferJob:
+        """Find bodies and items, and read them."""
+        self._chosen = tuple(item.name for item in self.items)
+        if not self._chosen and self.collection:
+            self._chosen = self._of_collection()
+        job = super()._start(context)
+        self.items.clear()
+        for name in self._chosen:
+            self.items.add().name = name
+        return job
+
+    def _pick(self, context: bpy.types.Context) -> tuple[bpy.types.Object, list[bpy.types.Object]]:
+        """Find the bodies; what else is selected are items."""
+        if self._chosen:
+            return super()._pick(context)
+        source, targets = super()._pick(context)
+        self._left_out = ""
+        chosen = [obj for obj in view_layer_of(context).objects.selected if obj not in (source, *targets)]
+        self._chosen = tuple(sorted(obj.name for obj in chosen if _can_be_worn(obj)))
+        return source, targets
+
+    def _of_collection(self) -> tuple[str, ...]:
+        """Return the meshes of the named collection but the bodies.
+
+        Raises
+        ------
+        ObjectError
+            If there is no such collection, or nothing in it.
+        """
+        collection = bpy.data.collections.get(self.collection)
+        if collection is None:
+            raise ObjectError(f'There is no collection called "{self.collection}".')
+        bodies = {self.source, self.target, *(item.name for item in self.targets)}
+        found = [obj.name for obj in collection.all_objects if obj.type == "MESH" and obj.name not in bodies]
+        if not found:
+            raise ObjectError(f'The collection "{collection.name}" has no meshes that could be fitted.')
+        return tuple(sorted(found))
+
+    def _transfers(self) -> list[Transfer]:
+        options: Any = self
+        return [WearTransfer(wear_settings(options, self._chosen))]
+
+
+def _can_be_worn(obj: bpy.types.Object) -> bool:
+    """Tell whether an object that is selected is meant as an item: not an armature, and not fitted itself."""
+    marks: Any = obj
+    return obj.type in _SHAPES and BODY not in marks

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Clothes, hair and accessories as objects of their own: which there are, and fitted copies of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+from mathutils import Matrix, Vector
+
+from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
+from .armatures import find_armature, moving_armatures
+from .garment_shape_io import mirror_axes
+from .key_drivers import counterparts
+from .pair import check_object
+from .shape_key_io import keys_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = [
+    "BODY",
+    "ITEM",
+    "bound_items",
+    "check_item",
+    "dressed_at_rest",
+    "fitted_copy",
+    "fitted_name",
+    "made_copy",
+]
+
+ITEM, BODY = "hiermatch_item", "hiermatch_body"
+"""Custom properties of a fitted copy: the names of the original, and of the body that it was fitted to."""
+
+_SIZES = {"SOLIDIFY": ("thickness",), "BEVEL": ("width",), "DISPLACE": ("strength",)}
+"""For each type of modifier the members that are lengths."""
+
+
+def bound_items(context: bpy.types.Context, body: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return all visible meshes that the armature of a body moves, but the body, by name; none if it has none."""
+    armature = find_armature(body)
+    if armature is None:
+        return []
+    layer = view_layer_of(context)
+    return [
+        obj
+        for obj in sorted(layer.objects, key=lambda one: one.name)
+        if obj.type == "MESH"
+        and obj != body
+        and BODY not in cast("Any", obj)
+        and obj.visible_get(view_layer=layer)
+        and len(mesh_of(obj).polygons)
+        and (armature in moving_armatures(obj) or obj.parent in (armature, body))
+    ]
+
+
+def check_item(
+    context: bpy.types.Context, item: bpy.types.Object, source: bpy.types.Object, target: bpy.types.Object
+) -> None:
+    """Make sure that an object can be fitted from one body to another.
+
+    Raises
+    ------
+    ObjectError
+        If it cannot.
+    """
+    if item in (source, target):
+        role = "Source" if item == source else "Target"
+        raise ObjectError(
+            f'"{item.name}" is the body itself, picked as the {role}. Take it out of the items, or pick another body.'
+        )
+    if item.type in ("CURVE", "CURVES", "SURFACE", "FONT", "META"):
+        raise ObjectError(
+            f'"{item.name}" is not a mesh but of type {item.type.title()}. Convert a copy of it '
+            "(Object > Convert > Mesh), and fit that."
+        )
+    check_object(view_layer_of(context), item)
+
+
+def dressed_at_rest(item: bpy.types.Object, source: bpy.types.Object) -> bool:
+    """Tell whether the item's own vertices belong to the body's own: both are moved by the same armature, or none is.
+
+    Else it lies on the body as this is posed.
+    """
+    armature = find_armature(source)
+    return armature is None or armature in moving_armatures(item)
+
+
+def fitted_name(item: str, body: str) -> str:
+    """Return the name of a fitted copy."""
+    return f"{item} on {body}"
+
+
+def made_copy(item: bpy.types.Object, body: bpy.types.Object) -> bpy.types.Object | None:
+    """Find the copy of an item that was fitted to a body before."""
+    for obj in bpy.data.objects:
+        marks: Any = obj
+        if obj.type == "MESH" and marks.get(ITEM) == item.name and marks.get(BODY) == body.name:
+            return obj
+    return None
+
+
+def fitted_copy(
+    context: bpy.types.Context,
+    item: bpy.types.Object,
+    source: bpy.types.Object,
+    target: bpy.types.Object,
+    *,
+    motion: NDArray[np.float64],
+    growth: float,
+) -> bpy.types.Object:
+    """Copy an item with all that is on it, for another body; one that was fitted before is replaced.
+
+    Its modifiers stay live: sizes of Solidify, Bevel and Displace grow with it, a Mirror turns with it, and what they
+    point to of the one body becomes that of the other.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where it is added, to a collection that is named after the body.
+    item, source, target : bpy.types.Object
+        The item and the two bodies.
+    motion : (4, 4) array of float
+        How the source turns and moves on the whole to become the target, in world space.
+    growth : float
+        How many times as large the item becomes.
+    """
+    before = made_copy(item, target)
+    copy, mesh = item.copy(), mesh_of(item).copy()
+    copy.data = mesh
+    copy.animation_data_clear()
+    copy.constraints.clear()
+    copy.parent = None
+    copy.matrix_world = _placed(item, motion)
+    name = fitted_name(item.name, target.name)
+    marks: Any = copy
+    marks[ITEM], marks[BODY] = item.name, target.name
+    if before is not None:
+        name = before.name
+        for collection in before.users_collection:
+            collection.objects.link(copy)
+        before.user_remap(copy)
+        bpy.data.objects.remove(before)
+    else:
+        _collection_of(context, target).objects.link(copy)
+    copy.name = mesh.name = name
+    copy.hide_set(state=False)
+    copy.select_set(state=False)
+    places = counterparts(source, target, find_armature(source), find_armature(target))
+    places[item] = copy
+    _point_to(copy, places, growth)
+    return copy
+
+
+def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:
+    """Return where a copy stands: moved with the body, and turned with it if that matters to a modifier."""
+    matrix = item.matrix_world.copy()
+    moved = Matrix(motion.tolist())
+    if mirror_axes(item):
+        return moved @ matrix
+    matrix.translation = moved @ Vector(matrix.translation)
+    return matrix
+
+
+def _collection_of(context: bpy.types.Context, body: bpy.types.Object) -> bpy.types.Collection:
+    """Find the collection of what was fitted to a body, or add it to the scene."""
+    for collection in bpy.data.collections:
+        if cast("Any", collection).get(BODY) == body.name:
+            return collection
+    made = bpy.data.collections.new(f"Outfit of {body.name}")
+    cast("Any", made)[BODY] = body.name
+    cast("bpy.types.Scene", context.scene).collection.children.link(made)
+    return made
+
+
+def _point_to(copy: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.ID], growth: float) -> None:
+    """Let modifiers and drivers of a copy point to what belongs to the other body, and sizes grow."""
+    for modifier in copy.modifiers:
+        changed: Any = modifier
+        for member in _pointers(modifier):
+            value = getattr(changed, member)
+            if value in places:
+                setattr(changed, member, places[value])
+        for member in _SIZES.get(modifier.type, ()):
+            setattr(changed, member, growth * getattr(changed, member))
+    keys = keys_of(copy)
+    animation = None if keys is None else keys.animation_data
+    curves = [] if animation is None else list(animation.drivers)
+    for curve in curves:
+        for variable in cast("bpy.types.Driver", curve.driver).variables:
+            for target in cast("Any", variable).targets:
+                target.id = places.get(target.id, target.id)
+
+
+def _pointers(modifier: bpy.types.Modifier) -> list[str]:
+    """Return the members of a modifier that point to something."""
+    return [prop.identifier for prop in modifier.bl_rna.properties if prop.type == "POINTER" and not prop.is_readonly]

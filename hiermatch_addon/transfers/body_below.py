@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The body below clothes: drawn in by a shape key, or hidden by a mask."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...engine import ClosestPoints, TriangleMesh
+from ..common.access import mesh_of
+from ..scene.deform_layer import write_weights
+from ..scene.mesh_io import read_mesh
+from ..scene.shape_key_io import KeySettings, add_keys
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import bpy
+    from numpy.typing import NDArray
+
+__all__ = ["COVERED", "cover_body", "covered_vertices"]
+
+COVERED = "Below Clothes"
+"""Name of the group, the key and the modifier on the body."""
+
+_REACH = 0.03
+"""How far above the skin, in the root of the body's area, clothes are looked for."""
+
+_STRAIGHT = 0.6
+"""Least cosine between the way from the skin to the clothes and the skin's normal."""
+
+_DEPTH = 0.006
+"""How far the key draws the skin in, in the same unit: about 8 mm on a human."""
+
+
+def covered_vertices(
+    body: TriangleMesh, items: Sequence[tuple[NDArray[np.float64], NDArray[np.int64]]]
+) -> NDArray[np.bool_]:
+    """Tell which vertices of a body lie below clothes with all that is around them, (n,).
+
+    Parameters
+    ----------
+    body : TriangleMesh
+        The body.
+    items : sequence of tuple
+        Vertices and triangles of each item.
+    """
+    reach = _REACH * float(np.sqrt(body.area))
+    covered = np.zeros(body.vertex_count, bool)
+    for vertices, triangles in items:
+        cloth = TriangleMesh(vertices, triangles)
+        low, high = vertices.min(axis=0) - reach, vertices.max(axis=0) + reach
+        near = np.flatnonzero(((body.vertices > low) & (body.vertices < high)).all(axis=1))
+        if not len(near):
+            continue
+        found = ClosestPoints(cloth).nearest(body.vertices[near])
+        feet = np.einsum("kc,kci->ki", found.barycentric, cloth.vertices[cloth.triangles[found.triangles]])
+        away = feet - body.vertices[near]
+        distance = np.sqrt(found.squared_distances)
+        straight = np.einsum("ki,ki->k", away, body.vertex_normals[near]) >= _STRAIGHT * distance
+        covered[near[(distance < reach) & straight]] = True
+    # Two rings further in: the rim of what is covered stays, so that no gap shows at hems.
+    for _ in range(2):
+        tails, heads = body.edges.T
+        open_ends = np.zeros(body.vertex_count, bool)
+        open_ends[tails[~covered[heads]]] = True
+        open_ends[heads[~covered[tails]]] = True
+        covered &= ~open_ends
+    return covered
+
+
+def cover_body(
+    context: bpy.types.Context,
+    body: bpy.types.Object,
+    items: Sequence[tuple[NDArray[np.float64], NDArray[np.int64]]],
+    how: str,
+) -> None:
+    """Draw the body in below clothes by a shape key ("KEY"), or hide it there by a Mask modifier ("MASK")."""
+    mesh = read_mesh(body, context.evaluated_depsgraph_get(), use_modifiers=False)
+    covered = covered_vertices(mesh, items)
+    if how == "KEY":
+        into = np.linalg.inv(np.array(body.matrix_world, np.float64))[:3, :3]
+        inwards = -_DEPTH * float(np.sqrt(mesh.area)) * mesh.vertex_normals * covered[:, None]
+        add_keys(body, [KeySettings(COVERED, value=1.0)], (inwards @ into.T)[None])
+        return
+    write_weights(body, [COVERED], csr_array(covered[:, None].astype(float)))
+    modifier: Any = body.modifiers.get(COVERED) or body.modifiers.new(COVERED, "MASK")
+    modifier.vertex_group, modifier.invert_vertex_group = COVERED, True
+    mesh_of(body).update()

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How clothes are fitted to another body: Blender's options, and the plain settings that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+__all__ = ["FITS", "HIERMATCH_PG_worn", "WearOptions", "WearSettings", "wear_settings"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+FITS = [
+    ("AUTO", "Automatic", "Close to the skin it follows each form of it, far from it only the body as a whole"),
+    ("TIGHT", "Tight", "It follows each form of the skin, such as tights or a second skin"),
+    ("LOOSE", "Loose", "It keeps its own shape and hangs as it did, such as a coat or long hair"),
+    ("RIGID", "Rigid", "It keeps its shape wholly and only grows, such as a helmet"),
+    ("LEAVE", "Leave", "It is moved along with the body, but not pushed out of it"),
+]
+"""How an item can fit, as the engine names it."""
+
+
+class HIERMATCH_PG_worn(bpy.types.PropertyGroup):
+    """How an item is fitted to other bodies; it is kept on the item, and so goes along with it."""
+
+    fit: _props.EnumProperty(name="Fit", description="How the item follows the body", items=FITS, default="AUTO")
+    find_rigid: _props.BoolProperty(
+        name="Find Rigid Parts",
+        description="Keep small solid parts as they are, such as buttons, buckles and glasses. Others can be named by "
+        'a vertex group called "Rigid"',
+        default=True,
+    )
+
+
+@dataclass(frozen=True)
+class WearSettings:
+    """How clothes are fitted to another body.
+
+    Attributes
+    ----------
+    items : tuple of str
+        Names of the items.
+    result : str
+        "OBJECT" for fitted copies, or "KEY" for a shape key on each item itself.
+    clearance : float
+        Least distance from the skin, in units of the scene.
+    weights : str
+        "AUTO", "OWN" or "SKIN".
+    limit : int
+        How many bones may move a vertex; 0 for any number.
+    normalise : bool
+        Whether the weights of bones sum to one.
+    fit_rig : bool
+        Whether a body without an armature gets the source's, fitted.
+    hide : str
+        What becomes of the body below: "NONE", "KEY" or "MASK".
+    colors : bool
+        Whether color attributes show what was done.
+    poses : bool
+        Whether weights are mended that let the body poke through in test poses.
+    """
+
+    items: tuple[str, ...] = ()
+    result: str = "OBJECT"
+    clearance: float = 0.0
+    weights: str = "AUTO"
+    limit: int = 0
+    normalise: bool = True
+    fit_rig: bool = True
+    hide: str = "NONE"
+    colors: bool = False
+    poses: bool = True
+
+
+class WearOptions:
+    """The options of clothes, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "wear_result": _props.EnumProperty(
+            name="Result",
+            description="What is made",
+            items=[
+                ("OBJECT", "Fitted Copies", "A copy of each item, in a collection of its own"),
+                ("KEY", "Shape Key", "A shape key on each item that moves it to the other body"),
+            ],
+            default="OBJECT",
+        ),
+        "wear_clearance": _props.FloatProperty(
+            name="Clearance",
+            description="Least distance from the skin. With 0 it is what the items had on their own body, in the size "
+            "of the other",
+            default=0.0,
+            min=0.0,
+            soft_max=0.05,
+            precision=4,
+            subtype="DISTANCE",
+        ),
+        "wear_weights": _props.EnumProperty(
+            name="Weights",
+            description="Which weights the fitted items get",
+            items=[
+                ("AUTO", "Automatic", "Their own, if the other body's rig has these bones, or else those of its skin"),
+                ("OWN", "Own", "Their own, whatever bones the other body has"),
+                ("SKIN", "From the Skin", "Those of the other body's skin, from where the items lie on it"),
+            ],
+            default="AUTO",
+        ),
+        "wear_limit": _props.IntProperty(
+            name="Limit",
+            description="How many bones may move a vertex: the smallest weights go. 0 for any number",
+            default=0,
+            min=0,
+            max=32,
+        ),
+        "wear_normalise": _props.BoolProperty(
+            name="Normalize",
+            description="Let the weights of all bones sum to one at each vertex. Locked groups keep theirs",
+            default=True,
+        ),
+        "wear_poses": _props.BoolProperty(
+            name="Test Poses",
+            description="Bend each joint of the other body's rig, and where its skin pokes through an item then, bring "
+            "the weights there closer to those of the skin",
+            default=True,
+        ),
+        "wear_fit_rig": _props.BoolProperty(
+            name="Fit Rig",
+            description="If the other body has no armature, give it that of the first, with its weights, as Retarget "
+            "does, so that body and clothes move",
+            default=True,
+        ),
+        "wear_hide": _props.EnumProperty(
+            name="Body Below",
+            description="What becomes of the body where clothes cover it",
+            items=[
+                ("NONE", "As It Is", "It is left as it is"),
+                ("KEY", "Shrink Key", "It gets a shape key that draws it in below clothes"),
+                ("MASK", "Mask", "It gets a Mask modifier with a vertex group that hides it below clothes"),
+            ],
+            default="NONE",
+        ),
+        "wear_colors": _props.BoolProperty(
+            name="Show Fit",
+            description="Write color attributes that show how far each vertex is from the skin, how far it was pushed, "
+            "and where it is uncertain",
+            default=False,
+        ),
+    }
+
+    if TYPE_CHECKING:
+        wear_result: str
+        wear_clearance: float
+        wear_weights: str
+        wear_limit: int
+        wear_normalise: bool
+        wear_poses: bool
+        wear_fit_rig: bool
+        wear_hide: str
+        wear_colors: bool
+
+
+def wear_settings(options: WearOptions, items: tuple[str, ...]) -> WearSettings:
+    """Make the settings of the options for some items, given by name."""
+    return WearSettings(
+        items=items,
+        result=options.wear_result,
+        clearance=options.wear_clearance,
+        weights=options.wear_weights,
+        limit=options.wear_limit,
+        normalise=options.wear_normalise,
+        fit_rig=options.wear_fit_rig,
+        hide=options.wear_hide,
+        colors=options.wear_colors,
+        poses=options.wear_poses,
+    )

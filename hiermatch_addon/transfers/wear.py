@@ -1,0 +1,466 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Clothes, hair and accessories of the source, fitted to the target."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+
+from ...engine import (
+    ClosestPoints,
+    Skeleton,
+    TriangleMesh,
+    WornItem,
+    carry_weights,
+    kept_in_place,
+    mend_weights_steps,
+    row_sums,
+    wear_steps,
+    within,
+    wrap_steps,
+)
+from ..common.access import mesh_of
+from ..common.errors import NothingToCarryError, ObjectError
+from ..common.phrases import counted, listed
+from ..jobs.transfer import TransferReport
+from ..scene.armatures import SourceRig, armature_of, find_armature, read_rig
+from ..scene.binding import bind
+from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
+from ..scene.garment_shape_io import write_shape
+from ..scene.garments import (
+    bound_items,
+    check_item,
+    dressed_at_rest,
+    fitted_copy,
+)
+from ..scene.mesh_io import add_colors, position_digest, read_mesh, topology
+from ..scene.pair import check_writable, named_object
+from ..scene.shape_key_io import KeySettings, add_keys, check_keys_writable, key_positions, keys_of, shape_key_names
+from .body_below import cover_body
+from .item_weights import ItemWeights, chosen_weights, in_columns, replaced
+from .options.rig import RigSettings
+from .options.weights import WeightSettings
+from .rig import RigTransfer
+from .weights import WeightTransfer
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...engine import FittedItem, Steps
+    from ..jobs.transfer import Passage
+    from .options.wear import WearSettings
+
+__all__ = ["WearTransfer", "painted_groups"]
+
+painted_groups = ("Rigid", "Tight", "Loose", "Leave")
+"""Names of vertex groups of an item that steer how it is fitted."""
+
+_FAR, _BESIDE = 0.25, 0.3
+"""How far from the body, in the root of its area, the nearest vertex of an item may be, and half of them."""
+
+_MOST_THROUGH = 0.003
+"""If more of an item is below the skin still, that is told."""
+
+_MENTIONED = 0.01
+"""If less of an item was pushed, that is not mentioned."""
+
+_UNSURE, _MOST_UNSURE = 0.35, 0.1
+"""Confidence of the map from which on the place of an item is believed; and if more of it is not, that is told."""
+
+_KEY = "Fit to "
+
+_FIT_NAMES = "Distance to Skin", "Pushed", "Uncertain"
+"""What the color attributes of a fitted item show."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Item:
+    """An item as it was read."""
+
+    name: str
+    uid: int
+    state: tuple[str, str]
+    worn: WornItem
+    at_rest: bool
+    weights: ItemWeights
+
+
+class WearTransfer:
+    """Fits clothes of the source to the target; see `Transfer`.
+
+    Parameters
+    ----------
+    settings : WearSettings
+        Which, and how.
+    """
+
+    label = "Clothes"
+    uses_rig = True
+
+    def __init__(self, settings: WearSettings) -> None:
+        self._settings = settings
+        self._items: list[_Item] = []
+        self._first: list[WeightTransfer | RigTransfer] = []
+        self._posed: NDArray[np.float64] | None = None
+        self._bones: csr_array | None = None
+        self._fitted: list[FittedItem] = []
+        self._motion: NDArray[np.float64] = np.eye(4)
+        self._growth = 1.0
+        self._other: SourceRig | None = None
+        self._old_bones: set[str] = set()
+        self._weights: list[ItemWeights | None] = []
+        self._mended: list[tuple[str, int]] = []
+        self._notes: list[str] = []
+
+    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+        """Read all items, and make sure that they can be fitted."""
+        settings = self._settings
+        chosen = [named_object(name) for name in dict.fromkeys(settings.items)]
+        if not chosen:
+            chosen = [obj for obj in bound_items(context, source) if obj != target]
+        if not chosen:
+            raise NothingToCarryError(
+                f'No clothes of "{source.name}" were found: no other mesh is bound to its armature. Select the items '
+                "together with both bodies, or name them."
+            )
+        depsgraph = context.evaluated_depsgraph_get()
+        for item in chosen:
+            check_item(context, item, source, target)
+            if settings.result == "KEY":
+                check_keys_writable(item, [_KEY + target.name])
+                check_writable(item)
+        if settings.hide != "NONE":
+            check_weights_writable(target)
+            check_keys_writable(target, [])
+        rig = read_rig(source)
+        names = () if rig is None else rig.names
+        self._bones = None if rig is None else rig.weights
+        if any(not dressed_at_rest(item, source) for item in chosen):
+            self._posed = read_mesh(source, depsgraph, use_modifiers=True).vertices
+        self._other = read_rig(target)
+        mover = find_armature(source)
+        self._old_bones = (
+            set() if mover is None else {bone.name for bone in armature_of(mover).bones if bone.use_deform}
+        )
+        body, other = (read_mesh(obj, depsgraph, use_modifiers=False) for obj in (source, target))
+        for item in chosen:
+            self._items.append(self._read_item(depsgraph, item, source, names))
+            around = body.vertices if self._items[-1].at_rest or self._posed is None else self._posed
+            _check_place(self._items[-1], TriangleMesh(around, body.triangles), other, source, target)
+        if find_armature(target) is None and rig is not None and settings.fit_rig and settings.result == "OBJECT":
+            self._first = [WeightTransfer(WeightSettings()), RigTransfer(RigSettings())]
+            for transfer in self._first:
+                transfer.read(context, source, target)
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Fit the items."""
+        pair, rig = passage.pair, passage.rig
+        for number, transfer in enumerate(self._first):
+            yield from within(transfer.steps(passage), 0.1 * number, 0.1 * (number + 1), transfer.label)
+        start = 0.1 * len(self._first)
+        there = pair.source_to_target
+        registered = None if rig is None else rig.registered
+        if registered is None:
+            maps = there, pair.target_to_source
+            wrapped = yield from within(wrap_steps(pair.source, pair.target, *maps), start, start + 0.3)
+            registered, start = wrapped.positions, start + 0.3
+        self._find_motion(pair.source, registered)
+        self._fitted = [cast("Any", None)] * len(self._items)
+        for at_rest in (True, False):
+            numbers = [number for number, item in enumerate(self._items) if item.at_rest == at_rest]
+            if not numbers:
+                continue
+            body = pair.source
+            if not at_rest and self._posed is not None:
+                body = TriangleMesh(self._posed, body.triangles)
+            worn = [self._items[number].worn for number in numbers]
+            made = wear_steps(body, pair.target, there, registered, worn, bones=self._bones)
+            found = yield from within(made, start, 0.94)
+            for number, fitted in zip(numbers, found, strict=True):
+                self._fitted[number] = fitted
+            start = 0.94
+        self._weights = [None] * len(self._items)
+        if self._settings.result == "OBJECT":
+            yield from within(self._weight_steps(passage), 0.95, 1.0)
+
+    def _weight_steps(self, passage: Passage) -> Steps[None]:
+        """Find the weights of all items."""
+        rig = self._other
+        if rig is None and self._first and passage.rig is not None:
+            weights = carry_weights(passage.rig.weights, passage.pair.target_to_source)
+            skeleton = Skeleton(passage.rig.skeleton.parents, passage.rig.heads, passage.rig.tails)
+            rig = SourceRig("", passage.bone_names, skeleton, weights)
+        if rig is None:
+            return
+        there = passage.pair.source_to_target
+        spread = csr_array(
+            (there.barycentric.ravel(), there.corners.ravel(), np.arange(0, 3 * len(there) + 1, 3)),
+            shape=(len(there), there.image_vertex_count),
+        )
+        on_skin = csr_array(spread @ rig.weights)
+        count = len(self._items)
+        for number, (item, fitted) in enumerate(zip(self._items, self._fitted, strict=True)):
+            carried = csr_array(fitted.places @ on_skin)
+            found = chosen_weights(item.weights, rig.names, carried, self._old_bones, self._settings)
+            if self._settings.poses:
+                mending = mend_weights_steps(
+                    fitted.positions,
+                    item.worn.mesh.triangles,
+                    in_columns(found, rig.names),
+                    body=passage.pair.target,
+                    skin_weights=rig.weights,
+                    skeleton=rig.skeleton,
+                )
+                mended = yield from within(mending, number / count, (number + 1) / count, "Trying poses")
+                found = replaced(found, rig.names, mended.weights, mended.changed)
+                self._mended.append((item.name, int(mended.changed.sum())))
+            self._weights[number] = found
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+        """Write the fitted items."""
+        items = [self._still_there(item) for item in self._items]
+        reports = [transfer.write(context, source, target) for transfer in self._first]
+        notes = [*self._notes, *(note for report in reports for note in report.notes)]
+        remarks: list[str] = [remark for report in reports for remark in report.remarks]
+        made: list[bpy.types.Object] = []
+        for item, obj, fitted, weights in zip(self._items, items, self._fitted, self._weights, strict=True):
+            if self._settings.result == "KEY":
+                self._write_key(obj, target, fitted)
+                made.append(obj)
+            else:
+                copy, said = self._write_copy(context, obj, (source, target), fitted, weights)
+                made.append(copy)
+                notes.extend(note for note in said if note not in notes)
+            if self._settings.colors:
+                _write_colors(made[-1], fitted)
+            remarks.append(_done(item.name, fitted))
+            doubt = _doubt(item.name, fitted)
+            if doubt:
+                notes.append(doubt)
+        remarks.extend(
+            f'Weights of {counted(count, "vertex")} of "{name}" were mended for poses.'
+            for name, count in self._mended
+            if count
+        )
+        if self._settings.hide != "NONE":
+            below = [
+                (fitted.positions, item.worn.mesh.triangles)
+                for item, fitted in zip(self._items, self._fitted, strict=True)
+            ]
+            cover_body(context, target, below, self._settings.hide)
+        done = [report.done for report in reports if report.done]
+        done.append(counted(len(made), "item"))
+        return TransferReport(", ".join(done), tuple(notes), tuple(remarks))
+
+    def _read_item(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        item: bpy.types.Object,
+        source: bpy.types.Object,
+        names: tuple[str, ...],
+    ) -> _Item:
+        """Read an item with what steers it."""
+        stored: Any = cast("Any", item).hiermatch_wear
+        mesh = read_mesh(item, depsgraph, use_modifiers=False)
+        weights = read_weights(item)
+        numbers = {name: number for number, name in enumerate(names)}
+        groups = [group for group in item.vertex_groups if group.name in numbers]
+        bones = None
+        if groups and self._bones is not None:
+            columns = weights[:, [group.index for group in groups]].tocoo()
+            places = np.array([numbers[group.name] for group in groups], np.int64)
+            bones = csr_array((columns.data, (columns.row, places[columns.col])), shape=(mesh.vertex_count, len(names)))
+            total = row_sums(bones)
+            bones = csr_array(diags_array(1 / np.where(total > 0, total, 1)) @ bones)
+            if (total <= 0).any():  # accessory bones of its own: they say nothing of the body's
+                bones = None
+        rigid, tight, loose, left = (_painted(item, weights, name) for name in painted_groups)
+        tightness = None if tight is None and loose is None else _or_none(tight, mesh) - _or_none(loose, mesh)
+        worn = WornItem(
+            mesh,
+            bones,
+            stored.fit,
+            rigid=None if rigid is None else rigid > 0.5,
+            find_rigid=stored.find_rigid,
+            tightness=tightness,
+            left=None if left is None else left > 0.5,
+            margin=self._settings.clearance,
+        )
+        state = topology(mesh_of(item)), position_digest(mesh_of(item))
+        names_of = tuple(group.name for group in item.vertex_groups)
+        locked = frozenset(group.name for group in item.vertex_groups if group.lock_weight)
+        own = ItemWeights(names_of, weights, locked)
+        return _Item(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own)
+
+    def _still_there(self, item: _Item) -> bpy.types.Object:
+        """Look an item up again.
+
+        Raises
+        ------
+        ObjectError
+            If it was deleted or edited since.
+        """
+        obj = next((one for one in bpy.data.objects if one.session_uid == item.uid), None)
+        if obj is None:
+            raise ObjectError(f'"{item.name}" was deleted meanwhile. Nothing was written.')
+        if (topology(mesh_of(obj)), position_digest(mesh_of(obj))) != item.state:
+            raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
+        return obj
+
+    def _find_motion(self, source: TriangleMesh, images: NDArray[np.float64]) -> None:
+        """Find how the body turns and moves on the whole."""
+        turned_back = kept_in_place(source, images)
+        weights = source.vertex_areas / source.area
+        centre, back = weights @ images, weights @ turned_back
+        x, y = turned_back - back, images - centre
+        left, _, right = np.linalg.svd(y.T @ (weights[:, None] * x))
+        left[:, 2] *= np.sign(np.linalg.det(left @ right))
+        self._motion = np.eye(4)
+        self._motion[:3, :3] = left @ right
+        self._motion[:3, 3] = centre - self._motion[:3, :3] @ (weights @ source.vertices)
+
+    def _write_key(self, obj: bpy.types.Object, target: bpy.types.Object, fitted: FittedItem) -> None:
+        """Write a shape key that moves the item itself to the other body."""
+        matrix = np.linalg.inv(np.array(obj.matrix_world, np.float64))
+        local = fitted.positions @ matrix[:3, :3].T + matrix[:3, 3]
+        keys = keys_of(obj)
+        rest = (
+            np.array([vertex.co for vertex in mesh_of(obj).vertices])
+            if keys is None
+            else key_positions(keys.reference_key)
+        )
+        name = _KEY + target.name
+        others = [other for other in shape_key_names(obj) if other.startswith(_KEY) and other != name]
+        add_keys(obj, [KeySettings(name, value=float(not others))], (local - rest)[None])
+
+    def _write_copy(
+        self,
+        context: bpy.types.Context,
+        item: bpy.types.Object,
+        bodies: tuple[bpy.types.Object, bpy.types.Object],
+        fitted: FittedItem,
+        weights: ItemWeights | None,
+    ) -> tuple[bpy.types.Object, list[str]]:
+        """Write a fitted copy; return it, and what is to be known."""
+        source, target = bodies
+        notes: list[str] = []
+        copy = fitted_copy(context, item, source, target, motion=self._motion, growth=float(np.median(fitted.scales)))
+        write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])
+        armature = find_armature(target)
+        if armature is None:
+            notes.append(
+                f'"{target.name}" has no armature, so what was fitted to it is not bound. Give it one by Retarget, '
+                "and fit it again."
+            )
+        elif weights is not None:
+            _write_weights(copy, weights)
+            if weights.lost:
+                notes.append(
+                    f'The armature "{armature.name}" has no bones {listed(weights.lost)} of "{item.name}". What they '
+                    "moved is moved by the bones of the skin below."
+                )
+        mover = find_armature(source)
+        for modifier in [modifier for modifier in copy.modifiers if modifier.type == "ARMATURE"]:
+            changed: Any = modifier
+            if armature is None and changed.object in (mover, None):
+                copy.modifiers.remove(modifier)
+            elif changed.object == mover:
+                changed.object = armature
+        if armature is not None:
+            bind(copy, armature, item)
+        return copy, notes
+
+
+def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:
+    """Write weights where they are not locked, and drop the groups of bones that are not there."""
+    for name in weights.lost:
+        copy.vertex_groups.remove(copy.vertex_groups[name])
+    free = [number for number, name in enumerate(weights.names) if name not in weights.locked]
+    write_weights(copy, [weights.names[number] for number in free], csr_array(weights.weights[:, free]))
+
+
+def _painted(item: bpy.types.Object, weights: csr_array, name: str) -> NDArray[np.float64] | None:
+    """Return the weights of a painted group, (n,); none if there is none such."""
+    group = item.vertex_groups.get(name)
+    return None if group is None else weights[:, [group.index]].toarray().ravel()
+
+
+def _or_none(values: NDArray[np.float64] | None, mesh: TriangleMesh) -> NDArray[np.float64]:
+    return np.zeros(mesh.vertex_count) if values is None else values
+
+
+def _check_place(
+    item: _Item, body: TriangleMesh, other: TriangleMesh, source: bpy.types.Object, target: bpy.types.Object
+) -> None:
+    """Make sure that an item lies on the body.
+
+    Raises
+    ------
+    ObjectError
+        If it does not.
+    """
+    points = item.worn.mesh.vertices
+    unit = float(np.sqrt(body.area))
+    away = np.sqrt(ClosestPoints(body).nearest(points).squared_distances) / unit
+    if away.min() <= _FAR and np.median(away) <= _BESIDE:
+        return
+    there = np.sqrt(ClosestPoints(other).nearest(points).squared_distances) / float(np.sqrt(other.area))
+    if there.min() < _FAR and np.median(there) < _BESIDE:
+        raise ObjectError(
+            f'"{item.name}" lies on "{target.name}", not on "{source.name}". Swap Source and Target, or take it out '
+            "of the items."
+        )
+    if away.min() <= _FAR:
+        raise ObjectError(
+            f'There is no body under most of "{item.name}": "{source.name}" has no surface there. Pick the whole body '
+            "as the Source, or take the item out."
+        )
+    raise ObjectError(
+        f'"{item.name}" is far from "{source.name}". Move it to where the body wears it, or pick that '
+        "body as the Source."
+    )
+
+
+def _done(name: str, fitted: FittedItem) -> str:
+    """Say in a sentence what was done with an item."""
+    parts = []
+    pieces = int(fitted.pieces.max(initial=-1)) + 1
+    if pieces:
+        parts.append(f"kept {counted(pieces, 'rigid part')} as they are")
+    moved = float((fitted.pushed > 0).mean())
+    if moved > _MENTIONED:
+        parts.append(f"pushed {moved:.0%} of it out of what is below")
+    return f'"{name}" was fitted: {", ".join(parts)}.' if parts else f'"{name}" was fitted.'
+
+
+def _doubt(name: str, fitted: FittedItem) -> str:
+    """Say what to check of an item; empty if there is nothing."""
+    parts = []
+    if fitted.through > _MOST_THROUGH:
+        parts.append(f"what is below still shows through {fitted.through:.1%} of it")
+    unsure = float((fitted.confidence < _UNSURE).mean())
+    if unsure > _MOST_UNSURE:
+        parts.append(f"the match is uncertain below {unsure:.0%} of it")
+    return f'"{name}" should be checked: {", ".join(parts)}.' if parts else ""
+
+
+def _write_colors(obj: bpy.types.Object, fitted: FittedItem) -> None:
+    """Write color attributes: distance to the skin, how far each vertex was pushed, and where it is uncertain."""
+    unit = max(float(np.quantile(np.abs(fitted.clearance), 0.95)), 1e-12)
+    pushed = fitted.pushed / max(float(fitted.pushed.max(initial=0.0)), 1e-12)
+    shown = ((fitted.clearance / unit).clip(0, 1), pushed, 1 - fitted.confidence.clip(0, 1))
+    inside = fitted.clearance < 0
+    mesh = mesh_of(obj)
+    for name, values in zip(_FIT_NAMES, shown, strict=True):
+        colors = np.ones((len(values), 4), np.float32)
+        # From white over orange to dark red; what is inside the skin is blue.
+        colors[:, 0], colors[:, 1], colors[:, 2] = 1 - 0.5 * values**2, 1 - 0.9 * values, (1 - values) ** 2
+        if name == _FIT_NAMES[0]:
+            colors[inside] = (0.05, 0.1, 0.9, 1.0)
+        if name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
+        add_colors(mesh, name, colors)

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator `hiermatch.wear`, as a script and a person use it."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+
+from tests.addon.rigs import add_armature
+from tests.addon.scenes import snapshot
+from tests.addon.shape_keys import positions
+
+
+def in_world(obj):
+    matrix = np.array(obj.matrix_world)
+    return positions(obj) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def add_item(body, name, offset):
+    """Add cloth to a body: its own faces, so far outside."""
+    mesh = body.data.copy()
+    mesh.name = name
+    for attribute in [one.name for one in mesh.attributes if not one.is_required and not one.is_internal]:
+        if attribute in mesh.attributes and attribute != "position":
+            mesh.attributes.remove(mesh.attributes[attribute])
+    for key in list(mesh.keys()):
+        del mesh[key]
+    normals = np.array([vertex.normal for vertex in mesh.vertices])
+    size = np.ptp(positions(body), axis=0).max()
+    moved = positions(body) + offset * size * normals
+    mesh.vertices.foreach_set("co", moved.astype(np.float32).ravel())
+    obj = bpy.data.objects.new(name, mesh)
+    obj.matrix_world = body.matrix_world
+    bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.update()
+    return obj
+
+
+@pytest.fixture
+def pair(dense_pair):
+    """A matched pair, and a shirt and a coat on the source."""
+    bpy.context.scene.hiermatch.source = bpy.context.scene.hiermatch.target = None
+    source, target = dense_pair
+    shirt, coat = add_item(source, "Shirt", 0.02), add_item(source, "Coat", 0.05)
+    bpy.ops.object.select_all(action="DESELECT")
+    return source, target, shirt, coat
+
+
+def wear(*items, **options):
+    named = [{"name": item} for item in items]
+    return bpy.ops.hiermatch.wear(
+        **({"source": "Source", "target": "Target", "items": named, "refine": False} | options)
+    )
+
+
+def fitted(item, body="Target"):
+    found = [obj for obj in bpy.data.objects if obj.get("hiermatch_item") == item and obj.get("hiermatch_body") == body]
+    assert len(found) == 1
+    return found[0]
+
+
+def depths(obj, body):
+    """How far vertices are inside a body, by its nearest face."""
+    into = body.matrix_world.inverted()
+    found = []
+    for point in in_world(obj):
+        hit, place, normal, _ = body.closest_point_on_mesh(into @ Vector(point))
+        assert hit
+        found.append(-(into @ Vector(point) - place).dot(normal))
+    return np.array(found)
+
+
+def test_items_are_fitted_as_copies_and_again_in_place(pair):
+    source, target, shirt, coat = pair
+    material = bpy.data.materials.new("Cotton")
+    shirt.data.materials.append(material)
+    shirt["size"] = "M"
+    shirt.modifiers.new("Thick", "SOLIDIFY").thickness = 0.01
+    before = positions(shirt).copy()
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    copy = fitted("Shirt")
+    assert copy.users_collection[0].name == "Outfit of Target"
+    assert copy.data.materials[0] == material
+    assert copy["size"] == "M"
+    assert [modifier.type for modifier in copy.modifiers] == ["SOLIDIFY"]
+    assert depths(copy, target).max() < 1e-4
+    assert depths(fitted("Coat"), target).max() < 1e-4
+    np.testing.assert_array_equal(positions(shirt), before)
+    report = bpy.context.scene.hiermatch_retarget.report
+    assert "2 items" in report.done
+    assert '"Shirt" was fitted' in report.remarks
+    name = copy.name
+    assert wear("Shirt") == {"FINISHED"}
+    assert fitted("Shirt").name == name
+    assert len(bpy.data.collections["Outfit of Target"].objects) == 2
+    assert source.name == "Source"
+    assert coat.name == "Coat"
+
+
+def test_a_shape_key_on_the_original(pair):
+    _, target, shirt, _ = pair
+    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
+    key = shirt.data.shape_keys.key_blocks["Fit to Target"]
+    assert key.value == 1
+    assert not [obj for obj in bpy.data.objects if "hiermatch_body" in obj]
+    moved = np.array([shirt.matrix_world @ point.co for point in key.data])
+    assert np.linalg.norm(moved.mean(axis=0) - in_world(target).mean(axis=0)) < 0.3
+
+
+def test_keys_of_an_item_go_along(pair):
+    _, _, shirt, _ = pair
+    shirt.shape_key_add(name="Basis")
+    key = shirt.shape_key_add(name="Puffed")
+    up = np.zeros((len(key.data), 3))
+    up[:, 2] = 0.1
+    key.data.foreach_set("co", (positions(shirt) + up).astype(np.float32).ravel())
+    assert wear("Shirt") == {"FINISHED"}
+    copy = fitted("Shirt")
+    basis, puffed = (np.array([p.co for p in copy.data.shape_keys.key_blocks[n].data]) for n in ("Basis", "Puffed"))
+    lengths = np.linalg.norm(puffed - basis, axis=1)
+    assert lengths.min() > 0.03
+    assert lengths.max() < 0.4
+
+
+def test_selected_items_and_those_of_a_collection(pair):
+    _, _, shirt, coat = pair
+    shirt.select_set(state=True)
+    assert wear() == {"FINISHED"}
+    assert fitted("Shirt")
+    closet = bpy.data.collections.new("Closet")
+    bpy.context.scene.collection.children.link(closet)
+    closet.objects.link(coat)
+    assert wear(collection="Closet") == {"FINISHED"}
+    assert fitted("Coat")
+    with pytest.raises(RuntimeError, match="no collection"):
+        wear(collection="Wardrobe")
+
+
+def test_all_that_the_armature_moves_gets_the_weights_of_the_other_rig(pair):
+    source, target, shirt, _ = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for bone in rigs[1].data.bones:
+        bone.name = f"other {bone.name}"
+    for obj, rig, name in ((source, rigs[0], "neck"), (shirt, rigs[0], "neck"), (target, rigs[1], "other neck")):
+        obj.vertex_groups.new(name=name).add(range(len(obj.data.vertices)), 1.0, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+    assert wear(wear_poses=False) == {"FINISHED"}
+    copy = fitted("Shirt")
+    assert [obj.get("hiermatch_item") for obj in bpy.data.objects if "hiermatch_body" in obj] == ["Shirt"]
+    assert copy.modifiers["Armature"].object == rigs[1]
+    assert "other neck" in copy.vertex_groups
+    assert "neck" not in copy.vertex_groups
+    weights = [vertex.groups[0].weight for vertex in copy.data.vertices]
+    np.testing.assert_allclose(weights, 1, atol=1e-3)
+
+
+def test_the_body_below_is_drawn_in_or_hidden(pair):
+    _, target, *_ = pair
+    assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
+    assert target.data.shape_keys.key_blocks["Below Clothes"].value == 1
+    assert wear("Shirt", wear_hide="MASK", wear_colors=True) == {"FINISHED"}
+    assert target.modifiers["Below Clothes"].vertex_group == "Below Clothes"
+    assert {"Distance to Skin", "Pushed", "Uncertain"} <= set(fitted("Shirt").data.attributes.keys())
+
+
+def test_how_an_item_fits_is_kept_on_it(pair):
+    _, _, shirt, _ = pair
+    shirt.hiermatch_wear.fit = "RIGID"
+    assert wear("Shirt") == {"FINISHED"}
+    assert "1 rigid part" in bpy.context.scene.hiermatch_retarget.report.remarks
+    assert fitted("Shirt").hiermatch_wear.fit == "RIGID"
+    shirt.hiermatch_wear.fit = "LOOSE"
+    assert wear("Shirt") == {"FINISHED"}
+    assert "rigid part" not in bpy.context.scene.hiermatch_retarget.report.remarks
+
+
+def move_away(shirt):
+    shirt.location.x += 30
+
+
+def onto_the_other(shirt):
+    shirt.matrix_world = bpy.data.objects["Target"].matrix_world
+    shirt.data.vertices.foreach_set("co", positions(bpy.data.objects["Target"]).astype(np.float32).ravel())
+
+
+@pytest.mark.parametrize(
+    ("items", "change", "message"),
+    [
+        (["Source"], None, "is the body itself"),
+        (["Shirt"], move_away, "is far from"),
+        (["Shirt"], onto_the_other, "Swap Source and Target"),
+        (["Hair"], None, "Convert"),
+        (["Nothing"], None, "no object called"),
+        ([], None, "No clothes"),
+    ],
+)
+def test_what_cannot_be_worn_changes_nothing(pair, items, change, message):
+    shirt = pair[2]
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Hair", bpy.data.curves.new("Hair", "CURVE")))
+    if change is not None:
+        change(shirt)
+        bpy.context.view_layer.update()
+    before = snapshot()
+    with pytest.raises(RuntimeError, match=message):
+        wear(*items)
+    assert snapshot() == before

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fit outfits to other bodies in Blender, and print the scores beside those of other ways.
+
+    python -m tests.benchmarks.outfits --scenes FOLDER --scorer FILE [--only O1,O3] [--garments]
+
+FOLDER holds scenes, each as a .blend with the meshes BodyA and BodyB and what BodyA wears, bound to its armature and
+called A_ and its name, and as an .npz with the truth, which only the scorer reads; and beside the scorer
+PEERS-outfits.md, the table of the scores of others.
+
+What is scored is what `hiermatch.wear` makes with its default options, the match included.  The columns are those of
+the scorer (see its --help): lengths are in % of the body's height, and 0 is the best everywhere.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import bpy
+import numpy as np
+
+from tests.addon.conftest import load_extension
+
+OURS = "hiermatch"
+PEERS = ("manual_shrink", "shrinkwrap", "rbf_engine", "rbf_push", "proto_engine", "proto_true")
+
+
+def in_world(obj):
+    """Vertices of an object in the world, (n, 3)."""
+    points = np.empty(3 * len(obj.data.vertices), np.float32)
+    obj.data.vertices.foreach_get("co", points)
+    matrix = np.array(obj.matrix_world)
+    return points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def weights(obj, bones):
+    """Weights of an object's groups of such names, (n, b)."""
+    columns = {group.index: bones.index(group.name) for group in obj.vertex_groups if group.name in bones}
+    table = np.zeros((len(obj.data.vertices), len(bones)))
+    for vertex in obj.data.vertices:
+        for element in vertex.groups:
+            if element.group in columns:
+                table[vertex.index, columns[element.group]] = element.weight
+    return table
+
+
+def fit(path):
+    """Fit all that BodyA wears to BodyB: positions and weights of each garment by its name."""
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    start = time.process_time()
+    done = bpy.ops.hiermatch.wear(source="BodyA", target="BodyB")
+    seconds = time.process_time() - start
+    made = [obj for obj in bpy.data.objects if obj.get("hiermatch_body") == "BodyB" and obj.type == "MESH"]
+    report = bpy.context.scene.hiermatch_retarget.report
+    print(f"{path.stem}: {done}, {len(made)} items, {seconds:.1f} s of processor time")
+    for line in (*report.notes.splitlines(), *report.remarks.splitlines()):
+        print(f"  {line}")
+    bones = sorted({group.name for obj in made for group in obj.vertex_groups})
+    result = {"bones": np.array(bones)}
+    for obj in made:
+        name = obj["hiermatch_item"].removeprefix("A_")
+        result[name], result[f"{name}_weights"] = in_world(obj), weights(obj, bones)
+    return result
+
+
+def means(rows):
+    """The row of the means of rows of the scorer."""
+    numbers = np.array([[float(cell) if cell != "-" else np.nan for cell in row.split()[1:]] for row in rows])
+    cells = (f"{value:8.3f}" if np.isfinite(value) else f"{'-':>8s}" for value in numbers.mean(axis=0))
+    return f"{'mean/' + OURS:34s}" + "".join(cells)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenes", type=Path, required=True, help="folder with the scenes")
+    parser.add_argument("--scorer", type=Path, required=True, help="the program that scores a result")
+    parser.add_argument("--only", help="names of scenes, separated by commas (default all)")
+    parser.add_argument("--garments", action="store_true", help="print a row for each garment as well")
+    options = parser.parse_args()
+    load_extension().register()
+    table = options.scorer.parent / "PEERS-outfits.md"
+    peers = table.read_text().splitlines() if table.exists() else []
+    chosen = options.only.split(",") if options.only else None
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for path in sorted(options.scenes.glob("*.blend")):
+            if chosen is not None and path.stem not in chosen:
+                continue
+            answer = Path(folder, f"{OURS}.npz")
+            np.savez(answer, **fit(path))
+            command = [sys.executable, str(options.scorer), str(path.with_suffix(".npz")), str(answer)]
+            command += ["--per-garment"] if options.garments else []
+            heading, row, *garments = subprocess.run(
+                command, check=True, capture_output=True, text=True
+            ).stdout.splitlines()
+            rows.append(row)
+            names = [f"{path.stem}/{peer}" for peer in PEERS]
+            print("\n".join([heading, row, *garments, *(line for line in peers if line.split(" ")[0] in names)]))
+            sys.stdout.flush()
+    if rows:
+        names = [f"mean/{peer}" for peer in PEERS]
+        print("\n".join(["", means(rows), *(line for line in peers if line.split(" ")[0] in names)]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Clothes that are fitted to other bodies: truths that are known, and what must not happen."""
+
+import numpy as np
+import pytest
+
+from engine import ClosestPoints, MeshError, SurfaceMap, TriangleMesh, run
+from engine.retarget.wear.wearing import WornItem, wear_steps
+from tests.shapes import icosphere, rotation
+
+TURN = rotation([1.0, 2.0, -1.0], 1.1)
+
+
+def ball(resolution=8, radius=1.0, centre=(0.0, 0.0, 0.0)):
+    vertices, triangles = icosphere(resolution, radius)
+    return TriangleMesh(vertices + np.array(centre), triangles)
+
+
+def cap(mesh, height):
+    """The part of a mesh above a height: cloth with a rim."""
+    return mesh.submesh(mesh.vertices[:, 2] > height)[0]
+
+
+def wear(source, images, items):
+    """Fit items to the source itself when its vertices are moved."""
+    target = TriangleMesh(images, source.triangles)
+    return run(wear_steps(source, target, SurfaceMap.identity(target), images, items))
+
+
+BODY = ball(9)
+SHIRT, COAT = cap(ball(7, 1.05), -0.3), cap(ball(6, 1.12), -0.5)
+BUTTON = ball(1, 0.04, (0.0, -1.1, 0.0))
+
+
+def test_the_same_body_changes_nothing():
+    fitted = wear(BODY, BODY.vertices, [WornItem(SHIRT), WornItem(COAT)])
+    for item, one in zip((SHIRT, COAT), fitted, strict=True):
+        np.testing.assert_allclose(one.positions, item.vertices, atol=1e-6)
+        np.testing.assert_allclose(one.scales, 1, atol=1e-9)
+        assert not one.pushed.any()
+        np.testing.assert_allclose(one.places.sum(axis=1), 1)
+
+
+def test_a_similar_body_gets_similar_clothes():
+    def moved(points):
+        return 2.5 * points @ TURN.T + np.array([3.0, -1.0, 2.0])
+
+    fitted = wear(BODY, moved(BODY.vertices), [WornItem(SHIRT), WornItem(COAT, fit="LOOSE")])
+    for item, one in zip((SHIRT, COAT), fitted, strict=True):
+        np.testing.assert_allclose(one.positions, moved(item.vertices), atol=2e-5)
+        np.testing.assert_allclose(one.rotations, np.broadcast_to(TURN, one.rotations.shape), atol=1e-5)
+
+
+def test_clothes_of_a_wider_body_keep_their_distance_and_their_order():
+    images = BODY.vertices * [1.5, 1.2, 1.0]
+    shirt, coat = wear(BODY, images, [WornItem(SHIRT), WornItem(COAT)])
+    assert shirt.clearance.min() > 0.02
+    assert coat.clearance.min() > shirt.clearance.max()
+    inner = ClosestPoints(TriangleMesh(shirt.positions, SHIRT.triangles))
+    over = TriangleMesh(coat.positions, COAT.triangles)
+    found = inner.nearest(over.vertices)
+    feet = np.einsum("kc,kci->ki", found.barycentric, shirt.positions[SHIRT.triangles[found.triangles]])
+    assert (np.einsum("ki,ki->k", over.vertices - feet, over.vertex_normals) > 0).all()
+
+
+def test_nothing_pokes_through_where_the_body_has_grown_a_bump():
+    # The map knows nothing of the bump: it takes the body to itself, and the bump comes on top.
+    images = BODY.vertices.copy()
+    bump = np.exp(-np.square(BODY.vertices - [0.0, -0.6, 0.8]).sum(axis=1) / 0.02)
+    target = TriangleMesh(images * (1 + 0.15 * bump)[:, None], BODY.triangles)
+    item = WornItem(SHIRT)
+    (fitted,) = run(wear_steps(BODY, target, SurfaceMap.identity(target), images, [item]))
+    assert fitted.clearance.min() >= 0
+    assert fitted.pushed.max() > 0.05
+    far = np.linalg.norm(SHIRT.vertices - [0.0, -0.6, 0.8], axis=1) > 1.0
+    assert fitted.pushed[far].max() < 0.01
+    cloth = ClosestPoints(TriangleMesh(fitted.positions, SHIRT.triangles))
+    top = target.vertices[[int(bump.argmax())]]
+    found = cloth.nearest(top)
+    foot = np.einsum("kc,kci->ki", found.barycentric, fitted.positions[SHIRT.triangles[found.triangles]])
+    assert np.linalg.norm(foot) > np.linalg.norm(top)
+    # Left alone it would.
+    (left,) = run(wear_steps(BODY, target, SurfaceMap.identity(target), images, [WornItem(SHIRT, fit="LEAVE")]))
+    assert left.clearance.min() < -0.03
+    assert not left.pushed.any()
+
+
+def test_a_margin_is_kept():
+    (fitted,) = wear(BODY, BODY.vertices, [WornItem(SHIRT, margin=0.08)])
+    assert fitted.clearance.min() > 0.07
+    (before,) = wear(BODY, BODY.vertices, [WornItem(SHIRT)])
+    assert before.clearance.min() < 0.06
+
+
+def similarity_error(before, after):
+    """How far points are from being a similar image of others, and how many times as large they are."""
+    x, y = before - before.mean(axis=0), after - after.mean(axis=0)
+    left, values, right = np.linalg.svd(y.T @ x)
+    scale = values.sum() / np.square(x).sum()
+    return np.abs(scale * x @ (left @ right).T - y).max(), scale
+
+
+def test_buttons_stay_rigid_and_on_the_cloth():
+    both = TriangleMesh.concatenated([SHIRT, BUTTON])
+    count = SHIRT.vertex_count
+    images = BODY.vertices * [1.6, 1.2, 1.0]
+    (fitted,) = wear(BODY, images, [WornItem(both)])
+    assert (fitted.pieces[:count] == -1).all()
+    assert (fitted.pieces[count:] == 0).all()
+    error, scale = similarity_error(BUTTON.vertices, fitted.positions[count:])
+    assert error < 1e-6
+    assert 1 < scale < 1.6
+    cloth = ClosestPoints(TriangleMesh(fitted.positions[:count], SHIRT.triangles))
+    gap = np.sqrt(cloth.nearest(fitted.positions[count:]).squared_distances)
+    assert gap.max() < 0.15
+    (soft,) = wear(BODY, images, [WornItem(both, find_rigid=False)])
+    assert (soft.pieces == -1).all()
+
+
+def test_what_is_named_rigid_is():
+    images = BODY.vertices * [1.6, 1.2, 1.0]
+    named = SHIRT.vertices[:, 0] > 0.7
+    part, whole = wear(BODY, images, [WornItem(SHIRT, rigid=named), WornItem(SHIRT, fit="RIGID")])
+    assert similarity_error(SHIRT.vertices[named], part.positions[named])[0] < 1e-6
+    assert similarity_error(SHIRT.vertices[~named], part.positions[~named])[0] > 0.05
+    assert similarity_error(SHIRT.vertices, whole.positions)[0] < 1e-6
+
+
+def test_a_tight_item_follows_more_closely_than_a_loose_one():
+    waves = 1 + 0.06 * np.sin(9 * BODY.vertices[:, 2])
+    images = BODY.vertices * waves[:, None]
+    tight, loose = wear(BODY, images, [WornItem(SHIRT, fit="TIGHT"), WornItem(SHIRT, fit="LOOSE")])
+    assert tight.clearance.std() < loose.clearance.std()
+    painted = np.where(SHIRT.vertices[:, 0] > 0, 1.0, -1.0)
+    (mixed,) = wear(BODY, images, [WornItem(SHIRT, tightness=painted)])
+    right, left = SHIRT.vertices[:, 0] > 0.2, SHIRT.vertices[:, 0] < -0.2
+    assert mixed.clearance[right].std() < mixed.clearance[left].std()
+
+
+def test_a_hole_in_the_body_does_no_harm():
+    source = BODY.submesh(BODY.vertices[:, 2] < 0.9)[0]
+    images = source.vertices * [1.3, 1.3, 1.0]
+    (fitted,) = wear(source, images, [WornItem(SHIRT)])
+    assert np.isfinite(fitted.positions).all()
+    assert fitted.pushed.max() < 0.05
+    assert np.abs(fitted.positions - SHIRT.vertices * [1.3, 1.3, 1.0]).max() < 0.08
+
+
+def test_meshes_that_do_not_belong_together_are_refused():
+    with pytest.raises(MeshError, match="Match them again"):
+        run(wear_steps(BODY, BODY, SurfaceMap.identity(BODY), BODY.vertices[:-1], [WornItem(SHIRT)]))
