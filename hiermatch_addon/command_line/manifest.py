@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["COMMANDS", "Pair", "read_manifest", "take_shard"]
 
-COMMANDS = {"match": ("match",), "retarget": ("retarget", "match")}
+COMMANDS = {"match": ("match",), "retarget": ("retarget", "match"), "wear": ("wear", "match")}
 """For each subcommand that a batch can run, the operators whose options it takes; the first of a name counts."""
 
 _FIXED = ("name", "command", "source", "target", "output", "map")

@@ -14,6 +14,7 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..common.file_writing import beside
 from ..scene.character import parts_of
+from ..scene.garments import fitted_to
 from .meshes import has_operator
 from .operator_errors import said_by
 
@@ -55,7 +56,7 @@ def output_argument(text: str) -> Path:
 
 
 def save(path: Path, side: Side) -> None:
-    """Write the whole scene into a .blend, or an object or character with its armatures into another kind of file.
+    """Write the whole scene into a .blend, or an object or character with its armatures and clothes into another kind of file.
 
     Raises
     ------
@@ -75,11 +76,12 @@ def save(path: Path, side: Side) -> None:
 
 
 def _select(side: Side) -> None:
-    """Select the objects of a side and the armatures that move them, and nothing else."""
+    """Select the objects of a side, the armatures that move them and what was fitted to them, and nothing else."""
     layer, parts = view_layer_of(bpy.context), parts_of(side)
     movers = [obj.parent for obj in parts]
     movers += [getattr(modifier, "object", None) for obj in parts for modifier in obj.modifiers]
-    wanted = [*parts, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
+    fitted = [item for obj in parts for item in fitted_to(obj)]
+    wanted = [*parts, *fitted, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
     for other in layer.objects:
         other.select_set(other in wanted)
     layer.objects.active = parts[0]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...engine import HierMatchError
-from . import batch, exchange, match, retarget, symmetry
+from . import batch, exchange, match, retarget, symmetry, wear
 from .command import EXIT_CODES, ExitCode, UsageError
 from .console import Console
 from .options import Parser
@@ -31,7 +31,7 @@ def make_parser() -> Parser:
     """
     parser = Parser(prog="blender --command hiermatch", description=_DESCRIPTION, epilog=EXIT_CODES)
     commands = parser.add_subparsers(title="commands", dest="command", metavar="COMMAND", required=True)
-    for module in (match, retarget, symmetry, exchange, batch):
+    for module in (match, retarget, wear, symmetry, exchange, batch):
         module.add_commands(commands)
     parser.set_defaults(check=parser.parse_args)
     return parser

@@ -30,7 +30,9 @@ __all__ = [
     "dressed_at_rest",
     "fitted_copy",
     "fitted_name",
+    "fitted_to",
     "made_copy",
+    "meshes_of",
 ]
 
 ITEM, BODY = "hiermatch_item", "hiermatch_body"
@@ -56,6 +58,29 @@ def bound_items(context: bpy.types.Context, body: bpy.types.Object) -> list[bpy.
         and len(mesh_of(obj).polygons)
         and (armature in moving_armatures(obj) or obj.parent in (armature, body))
     ]
+
+
+def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
+    """Return the names of the meshes in a collection but some bodies and what was fitted to them, in order.
+
+    Raises
+    ------
+    ObjectError
+        If there is no such collection, or nothing in it.
+    """
+    collection = bpy.data.collections.get(name)
+    if collection is None:
+        raise ObjectError(f'There is no collection called "{name}".')
+    meshes = [obj for obj in collection.all_objects if obj.type == "MESH" and obj not in bodies]
+    found = sorted(obj.name for obj in meshes if BODY not in cast("Any", obj))
+    if not found:
+        raise ObjectError(f'The collection "{name}" has no meshes that could be fitted.')
+    return tuple(found)
+
+
+def fitted_to(body: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return all that was fitted to a body."""
+    return [obj for obj in bpy.data.objects if obj.type == "MESH" and cast("Any", obj).get(BODY) == body.name]
 
 
 def check_item(
@@ -97,11 +122,7 @@ def fitted_name(item: str, body: str) -> str:
 
 def made_copy(item: bpy.types.Object, body: bpy.types.Object) -> bpy.types.Object | None:
     """Find the copy of an item that was fitted to a body before."""
-    for obj in bpy.data.objects:
-        marks: Any = obj
-        if obj.type == "MESH" and marks.get(ITEM) == item.name and marks.get(BODY) == body.name:
-            return obj
-    return None
+    return next((obj for obj in fitted_to(body) if cast("Any", obj).get(ITEM) == item.name), None)
 
 
 def fitted_copy(

@@ -45,12 +45,15 @@ class ItemWeights:
         Which of them are locked.
     lost : tuple of str
         Groups of bones that the other rig lacks, which are to go.
+    from_skin : bool
+        Whether all of them come from the skin.
     """
 
     names: tuple[str, ...]
     weights: csr_array
     locked: frozenset[str] = frozenset()
     lost: tuple[str, ...] = ()
+    from_skin: bool = False
 
 
 def chosen_weights(
@@ -98,7 +101,9 @@ def chosen_weights(
     mixed = put_in(before, wanted, columns, threshold=_CLEAN, limit=settings.limit, normalise=settings.normalise)
     used = [number for number, name in enumerate(names) if name in kept or mixed[:, [number]].nnz]
     gone_names = tuple(name for name in lost if name not in own.locked)
-    return ItemWeights(tuple(names[number] for number in used), csr_array(mixed[:, used]), own.locked, gone_names)
+    return ItemWeights(
+        tuple(names[number] for number in used), csr_array(mixed[:, used]), own.locked, gone_names, from_skin
+    )
 
 
 def in_columns(weights: ItemWeights, names: Sequence[str]) -> csr_array:

@@ -241,6 +241,8 @@ class WearTransfer:
             doubt = _doubt(item.name, fitted)
             if doubt:
                 notes.append(doubt)
+        if any(weights is not None and weights.from_skin and weights.lost for weights in self._weights):
+            remarks.append(f'The rig of "{target.name}" has other bones, so the weights were taken from its skin.')
         remarks.extend(
             f'Weights of {counted(count, "vertex")} of "{name}" were mended for poses.'
             for name, count in self._mended
@@ -358,7 +360,7 @@ class WearTransfer:
             )
         elif weights is not None:
             _write_weights(copy, weights)
-            if weights.lost:
+            if weights.lost and not weights.from_skin:
                 notes.append(
                     f'The armature "{armature.name}" has no bones {listed(weights.lost)} of "{item.name}". What they '
                     "moved is moved by the bones of the skin below."

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
+from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.triangle_mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["placed_rigidly", "rigid_pieces"]
 
@@ -27,7 +26,7 @@ _SOLID = 0.5
 """How much of a part's area may be left over when normals cancel out: 0 for closed surfaces, 1 for flat ones, such as
 strands of hair."""
 
-_TOGETHER = 0.012
+_TOGETHER = 0.005
 """How near, in the same unit, parts are that are one piece: the frame of glasses and their lenses."""
 
 _NAMED_TOGETHER = 0.05
@@ -130,9 +129,7 @@ def _groups(
     )
     labels = connected_components(joined, directed=False)[1]
     vertices = np.flatnonzero(chosen)
-    pairs = cKDTree(item.vertices[vertices]).query_pairs(gap, output_type="ndarray")
-    pairs = labels[vertices[pairs]]
-    pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+    pairs = _touching(item, chosen, labels, gap)
     count = int(labels.max()) + 1
     groups = connected_components(
         coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count)), directed=False
@@ -145,3 +142,26 @@ def _groups(
     numbers = np.full(n, -1)
     numbers[chosen] = np.unique(pieces[chosen], return_inverse=True)[1].ravel()
     return numbers
+
+
+def _touching(
+    item: TriangleMesh, chosen: NDArray[np.bool_], labels: NDArray[np.int64], gap: float
+) -> NDArray[np.int64]:
+    """Find the pairs of parts (p, 2), of the chosen vertices, that are nearer than a gap, by their labels (n,)."""
+    inside = item.triangles[chosen[item.triangles].all(axis=1)]
+    of_triangles, of_vertices = labels[inside[:, 0]], np.flatnonzero(chosen)
+    found = [np.empty((0, 2), np.int64)]
+    for part in np.unique(of_triangles):
+        triangles = inside[of_triangles == part]
+        corners = item.vertices[triangles].reshape(-1, 3)
+        points = item.vertices[of_vertices]
+        near = ((points > corners.min(axis=0) - gap) & (points < corners.max(axis=0) + gap)).all(axis=1)
+        others = of_vertices[near & (labels[of_vertices] != part)]
+        if not len(others):
+            continue
+        used, local = np.unique(triangles, return_inverse=True)
+        search = ClosestPoints(TriangleMesh(item.vertices[used], local.reshape(-1, 3)))
+        distances = search.nearest(item.vertices[others]).squared_distances
+        close = np.unique(labels[others[distances < gap**2]])
+        found.append(np.column_stack([np.full(len(close), part), close]))
+    return np.concatenate(found)

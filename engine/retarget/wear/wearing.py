@@ -51,6 +51,9 @@ _ENOUGH = 0.0012
 _LAYERS = 0.0008
 """The same between layers of cloth."""
 
+_NOTHING = 5e-4
+"""A push over less than this, in the same unit, is none."""
+
 _FASTENED = 0.02
 """How far from a rigid piece, in the same unit, cloth is that it is fastened to."""
 
@@ -335,7 +338,8 @@ def _push(
     if rigid.any():
         positions = _with_pieces(work, positions, layers)
     work.positions, work.through = positions, pushed.through
-    work.pushed = np.linalg.norm(positions - start, axis=1)
+    moved = np.linalg.norm(positions - start, axis=1)
+    work.pushed = np.where(moved > _NOTHING * new_unit, moved, 0.0)
 
 
 def _near(points: NDArray[np.float64], others: NDArray[np.float64], unit: float) -> bool:

@@ -1561,6 +1561,9 @@ MESSAGES: Final[dict[str, str]] = {
     "1 rigid part": "1個の硬いパーツ",
     "{0} rigid parts": "{0}個の硬いパーツ",
     "Clothes": "服",
+    'The rig of "{0}" has other bones, so the weights were taken from its skin.': (
+        '"{0}"のリグにはほかのボーンがあるため、ウェイトは肌から取りました。'
+    ),
     "Wrap and Morph": "ラップとモーフ",
     "Switch to Object Mode first": "先にオブジェクトモードに切り替えてください",
     "Mirror": "ミラー",

@@ -1284,6 +1284,9 @@ MESSAGES: Final[dict[str, str]] = {
     "1 rigid part": "1个刚性部件",
     "{0} rigid parts": "{0}个刚性部件",
     "Clothes": "服装",
+    'The rig of "{0}" has other bones, so the weights were taken from its skin.': (
+        '"{0}"的绑定使用其他骨骼，因此权重取自其皮肤。'
+    ),
     "Wrap and Morph": "包裹与变形",
     "Switch to Object Mode first": "请先切换到物体模式",
     "Mirror": "镜像",

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...common.access import view_layer_of
-from ...common.errors import ObjectError
-from ...scene.garments import BODY
+from ...scene.garments import BODY, meshes_of
 from ...transfers.options.wear import WearOptions, wear_settings
 from ...transfers.wear import WearTransfer
 from .transfer_operator import TransferOperator
@@ -59,7 +58,10 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
         """Find bodies and items, and read them."""
         self._chosen = tuple(item.name for item in self.items)
         if not self._chosen and self.collection:
-            self._chosen = self._of_collection()
+            bodies = [self.source, self.target, *(item.name for item in self.targets)]
+            self._chosen = meshes_of(
+                self.collection, *(bpy.data.objects[name] for name in bodies if name in bpy.data.objects)
+            )
         job = super()._start(context)
         self.items.clear()
         for name in self._chosen:
@@ -75,23 +77,6 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
         chosen = [obj for obj in view_layer_of(context).objects.selected if obj not in (source, *targets)]
         self._chosen = tuple(sorted(obj.name for obj in chosen if _can_be_worn(obj)))
         return source, targets
-
-    def _of_collection(self) -> tuple[str, ...]:
-        """Return the meshes of the named collection but the bodies.
-
-        Raises
-        ------
-        ObjectError
-            If there is no such collection, or nothing in it.
-        """
-        collection = bpy.data.collections.get(self.collection)
-        if collection is None:
-            raise ObjectError(f'There is no collection called "{self.collection}".')
-        bodies = {self.source, self.target, *(item.name for item in self.targets)}
-        found = [obj.name for obj in collection.all_objects if obj.type == "MESH" and obj.name not in bodies]
-        if not found:
-            raise ObjectError(f'The collection "{collection.name}" has no meshes that could be fitted.')
-        return tuple(sorted(found))
 
     def _transfers(self) -> list[Transfer]:
         options: Any = self

@@ -34,7 +34,7 @@ def test_small_solid_parts_are_found_and_others_are_not():
 
 def test_parts_that_nearly_touch_are_one_piece():
     # The frame of glasses, and two lenses in it.
-    item = TriangleMesh.concatenated([ball(0.02, (0, 0, 0)), ball(0.015, (0.04, 0, 0)), ball(0.015, (0.3, 0, 0))])
+    item = TriangleMesh.concatenated([ball(0.02, (0, 0, 0)), ball(0.015, (0.037, 0, 0)), ball(0.015, (0.3, 0, 0))])
     pieces = rigid_pieces(item, 1.0)
     assert len(set(pieces[:42].tolist())) == 1
     assert len(set(pieces.tolist())) == 2
