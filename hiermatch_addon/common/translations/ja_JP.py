@@ -1527,7 +1527,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Rigid": "硬い",
     "Show Fit": "フィットを表示",
     "Shrink Key": "縮小キー",
-    "Test Poses": "テストポーズ",
     'The armature "{0}" has no bones {1} of "{2}". What they moved is moved by the bones of the skin below.': (
         'アーマチュア"{0}"には"{2}"のボーン{1}がありません。それらが動かしていた部分は、下の肌のボーンで動きます。'
     ),

@@ -1255,7 +1255,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Rigid": "刚性",
     "Show Fit": "显示贴合情况",
     "Shrink Key": "收缩键",
-    "Test Poses": "测试姿势",
     'The armature "{0}" has no bones {1} of "{2}". What they moved is moved by the bones of the skin below.': (
         '骨架"{0}"没有"{2}"的骨骼{1}。它们所带动的部分改由下方皮肤的骨骼带动。'
     ),
