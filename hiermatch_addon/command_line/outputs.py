@@ -56,7 +56,7 @@ def output_argument(text: str) -> Path:
 
 
 def save(path: Path, side: Side) -> None:
-    """Write the whole scene into a .blend, or an object or character with its armatures and clothes into another kind of file.
+    """Write the whole scene into a .blend, or a side with its armatures and clothes into another kind of file.
 
     Raises
     ------
