@@ -336,7 +336,7 @@ class TransferJob(SteppedJob):
 
     def _objects(self, view_layer: bpy.types.ViewLayer) -> tuple[Side, list[Side]]:
         """Look the objects up again and make sure that they are still what was read."""
-        found = []
+        found: list[Side] = []
         for reference in (self._source, *(leg.reference for leg in self._legs)):
             side = reference.find()
             if side is None:

@@ -66,8 +66,11 @@ def common_match(scene: bpy.types.Scene) -> tuple[Half, Half] | None:
     """
     pair = steered_pair(scene)
     found = [] if pair is None else find_common(*pair)
-    key = summary_of(scene).key
-    return next((halves for halves in found if halves[0].key == key), found[0] if found else None)
+    summary = summary_of(scene)
+    # The same points, written with several prefixes, have the same key.
+    return max(
+        found, key=lambda halves: (halves[0].key == summary.key, halves[0].prefix == summary.prefix), default=None
+    )
 
 
 def point_name(prefix: str, number: int) -> str:

@@ -31,6 +31,7 @@ def test_clears_the_picked_pair_and_the_summary(pair):
 
 def test_clears_what_is_selected(pair):
     match()
+    bpy.context.scene.hiermatch.source = bpy.context.scene.hiermatch.target = None
     pair[1].select_set(state=True)
     assert bpy.ops.hiermatch.clear() == {"FINISHED"}
     assert not pair[1].vertex_groups
@@ -86,6 +87,7 @@ def test_says_why_it_cannot(pair):
     with pytest.raises(RuntimeError, match="nothing here that HierMatch has written"):
         bpy.ops.hiermatch.clear()
     match()
+    bpy.context.scene.hiermatch.source = bpy.context.scene.hiermatch.target = None
     assert bpy.ops.hiermatch.clear() == {"CANCELLED"}  # nothing picked or selected
     with pytest.raises(RuntimeError, match='no object called "Nobody"'):
         bpy.ops.hiermatch.clear(object="Nobody")
