@@ -298,6 +298,10 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
             f'"{obj.name}" is not in the view layer "{view_layer.name}". Link it to the scene, or enable its '
             "collection in the Outliner."
         )
+    if obj.hide_viewport:
+        raise ObjectError(
+            f'"{obj.name}" is disabled in viewports. Enable it with the screen beside its name in the Outliner.'
+        )
     if not obj.visible_get(view_layer=view_layer):
         raise ObjectError(f'"{obj.name}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).')
     if obj.mode != "OBJECT":

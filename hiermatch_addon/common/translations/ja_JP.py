@@ -1326,9 +1326,6 @@ MESSAGES: Final[dict[str, str]] = {
     (
         "Name of the mesh; if empty, the one picked in the panel, that of the last retarget, or else the active object"
     ): "メッシュの名前。空の場合は、パネルで選んだもの、最後のリターゲットのもの、またはアクティブオブジェクト",
-    '"{0}" is no mesh. Pick the mesh that got a rig as the Target.': (
-        "「{0}」はメッシュではありません。リグを受け取ったメッシュをターゲットに選んでください。"
-    ),
     '"{0}" is shown as it is': "「{0}」を今の状態で表示しています",
     '"{0}" is shown as it was before': "「{0}」を元の状態で表示しています",
     '"{0}" has no rig or shape keys that came from a source. Retarget it first.': (
@@ -1881,6 +1878,10 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
         "「{0}」は非表示です。先に表示してください（オブジェクト > 表示/隠す、またはアウトライナーの目のアイコン）。"
+    ),
+    '"{0}" is disabled in viewports. Enable it with the screen beside its name in the Outliner.': (
+        "「{0}」はビューポートで無効になっています。アウトライナーで名前の横にある画面アイコンを押して有効に"
+        "してください。"
     ),
     '"{0}" is in {1} Mode. Switch to Object Mode first.': (
         "「{0}」は{1}モードです。先にオブジェクトモードに切り替えてください。"

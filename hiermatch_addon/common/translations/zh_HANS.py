@@ -1087,7 +1087,6 @@ MESSAGES: Final[dict[str, str]] = {
     (
         "Name of the mesh; if empty, the one picked in the panel, that of the last retarget, or else the active object"
     ): "网格的名称；为空时使用面板中选取的物体、上次重定向的物体，否则使用活动物体",
-    '"{0}" is no mesh. Pick the mesh that got a rig as the Target.': "“{0}”不是网格。请将获得骨架的网格选为目标。",
     '"{0}" is shown as it is': "“{0}”以现在的样子显示",
     '"{0}" is shown as it was before': "“{0}”以之前的样子显示",
     '"{0}" has no rig or shape keys that came from a source. Retarget it first.': (
@@ -1555,6 +1554,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
         "“{0}”已隐藏。请先显示它（物体 > 显示/隐藏，或大纲视图中的眼睛图标）。"
+    ),
+    '"{0}" is disabled in viewports. Enable it with the screen beside its name in the Outliner.': (
+        "“{0}”已在视图中禁用。请在大纲视图中点击名称旁的屏幕图标启用它。"
     ),
     '"{0}" is in {1} Mode. Switch to Object Mode first.': "“{0}”处于 {1} 模式。请先切换到物体模式。",
     '"{0}" has no faces. A surface is needed, not only vertices or edges.': "“{0}”没有面。需要表面，而不只是顶点或边。",

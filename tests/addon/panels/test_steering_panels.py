@@ -106,7 +106,7 @@ def test_matched_points(context):
 def test_what_is_shown_is_pressed(context):
     drawn = draw("HIERMATCH_PT_overlay", context)
     pressed = [entry[1] for entry in drawn if entry[0] == "pressed"]
-    assert pressed == [False, True, False, False, False, False, False]  # match colors, as the match left them
+    assert [number for number, down in enumerate(pressed) if down] == [1]  # match colors, as the match left them
     context.space_data.shading.color_type = "MATERIAL"
     pressed = [entry[1] for entry in draw("HIERMATCH_PT_overlay", context) if entry[0] == "pressed"]
     assert pressed[0]

@@ -154,7 +154,7 @@ class TestCheck:
 
     def test_disabled_in_viewports(self, pair):
         pair[1].hide_viewport = True
-        with pytest.raises(ObjectError, match='"Target" is hidden'):
+        with pytest.raises(ObjectError, match='"Target" is disabled in viewports'):
             check(pair)
 
     def test_not_in_the_view_layer(self, pair):
