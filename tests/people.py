@@ -159,6 +159,23 @@ def moved(rig, angles, ways=None):
     return posed_motion(rig.skeleton, rest, basis)
 
 
+def walk(person, count=48, rate=24):
+    """Motion of a walk in which the lower foot stands exactly where it is, and the side of that foot in each pose."""
+    phase = 2 * np.pi * np.arange(count) / rate
+    angles = {}
+    for side, shift in (("L", 0), ("R", np.pi)):
+        swing, lift = 0.4 * np.sin(phase + shift), 0.6 * np.cos(phase + shift).clip(0)
+        angles[f"thigh.{side}"], angles[f"shin.{side}"] = (np.outer(each, [1, 0, 0]) for each in (swing, lift))
+        angles[f"foot.{side}"] = -angles[f"thigh.{side}"] - angles[f"shin.{side}"]
+    toes = [person.rig.names.index(f"toe.{side}") for side in "LR"]
+    places = moved(person.rig, angles).heads[:, toes]
+    lower = places[:, :, 2].argmin(axis=1)
+    steps = np.diff(places, axis=0)[np.arange(count - 1), lower[1:]]
+    ways = -np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    ways[:, 2] = person.rig.skeleton.heads[toes[0], 2] - places[np.arange(count), lower, 2]
+    return moved(person.rig, angles, ways), np.array(list("LR"))[lower]
+
+
 def at_rest_in(person, angles):
     """The same person, at rest in a pose of the plain rig: arms hanging down, for instance."""
     motion = moved(person.rig, {name: [vector] for name, vector in angles.items()})

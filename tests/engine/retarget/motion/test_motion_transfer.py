@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import BonePairing, MotionSettings, RigError, Skeleton, transfer_motion
-from tests.people import HANGING, at_rest_in, coarse_rig, fine_rig, moved, renamed, skinned
+from tests.people import HANGING, at_rest_in, coarse_rig, fine_rig, moved, renamed, skinned, walk
 from tests.shapes import rotation
 
 
@@ -59,23 +59,6 @@ def test_a_target_of_other_size_that_faces_elsewhere_goes_its_way(someone, paire
     assert np.allclose(found.motion.turns, turn @ wild.turns @ turn.T, atol=1e-6)
 
 
-def walk(person, count=48, rate=24):
-    """Motion of a walk in which the lower foot stands exactly where it is, and that foot's bone in each pose, (f,)."""
-    phase = 2 * np.pi * np.arange(count) / rate
-    angles = {}
-    for side, shift in (("L", 0), ("R", np.pi)):
-        swing, lift = 0.4 * np.sin(phase + shift), 0.6 * np.cos(phase + shift).clip(0)
-        angles[f"thigh.{side}"], angles[f"shin.{side}"] = (np.outer(each, [1, 0, 0]) for each in (swing, lift))
-        angles[f"foot.{side}"] = -angles[f"thigh.{side}"] - angles[f"shin.{side}"]
-    toes = [person.rig.names.index(f"toe.{side}") for side in "LR"]
-    places = moved(person.rig, angles).heads[:, toes]
-    lower = places[:, :, 2].argmin(axis=1)
-    steps = np.diff(places, axis=0)[np.arange(count - 1), lower[1:]]
-    ways = -np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
-    ways[:, 2] = person.rig.skeleton.heads[toes[0], 2] - places[np.arange(count), lower, 2]
-    return moved(person.rig, angles, ways), np.array(toes)[lower]
-
-
 def slide(heads, standing):
     """How far feet move at most while they stand."""
     starts = np.flatnonzero(np.append(True, standing[1:] != standing[:-1]))
@@ -94,7 +77,8 @@ def stretched(person, legs=1.3):
 
 
 def test_feet_do_not_slide_on_longer_legs(someone):
-    motion, standing = walk(someone)
+    motion, sides = walk(someone)
+    standing = np.array([someone.rig.names.index(f"toe.{side}") for side in sides])
     target, pairing = stretched(someone)
     settings = {"rate": 24.0}
     assert slide(motion.heads, standing) < 1e-9
