@@ -94,7 +94,7 @@ class HIERMATCH_PT_motion(bpy.types.Panel):
         column.prop(state, "actions")
         names = list(MotionOptions.__annotations__)
         for name in names:
-            if name != "tolerance" or state.keys in {"AUTO", "REDUCED"}:
+            if name != "tolerance" or state.keying in {"AUTO", "REDUCED"}:
                 column.prop(state, name)
         row = layout.row()
         row.scale_y = 1.5

@@ -71,7 +71,7 @@ class MotionOptions:
     """How motion is carried over, for whatever class of Blender's inherits from it."""
 
     __annotations__ = {
-        "keys": _props.EnumProperty(
+        "keying": _props.EnumProperty(
             name="Keys",
             description="At which frames the new action gets keys",
             items=[
@@ -113,7 +113,7 @@ class MotionOptions:
     }
 
     if TYPE_CHECKING:
-        keys: str
+        keying: str
         tolerance: float
         keep_feet: bool
         keep_hands: bool

@@ -102,7 +102,7 @@ class HIERMATCH_OT_retarget_action(MotionOptions, _Carrier, bpy.types.Operator):
             in_place=self.in_place,
             rate=render.fps / render.fps_base,
         )
-        plan = MotionPlan(names, settings, self.keys, self.tolerance, assign=self.assign, strips=self.strips)
+        plan = MotionPlan(names, settings, self.keying, self.tolerance, assign=self.assign, strips=self.strips)
         return MotionJob(context, source, targets, plan, job_options(state_of(context)))
 
     def _finish(self, context: bpy.types.Context, job: MotionJob) -> set[OperatorReturnItems]:

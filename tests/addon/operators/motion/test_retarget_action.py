@@ -94,7 +94,7 @@ def test_baked_keys_are_few_and_true():
     add_action(source)
     counts = {}
     for keys in ("REDUCED", "ALL"):
-        carry(source="A", target="B", keys=keys)
+        carry(source="A", target="B", keying=keys)
         counts[keys] = sum(len(curve.keyframe_points) for curve in curves_of(target.animation_data.action).values())
         assert worst(source, target, (1, 4, 9, 17, 21)) < 4e-3
     assert counts["REDUCED"] < 0.6 * counts["ALL"]
@@ -108,7 +108,7 @@ def test_what_constraints_do_to_the_source_is_carried_too():
     constraint.use_limit_x, constraint.min_x, constraint.max_x = True, 0.5, 0.5
     constraint.owner_space = "LOCAL"
     bpy.context.scene.frame_set(7)
-    carry(source="A", target="B", keys="ALL")
+    carry(source="A", target="B", keying="ALL")
     assert bpy.context.scene.frame_current == 7
     assert source.animation_data.action.name == "Wave"
     assert worst(source, target, (1, 6, 21)) < 2e-3
