@@ -49,6 +49,7 @@ from .runtime.background import Background, called_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .runtime.progress import Progress, Steps, run, within
 from .runtime.worker import close_helpers, use_processes
+from .shapes.known_shapes import KnownShapes
 from .shapes.shape import Shape
 from .shapes.surface_distances import distances_to_vertices_steps
 
@@ -70,6 +71,7 @@ __all__ = [
     "FittedRig",
     "GeodesicSolver",
     "HierMatchError",
+    "KnownShapes",
     "Level",
     "LocalFrames",
     "LocalTransforms",

@@ -28,6 +28,7 @@ from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
 from .operators.export_match import HIERMATCH_OT_export_match
 from .operators.flip import HIERMATCH_OT_flip
+from .operators.forget_shapes import HIERMATCH_OT_forget_shapes
 from .operators.import_match import HIERMATCH_OT_import_match
 from .operators.match import HIERMATCH_OT_match
 from .operators.motion.bone_pair_files import HIERMATCH_OT_export_bone_pairs, HIERMATCH_OT_import_bone_pairs
@@ -74,6 +75,7 @@ from .panels.steering_panels import (
 from .panels.wear_panel import HIERMATCH_PT_wear
 from .properties.freshness import start_watching, stop_watching
 from .properties.motion_properties import HIERMATCH_PG_bone_pair, HIERMATCH_PG_motion
+from .properties.preferences import HIERMATCH_AP_preferences
 from .properties.properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 from .properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
 from .transfers.options.wear import HIERMATCH_PG_worn
@@ -85,9 +87,11 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PG_summary,
     HIERMATCH_PG_scene,
     HIERMATCH_PG_progress,
+    HIERMATCH_AP_preferences,
     HIERMATCH_OT_match,
     HIERMATCH_OT_cancel,
     HIERMATCH_OT_answer,
+    HIERMATCH_OT_forget_shapes,
     HIERMATCH_OT_use_setup,
     HIERMATCH_OT_flip,
     HIERMATCH_OT_swap,

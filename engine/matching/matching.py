@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..mesh.triangle_mesh import TriangleMesh
+    from ..shapes.known_shapes import KnownShapes
     from ..shapes.prepared_surface import PreparedSurface
     from .overlap.overlap_match import OverlapMatch
     from .result import MatchResult
@@ -60,6 +61,7 @@ def match(
     *,
     landmarks: ArrayLike | None = None,
     excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
+    known: KnownShapes | None = None,
 ) -> MatchResult:
     """Find corresponding points on two surfaces that differ by a non-rigid deformation.
 
@@ -80,6 +82,8 @@ def match(
         mirrors the surface, the orientation in the result's `quality` is that of the mirrored source.
     excluded : pair of (n,) array_like of bool, optional
         Vertices of the source and of the target to leave out.  In dense maps they follow what is around them.
+    known : KnownShapes, optional
+        What meshes of matches before were prepared to: taken from there, and kept there.
 
     Returns
     -------
@@ -100,7 +104,7 @@ def match(
     ----------
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
     """
-    return run(match_steps(source, target, settings, landmarks=landmarks, excluded=excluded))
+    return run(match_steps(source, target, settings, landmarks=landmarks, excluded=excluded, known=known))
 
 
 @can_go_beside
@@ -111,6 +115,7 @@ def match_steps(
     *,
     landmarks: ArrayLike | None = None,
     excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
+    known: KnownShapes | None = None,
 ) -> Steps[MatchResult]:
     """Match two surfaces in short steps; see `match`.
 
@@ -127,7 +132,7 @@ def match_steps(
     settings = settings or MatchSettings()
     task = MatchTask(settings, landmarks)
     call_helpers()
-    x, y = yield from within(_shapes_steps((source, target), excluded), 0.0, 0.06)
+    x, y = yield from within(_shapes_steps((source, target), excluded, known), 0.0, 0.06)
     if not settings.dense:
         result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
     elif landmarks is None and (border_length(x) > _CUT or border_length(y) > _CUT) and not has_limbs(x, y):
@@ -135,6 +140,8 @@ def match_steps(
     else:
         end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
         result = yield from within(_whole_steps(x, y, task, end), 0.06, 1.0)
+    if known is not None:
+        known.trim()
     yield Progress(1.0, "Done")
     return task.clock.noted(result)
 
@@ -172,21 +179,37 @@ def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:
 
 
 def _shapes_steps(
-    surfaces: tuple[TriangleMesh | Shape, TriangleMesh | Shape], excluded: tuple[ArrayLike | None, ArrayLike | None]
+    surfaces: tuple[TriangleMesh | Shape, TriangleMesh | Shape],
+    excluded: tuple[ArrayLike | None, ArrayLike | None],
+    known: KnownShapes | None,
 ) -> Steps[list[Shape]]:
-    """Prepare meshes; shapes stay as they are."""
+    """Prepare meshes that are not known; shapes stay as they are."""
+    shapes: list[Shape | None] = []
     items: list[_Unprepared] = []
     for surface, name, left_out in zip(surfaces, ("source", "target"), excluded, strict=True):
         if not isinstance(surface, Shape):
-            items.append((surface, name, None if left_out is None else np.asarray(left_out, bool)))
+            item = surface, name, None if left_out is None else np.asarray(left_out, bool)
+            found = None if known is None else known.find(*item)
+            items += [item] if found is None else []
+            shapes.append(found)
         elif left_out is not None:
             raise MatchError(
                 f"No vertices can be left out of the {name} any more, because it was prepared before. "
                 "Give the mesh itself, or leave them out when you make the shape."
             )
+        else:
+            shapes.append(surface)
     share = shared_steps if all(_SMALL < item[0].vertex_count <= MOST_SENT for item in items) else here_steps
-    prepared = iter((yield from share(_prepared_mesh_steps, None, items)))
-    return [s if isinstance(s, Shape) else Shape.of(replace(next(prepared), original=s)) for s in surfaces]
+    prepared = iter(zip(items, (yield from share(_prepared_mesh_steps, None, items)), strict=True))
+    return [_new_shape(*next(prepared), known) if shape is None else shape for shape in shapes]
+
+
+def _new_shape(item: _Unprepared, prepared: PreparedSurface, known: KnownShapes | None) -> Shape:
+    """Make the shape of a mesh that was prepared, maybe in another process."""
+    shape = Shape.of(replace(prepared, original=item[0]))
+    if known is not None:
+        known.keep(*item, shape)
+    return shape
 
 
 def _prepared_mesh_steps(_: None, given: _Unprepared) -> Steps[PreparedSurface]:

@@ -44,6 +44,7 @@ class Background:
 
     def __init__(self) -> None:
         self.is_waiting = False
+        self._label = "Starting"
         self._helper: Helper | None = call_background()
         self._end = time.monotonic() + _START
 
@@ -81,6 +82,7 @@ class Background:
         if helper is None:
             return (yield from here(*args, **given))
         task = Task()
+        task.progress = Progress(0.0, self._label)
         try:
             for _ in helper.start_followed(task, _called, (function, args, given)):
                 yield task.progress
@@ -88,6 +90,7 @@ class Background:
                 helper.look()
                 self.is_waiting = not task.is_over
                 if self.is_waiting:
+                    self._label = task.progress.label or self._label
                     yield task.progress
         finally:
             self.is_waiting = False
@@ -106,7 +109,7 @@ class Background:
                     self._helper = helper = None
                     break
                 self.is_waiting = True
-                yield Progress(0.0, "Starting")
+                yield Progress(0.0, self._label)
         finally:
             self.is_waiting = False
         return helper

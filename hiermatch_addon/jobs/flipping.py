@@ -12,7 +12,7 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..scene.character import read_surface
 from ..scene.pair import check_pair
-from ..storage.answer_writing import following, mapped_contents_steps, restored
+from ..storage.answer_writing import following_steps, mapped_contents_steps, restored
 from ..storage.contents import contents_steps
 from ..storage.halves import find_keyed
 from ..storage.stored_match import StoredMatch
@@ -93,7 +93,7 @@ class FlipJob(RewritingJob):
             steps = densify_steps(*meshes, points.source_points, points.target_points, maps=known)
             dense = yield from within(steps, 0.0, _MAPPED)
             maps, start = StoredMaps.of(dense.source_to_target, dense.target_to_source), _MAPPED
-            self._stored = following(stored, meshes, dense, proven=stored.answer.proven)
+            self._stored = yield from following_steps(stored, meshes, dense, proven=stored.answer.proven)
         writing = mapped_contents_steps(self._stored, meshes, self.prefix, maps, self._maps)
         return (yield from within(writing, start, 1.0))
 

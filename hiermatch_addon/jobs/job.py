@@ -11,6 +11,7 @@ from ...engine import (
     MatchSettings,
     Progress,
     SettingsError,
+    called_steps,
     densify_steps,
     distortion_after,
     match_steps,
@@ -19,6 +20,7 @@ from ...engine import (
 )
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
+from ..properties.preferences import shape_memory
 from ..properties.properties import match_settings
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_pair
@@ -28,6 +30,7 @@ from ..storage.excluded_regions import excluded_vertices
 from ..storage.landmarks import find_landmarks, landmark_array
 from ..storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 from ..storage.vertex_maps import StoredMaps, add_maps
+from .prepared_shapes import known_shapes
 from .stepped_job import SteppedJob
 
 if TYPE_CHECKING:
@@ -215,6 +218,7 @@ class MatchJob(SteppedJob):
             excluded_vertices(source, options.exclude_source),
             excluded_vertices(target, options.exclude_target),
         )
+        self._known = known_shapes(shape_memory(context))
         self._found: _Found | None = None
         self._prepared: _Prepared | None = None
         super().__init__()
@@ -231,7 +235,14 @@ class MatchJob(SteppedJob):
         """Match, and make the dense maps of the mirrored answer if that is to be written."""
         options, (source, target) = self._options, self._meshes
         both = options.use_mirrored and options.settings.dense
-        steps = match_steps(source, target, options.settings, landmarks=self._landmarks, excluded=self._excluded)
+        steps = match_steps(
+            source,
+            target,
+            options.settings,
+            landmarks=self._landmarks,
+            excluded=self._excluded,
+            known=self._known,
+        )
         result = yield from within(steps, 0.0, 0.7 if both else 1.0)
         mirrored = result.mirrored
         if not both or mirrored is None:
@@ -240,7 +251,8 @@ class MatchJob(SteppedJob):
         maps = result.source_to_target, result.target_to_source
         mapping = densify_steps(source, target, points, mirrored.target_points, maps=maps)
         dense = yield from within(mapping, 0.7, 1.0)
-        images, distortion = placed_by_map(source, target, points, dense.source_to_target)
+        placing = called_steps(placed_by_map, source, target, points, dense.source_to_target)
+        images, distortion = yield from within(placing, 1.0, 1.0)
         moved = replace(
             mirrored,
             target_points=images,

@@ -13,7 +13,7 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..scene.character import read_surface
 from ..scene.pair import check_pair
-from ..storage.answer_writing import following, mapped_contents_steps
+from ..storage.answer_writing import following_steps, mapped_contents_steps
 from ..storage.excluded_regions import excluded_vertices
 from ..storage.landmarks import find_landmarks, landmark_array
 from ..storage.stored_match import StoredMatch
@@ -102,7 +102,7 @@ class RefineJob(RewritingJob):
         )
         dense = yield from within(steps, 0.0, 0.9)
         yield Progress(0.9, "Measuring the matched points")
-        self._stored = following(self._stored, self._meshes, dense, proven=False)
+        self._stored = yield from following_steps(self._stored, self._meshes, dense, proven=False)
         shown = StoredMaps.of(dense.source_to_target, dense.target_to_source)
         writing = mapped_contents_steps(self._stored, self._meshes, self.prefix, shown, self._other_maps)
         self._prepared = yield from within(writing, 0.92, 1.0)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...engine import Progress, distortion_after, placed_by_map, run, within
+from ...engine import Progress, called_steps, distortion_after, placed_by_map, run, within
 from . import writing
 from .contents import contents_steps
 from .stored_match import CornerPoints, Quality
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["Restored", "contents_with_maps", "following", "mapped_contents_steps", "restored", "write_answer"]
+__all__ = ["Restored", "contents_with_maps", "following_steps", "mapped_contents_steps", "restored", "write_answer"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +45,13 @@ def restored(stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh]) -> 
     return Restored(source, target, stored.answer.point_distortion)
 
 
-def following(
+def following_steps(
     stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh], dense: DenseMatch, *, proven: bool
-) -> StoredMatch:
+) -> Steps[StoredMatch]:
     """Let the points of the chosen answer lie where new dense maps take them; `proven` is what is said of it then."""
     answer = stored.answer
-    images, distortion = placed_by_map(*meshes, restored(stored, meshes).source_points, dense.source_to_target)
+    points = restored(stored, meshes).source_points
+    images, distortion = yield from called_steps(placed_by_map, *meshes, points, dense.source_to_target)
     answers = list(stored.answers)
     answers[stored.mirrored] = replace(
         answer,

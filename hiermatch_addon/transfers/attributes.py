@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import Crossing, Progress, carry_face_values, carry_normals, carry_values_steps, surface_frames, within
+from ...engine import (
+    Crossing,
+    Progress,
+    called_steps,
+    carry_face_values,
+    carry_normals,
+    carry_values_steps,
+    surface_frames,
+    within,
+)
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError
 from ..common.phrases import counted
@@ -133,11 +142,13 @@ class AttributeTransfer:
                 self._notes.append(f'{lines} of "{layout.name}" run where the target has no faces, and were left out.')
         yield Progress(1 - 1 / count, "Carrying materials and normals")
         if self._materials is not None:
-            self._materials = carry_face_values(self._materials, faces, crossing.places)
+            carrying = called_steps(carry_face_values, self._materials, faces, crossing.places)
+            self._materials = yield from within(carrying, 1 - 1 / count, 1.0)
         if self._normals is not None:
-            frames = surface_frames(pair.target, pair.target_to_source.positions, radius=_NORMAL_RADIUS)
-            turns = frames.rotations.transpose(0, 2, 1)
-            self._normals = carry_normals(self._normals, faces, crossing.places, pair.target, turns)
+            placing = called_steps(surface_frames, pair.target, pair.target_to_source.positions, radius=_NORMAL_RADIUS)
+            turns = (yield from within(placing, 1.0, 1.0)).rotations.transpose(0, 2, 1)
+            carrying = called_steps(carry_normals, self._normals, faces, crossing.places, pair.target, turns)
+            self._normals = yield from within(carrying, 1.0, 1.0)
 
     def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write everything."""

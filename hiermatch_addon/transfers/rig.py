@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ...engine import Progress, is_posed, place_joints, rest_pose
+from ...engine import Progress, called_steps, is_posed, place_joints, rest_pose, within
 from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
@@ -109,12 +109,15 @@ class RigTransfer:
         if rig is None or passage.bone_names != self.names:
             raise ObjectError("The rig of the source was changed meanwhile. Nothing was written.")
         yield Progress(0.0, "Placing the joints")
-        placed = self.placed = place_joints(rig, body, self._normals, self.frames)
+        placing = called_steps(place_joints, rig, body, self._normals, self.frames)
+        placed = self.placed = yield from within(placing, 0.0, 0.5)
         if not self._settings.rest or self._settings.pose == "REST":
             return
         yield Progress(0.5, "Finding the rest pose")
-        if self._settings.pose == "POSED" or is_posed(rig, body, placed):
-            self._rest = rest_pose(rig, body, placed, self.frames)
+        posed = self._settings.pose == "POSED"
+        if posed or (yield from within(called_steps(is_posed, rig, body, placed), 0.5, 0.6)):
+            resting = called_steps(rest_pose, rig, body, placed, self.frames)
+            self._rest = yield from within(resting, 0.6, 1.0)
         else:
             self._notes.append(
                 "The target seems to be in its rest pose already, so none was made. If it is posed, set Pose to Posed."

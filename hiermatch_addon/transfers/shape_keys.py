@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import bone_frames, carry_offsets_steps, surface_frames
+from ...engine import bone_frames, called_steps, carry_offsets_steps, surface_frames, within
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
@@ -106,10 +106,10 @@ class ShapeKeyTransfer:
         """Compute the offsets of the target's vertices."""
         pair, rig = passage.pair, passage.rig
         images = pair.source_to_target.positions if rig is None else rig.registered
-        frames = surface_frames(pair.source, images)
+        frames = yield from within(called_steps(surface_frames, pair.source, images), 0.0, 0.1)
         if rig is not None:
-            frames = bone_frames(rig, frames)
-        carried = yield from carry_offsets_steps(
+            frames = yield from within(called_steps(bone_frames, rig, frames), 0.1, 0.2)
+        steps = carry_offsets_steps(
             self._offsets,
             frames,
             pair.target,
@@ -117,7 +117,7 @@ class ShapeKeyTransfer:
             scaling=self._settings.scaling,
             threshold=self._settings.threshold,
         )
-        self._carried = carried
+        self._carried = yield from within(steps, 0.2, 1.0)
 
     def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write keys and drivers: of several parts, each gets the keys that move it."""

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...engine import Progress, Symmetriser, symmetry_map_steps, within
+from ...engine import Progress, Symmetriser, called_steps, symmetry_map_steps, within
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted
@@ -113,7 +113,8 @@ class SymmetriseJob(SteppedJob):
         """Find the mirror images, and compute what is to be written."""
         found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
         yield Progress(0.9, "Telling the sides apart")
-        symmetriser = Symmetriser.of(self._mesh, found.source_to_target, self._hints)
+        telling = called_steps(Symmetriser.of, self._mesh, found.source_to_target, self._hints)
+        symmetriser = yield from within(telling, 0.9, 0.95)
         yield Progress(0.95, "Mirroring")
         for part in self._parts:
             if part.names:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...engine import FacePlaces, Progress, carry_uvs_steps, within
+from ...engine import FacePlaces, Progress, called_steps, carry_uvs_steps, within
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
@@ -84,7 +84,7 @@ class UVTransfer:
         yield Progress(0.0, "Finding faces")
         pair = passage.pair
         faces = self._faces[0].cut_as(pair.source)
-        places = FacePlaces(pair.source, self._faces[1], pair.target_to_source)
+        places = yield from called_steps(FacePlaces, pair.source, self._faces[1], pair.target_to_source)
         areas = self._faces[1].face_areas(pair.target.vertices)
         for number, (name, uvs) in enumerate(self._layers.items()):
             start, end = ((number + part) / len(self._layers) for part in (0, 1))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import Progress, in_between, kept_in_place, within, wrap_steps
+from ...engine import Progress, called_steps, in_between, kept_in_place, within, wrap_steps
 from ..common.access import mesh_of
 from ..jobs.transfer import TransferReport
 from ..scene.character import parts_of, vertex_ranges
@@ -89,12 +89,13 @@ class WrapTransfer:
         wrapped = yield from within(wrap_steps(pair.source, pair.target, *maps, registered), 0.0, 0.8)
         positions = wrapped.positions
         if self._settings.place == "OWN":
-            positions = kept_in_place(pair.source, positions)
+            positions = yield from within(called_steps(kept_in_place, pair.source, positions), 0.8, 0.8)
         yield Progress(0.8, "Finding shapes in between")
         count = self._settings.in_betweens
         shapes = positions[None]
         if count:
-            between = in_between(pair.source, positions, np.arange(1, count + 1) / (count + 1))
+            parts = np.arange(1, count + 1) / (count + 1)
+            between = yield from within(called_steps(in_between, pair.source, positions, parts), 0.8, 1.0)
             shapes = np.concatenate([shapes, between])
         self._shapes = shapes
         if wrapped.held.mean() < _LEAST_HELD:

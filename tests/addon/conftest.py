@@ -43,10 +43,12 @@ def extension():
 
 
 @pytest.fixture(autouse=True)
-def empty_file(extension):
-    """A new, empty file for each test."""
+def empty_file(request, extension):
+    """A new, empty file for each test, but for those of modules that say that they only read the code."""
     import bpy
 
+    if getattr(request.module, "READS_CODE_ONLY", False):
+        return extension
     bpy.ops.wm.read_homefile(use_empty=True)
     assert not bpy.data.objects
     return extension

@@ -9,11 +9,25 @@ import pytest
 
 from tests.addon.conftest import ROOT
 
+READS_CODE_ONLY = True
+"""See `conftest.empty_file`: it takes longer than the tests."""
+
 ENGINE = sorted((ROOT / "engine").rglob("*.py"))
 ADDON = sorted((ROOT / "hiermatch_addon").rglob("*.py"))
 BLENDER = {"bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "bpy_extras", "blf", "idprop", "aud", "freestyle"}
 OURS = {"engine", "hiermatch_addon", "hiermatch"}
-STANDARD = {"__future__", "collections", "contextlib", "copy", "dataclasses", "functools", "heapq", "itertools", "math"}
+STANDARD = {
+    "__future__",
+    "collections",
+    "contextlib",
+    "copy",
+    "dataclasses",
+    "functools",
+    "hashlib",
+    "heapq",
+    "itertools",
+    "math",
+}
 ENGINE_MAY = STANDARD | {"numpy", "scipy", "typing", "enum", "operator", "time", "warnings"}
 # What starts another process, sends it values and ends it, without any thread, also of libraries.
 PROCESSES = {

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ...geometry.procrustes import nearest_rotations
+from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, run
 from .contacts import contacts_of, held_shifts
@@ -97,6 +98,7 @@ def transfer_motion(
     return run(transfer_motion_steps(motion, pairing, target, settings, ups=ups))
 
 
+@can_go_beside
 def transfer_motion_steps(
     motion: Motion,
     pairing: BonePairing,

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -53,6 +53,8 @@ class Crossing:
     target_faces: Polygons
     source_to_target: SurfaceMap
     target_to_source: SurfaceMap
+    is_sent_once: ClassVar[bool] = True
+    """See `parallel_map.shared_steps`."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}>"

@@ -1359,6 +1359,20 @@ MESSAGES: Final[dict[str, str]] = {
         "これはランドマークのファイルではないか、破損しています。「ランドマークを保存」で書き出したファイルを選"
         "んでください。"
     ),
+    "Prepared Shapes (MB)": ("準備済みの形状 (MB)"),
+    "Memory for what is computed of a mesh alone, kept until Blender is closed, so that matching it "
+    "again, or with another mesh, takes less time. With 0 nothing is kept": (
+        "メッシュだけから計算される内容を保持するメモリ。Blenderを閉じるまで保持され、同じメッシュを再び、または別のメッシュとマッチングするときの時間を短縮します。0では何も保持しません"
+    ),
+    "Forget Prepared Shapes": ("準備済みの形状を破棄"),
+    "Free the memory of the meshes that were matched in this session; matching one again prepares it anew": (
+        "このセッションでマッチングしたメッシュのメモリを解放します。再びマッチングするときは改めて準備されます"
+    ),
+    "The prepared shapes were forgotten": ("準備済みの形状を破棄しました"),
+    "The process that did the work ended before it was done, maybe for want of memory. Nothing was "
+    "changed. Close other programs or use smaller meshes, and try again.": (
+        "作業をしていたプロセスが、終わる前に終了しました。メモリ不足かもしれません。何も変更されていません。ほかのプログラムを閉じるか、より小さいメッシュを使い、もう一度お試しください。"
+    ),
     "HierMatch is at work. Wait for it, or cancel it": "HierMatchが作業中です。待つか、キャンセルしてください",
     "Switch to Object Mode or to Edit Mode first": "先にオブジェクトモードまたは編集モードに切り替えてください",
     (

@@ -1117,6 +1117,21 @@ MESSAGES: Final[dict[str, str]] = {
     "This is no file of landmarks, or it is damaged. Choose one that Save Landmarks has written.": (
         "这不是地标文件，或文件已损坏。请选择由“保存地标”写入的文件。"
     ),
+    "Prepared Shapes (MB)": ("已准备的形状 (MB)"),
+    "Memory for what is computed of a mesh alone, kept until Blender is closed, so that matching it "
+    "again, or with another mesh, takes less time. With 0 nothing is kept": (
+        "用于保存仅由网格自身计算出的内容的内存，保留到 Blender 关闭为止，"
+        "这样再次匹配该网格或与其他网格匹配时用时更少。为 0 时不保留任何内容"
+    ),
+    "Forget Prepared Shapes": ("丢弃已准备的形状"),
+    "Free the memory of the meshes that were matched in this session; matching one again prepares it anew": (
+        "释放本次会话中匹配过的网格所占的内存；再次匹配时会重新准备"
+    ),
+    "The prepared shapes were forgotten": ("已丢弃准备好的形状"),
+    "The process that did the work ended before it was done, maybe for want of memory. Nothing was "
+    "changed. Close other programs or use smaller meshes, and try again.": (
+        "执行工作的进程在完成之前就结束了，可能是内存不足。没有做任何更改。请关闭其他程序或使用较小的网格，然后重试。"
+    ),
     "HierMatch is at work. Wait for it, or cancel it": "HierMatch 正在工作。请等待或取消",
     "Switch to Object Mode or to Edit Mode first": "请先切换到物体模式或编辑模式",
     (

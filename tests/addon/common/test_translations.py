@@ -7,6 +7,7 @@ import ast
 import inspect
 import re
 from dataclasses import fields
+from functools import cache
 from string import Formatter
 from types import SimpleNamespace
 
@@ -20,6 +21,9 @@ from hiermatch.hiermatch_addon.panels.panel_text import wrap_text
 from hiermatch.hiermatch_addon.registration import CLASSES
 
 from tests.addon.conftest import ROOT
+
+READS_CODE_ONLY = True
+"""See `conftest.empty_file`: it takes longer than the tests."""
 
 ADDON = [path for path in sorted((ROOT / "hiermatch_addon").rglob("*.py")) if path.parent.name != "translations"]
 INTERFACE = [path for path in ADDON if path.parent.name != "command_line"]
@@ -128,6 +132,7 @@ def preset_names():
     return [(bpy.path.display_name(path.name, title_case=False), path.name) for path in folder.glob("*.py")]
 
 
+@cache
 def needed():
     """All texts to be translated, each with where it is."""
     found = {}
@@ -137,6 +142,7 @@ def needed():
     return found
 
 
+@cache
 def written():
     """All strings in the code."""
     trees = [ast.parse(path.read_text("utf8")) for path in (*ADDON, *ENGINE)]

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Forget what meshes were prepared to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..common.access import window_manager_of
+from ..common.translated_text import translated
+from ..jobs.prepared_shapes import forget_shapes
+from ..jobs.running import is_running
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+__all__ = ["HIERMATCH_OT_forget_shapes"]
+
+
+class HIERMATCH_OT_forget_shapes(bpy.types.Operator):
+    """Forget the shapes that were prepared in this session."""
+
+    bl_idname = "hiermatch.forget_shapes"
+    bl_label = "Forget Prepared Shapes"
+    bl_description = (
+        "Free the memory of the meshes that were matched in this session; matching one again prepares it anew"
+    )
+    bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it while nothing runs."""
+        if is_running(window_manager_of(context)):
+            cls.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
+            return False
+        return True
+
+    def execute(self, _context: bpy.types.Context) -> set[OperatorReturnItems]:
+        """Forget them."""
+        forget_shapes()
+        self.report({"INFO"}, translated("The prepared shapes were forgotten"))
+        return {"FINISHED"}
