@@ -22,12 +22,15 @@ from .reports import add_report_options, run_reported
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable
 
+    from ..jobs.transfer import Transfer
+    from ..scene.character import Side
     from .command import ExitCode
     from .console import Console
     from .reports import Report
 
-__all__ = ["NOT_OF_THE_MATCH", "add_commands"]
+__all__ = ["NOT_OF_THE_MATCH", "add_commands", "run_transfers"]
 
 NOT_OF_THE_MATCH = frozenset({"prefix", "dense", "use_modifiers"})
 """Options of a match that retargeting decides itself, or has under the same name."""
@@ -52,23 +55,51 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Retarget and write."""
+    return run_transfers(
+        parsed, console, "retarget", lambda options, _pair: chosen_transfers(options, options.prefix), optional=True
+    )
+
+
+def run_transfers(
+    parsed: argparse.Namespace,
+    console: Console,
+    operator: str,
+    make: Callable[[Any, tuple[Side, Side]], list[Transfer]],
+    *,
+    optional: bool,
+) -> ExitCode:
+    """Carry something over and write all files that are wanted.
+
+    Parameters
+    ----------
+    parsed : argparse.Namespace
+        The arguments.
+    console : Console
+        Where to say how far it is.
+    operator : str
+        The operator whose options are among them.
+    make : callable
+        Makes the transfers of its options, for a source and a target.
+    optional : bool
+        Whether what cannot be carried over is left out with a note.
+    """
     warn_if_nothing_is_written(parsed, console)
 
     def work(report: Report) -> None:
-        options = chosen_options("retarget", given_options("retarget", parsed))
+        options = chosen_options(operator, given_options(operator, parsed))
         of_match = {k: v for k, v in given_options("match", parsed).items() if k not in NOT_OF_THE_MATCH}
         matching = chosen_options("match", of_match | ({"prefix": options.prefix} if options.prefix else {}))
         settings = TransferOptions(
             job_options(matching),
             options.prefix,
             refine=options.refine,
-            optional=True,
+            optional=optional,
             accept_doubtful=options.accept_doubtful,
         )
         console.progress(0.0, "Reading files")
         source, target = load_pair(parsed, report)
         context = bpy.context
-        job = TransferJob(context, source, [target], lambda: chosen_transfers(options, options.prefix), settings)
+        job = TransferJob(context, source, [target], lambda: make(options, (source, target)), settings)
         drive(job, context, console)
         carried = job.finish(context)
         outcome = carried[0].outcome

@@ -3,32 +3,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
-import bpy
-
-from ..jobs.job import job_options
-from ..jobs.transfer_job import TransferJob, TransferOptions
-from ..properties.freshness import refresh
-from ..properties.panel_state import state_of
-from ..properties.summary import remember
+from ..scene.character import parts_of
 from ..scene.garments import meshes_of
 from ..transfers.options.wear import wear_settings
-from ..transfers.retarget_properties import remember_transfer
 from ..transfers.wear import WearTransfer
 from .command import EXIT_CODES
-from .console import drive
-from .match import add_pair_arguments, add_result_options, load_pair, save_results, warn_if_nothing_is_written
-from .options import add_options, chosen_options, given_options
-from .reports import add_report_options, run_reported
-from .retarget import NOT_OF_THE_MATCH
+from .match import add_pair_arguments, add_result_options
+from .options import add_options
+from .reports import add_report_options
+from .retarget import NOT_OF_THE_MATCH, run_transfers
 
 if TYPE_CHECKING:
     import argparse
 
+    from ..jobs.transfer import Transfer
+    from ..scene.character import Side
     from .command import ExitCode
     from .console import Console
-    from .reports import Report
 
 __all__ = ["add_commands"]
 
@@ -53,28 +46,11 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Fit and write."""
-    warn_if_nothing_is_written(parsed, console)
+    return run_transfers(parsed, console, "wear", _transfers, optional=False)
 
-    def work(report: Report) -> None:
-        options = chosen_options("wear", given_options("wear", parsed))
-        of_match = {k: v for k, v in given_options("match", parsed).items() if k not in NOT_OF_THE_MATCH}
-        matching = chosen_options("match", of_match | ({"prefix": options.prefix} if options.prefix else {}))
-        settings = TransferOptions(job_options(matching), options.prefix, refine=options.refine)
-        console.progress(0.0, "Reading files")
-        source, target = load_pair(parsed, report)
-        items = meshes_of(options.collection, source, target) if options.collection else ()
-        context = bpy.context
-        job = TransferJob(context, source, [target], lambda: [WearTransfer(wear_settings(options, items))], settings)
-        drive(job, context, console)
-        carried = job.finish(context)
-        outcome = carried[0].outcome
-        if outcome is not None:
-            names = (outcome.source, outcome.target)
-            remember(state_of(context).summary, outcome.stored, names, matching.prefix, outcome.seconds)
-        refresh(cast("bpy.types.Scene", context.scene))
-        remember_transfer(context, carried)
-        report.add_carried(carried)
-        prefix = options.prefix if outcome is None else matching.prefix
-        save_results(parsed, report, (source, target), prefix, console, clean=True)
 
-    return run_reported(parsed, [parsed.source.path, parsed.target.path], console, work)
+def _transfers(options: Any, pair: tuple[Side, Side]) -> list[Transfer]:  # noqa: ANN401 - stands for the operator
+    """Make the transfer of the options."""
+    bodies = [part for side in pair for part in parts_of(side)]
+    items = meshes_of(options.collection, *bodies) if options.collection else ()
+    return [WearTransfer(wear_settings(options, items))]

@@ -29,6 +29,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armatures import SourceRig, armature_of, find_armature, read_rig
 from ..scene.binding import bind
+from ..scene.character import Character
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
 from ..scene.garment_shape_io import write_shape
 from ..scene.garments import (
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
 
     from ...engine import FittedItem, Steps
     from ..jobs.transfer import Passage
+    from ..scene.character import Side
     from .options.wear import WearSettings
 
 __all__ = ["WearTransfer", "painted_groups"]
@@ -116,9 +118,10 @@ class WearTransfer:
         self._mended: list[tuple[str, int]] = []
         self._notes: list[str] = []
 
-    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read all items, and make sure that they can be fitted."""
         settings = self._settings
+        source, target = _body(source), _body(target)
         chosen = [named_object(name) for name in dict.fromkeys(settings.items)]
         if not chosen:
             chosen = [obj for obj in bound_items(context, source) if obj != target]
@@ -220,8 +223,9 @@ class WearTransfer:
                 self._mended.append((item.name, int(mended.changed.sum())))
             self._weights[number] = found
 
-    def write(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the fitted items."""
+        source, target = _body(source), _body(target)
         items = [self._still_there(item) for item in self._items]
         reports = [transfer.write(context, source, target) for transfer in self._first]
         notes = [*self._notes, *(note for report in reports for note in report.notes)]
@@ -375,6 +379,22 @@ class WearTransfer:
         if armature is not None:
             bind(copy, armature, item)
         return copy, notes
+
+
+def _body(side: Side) -> bpy.types.Object:
+    """Return the only object of a side.
+
+    Raises
+    ------
+    ObjectError
+        If it is a character of several.
+    """
+    if isinstance(side, Character):
+        raise ObjectError(
+            f'"{side.name}" is a character of several objects, but clothes are fitted from one body to another. Pick '
+            "the body alone, or join its parts."
+        )
+    return side
 
 
 def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:

@@ -11,7 +11,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.blas_threads import on_one_thread
+from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress
 from .contact import Surface
 
@@ -32,8 +32,12 @@ _PARTLY = 0.02
 _NEAR = 0.03
 """Distance from the skin, in sqrt(area), of what lies on it."""
 
-_DEEPER = 0.001
-"""How much deeper in the skin than at rest, in the same unit, is poking through."""
+_DEEPER, _FULLY = 0.004, 0.02
+"""How deep in the skin, in the same unit, is poking through, and how deep calls for the weights of the skin
+alone: 5 and 27 mm on a human."""
+
+_OUTSIDE = 0.001
+"""How far outside, in the same unit, an item lies at rest that has to stay there: not the inside of a shoe."""
 
 _ROUNDS = 2
 """How often all poses are tried."""
@@ -61,7 +65,7 @@ class MendedWeights:
         return f"<MendedWeights: {int(self.changed.sum())} of {len(self.changed)} vertices changed>"
 
 
-@on_one_thread
+@can_go_beside
 def mend_weights_steps(
     positions: NDArray[np.float64],
     triangles: NDArray[np.int64],
@@ -113,7 +117,7 @@ def mend_weights_steps(
     moving = np.asarray(weights.sum(axis=1)).ravel() > 0
     starts = found.nearest_vertices(body.triangles)
     rest = Surface(body).clearance(positions, starts)
-    lying = moving & (np.abs(rest.distances) < _NEAR * unit) & rest.known
+    lying = moving & (rest.distances > _OUTSIDE * unit) & (rest.distances < _NEAR * unit) & rest.known
     subtrees = _subtrees(skeleton.parents)
     share = np.zeros(len(positions))
     used = np.flatnonzero(np.asarray(weights.sum(axis=0)).ravel() > 0)
@@ -132,10 +136,10 @@ def mend_weights_steps(
                 posed = _bent(body.vertices, on_skin, head, rotation)
                 surface = Surface(TriangleMesh(posed, body.triangles))
                 points = _bent(positions[chosen], on_item[chosen], head, rotation)
-                depth = rest.distances[chosen].clip(max=0) - surface.clearance(points, starts[chosen]).distances
+                depth = -surface.clearance(points, starts[chosen]).distances
                 poking = depth > _DEEPER * unit
                 lacking[chosen[poking]] = np.maximum(
-                    lacking[chosen[poking]], (depth[poking] / (0.005 * unit)).clip(0, 1)
+                    lacking[chosen[poking]], (depth[poking] / (_FULLY * unit)).clip(0, 1)
                 )
         if not lacking.any():
             break

@@ -25,14 +25,11 @@ __all__ = ["Layer", "Pushed", "layer_of", "pushed_out"]
 _ROUNDS = 8
 """How often is looked anew where something pokes through."""
 
-_OWN_LIMB = 4
-"""In how many of these rounds an item looks for the limb that it was on; then all of the surface below counts, as where
-limbs touch."""
+_SMOOTHLY, _WITH_SAMPLES = 4, 6
+"""In how many of them items are pushed smoothly, and in how many for places of theirs that are below; the last are for
+the places of what is below that can be seen."""
 
-_SMOOTHLY = 6
-"""In how many of them items are pushed smoothly; the last are for what little is left."""
-
-_SPREAD = 0.012
+_SPREAD = 0.018
 """How far a push spreads over the cloth, in sqrt(area of the body)."""
 
 _FIRM = 30.0
@@ -52,6 +49,10 @@ _POKING = 0.022
 
 _STRAIGHT = 0.5
 """Least cosine between the way from such a vertex to the cloth and its normal."""
+
+_ALIKE, _HOME = 0.3, 0.06
+"""Least cosine between the normals there and where the item lay before, and the largest distance between the two, in
+the same unit: else it is another limb."""
 
 _MOSTLY = 0.3
 """Part of a place of the item by its corners that has to have lain outside, for the skin not to show above it."""
@@ -182,19 +183,15 @@ def pushed_out(
     through = 0.0
     for number in range(_ROUNDS):
         rows, moves, counts = _needed(
-            (mesh, positions), samples, sample_mass, layers, free=free, unit=unit, own_limb=number < _OWN_LIMB
+            (mesh, positions), samples, sample_mass, layers, free=free, unit=unit, all_places=number < _WITH_SAMPLES
         )
         if rows is None:
             through = 0.0
-            if number >= _OWN_LIMB:
-                break
-            continue
+            break
         needed = np.linalg.norm(moves, axis=1)
         through = float((needed > 5 * tolerance).sum() / samples.shape[0])
         if needed.max() < tolerance:
-            if number >= _OWN_LIMB:
-                break
-            continue
+            break
         moves *= np.minimum(1, _LARGEST_STEP * unit / np.maximum(needed, tolerance))[:, None]
         if number < _SMOOTHLY:
             weighted = csr_array(diags_array(_FIRM * counts) @ rows)
@@ -213,7 +210,7 @@ def _needed(
     *,
     free: NDArray[np.bool_],
     unit: float,
-    own_limb: bool,
+    all_places: bool,
 ) -> tuple[csr_array | None, NDArray[np.float64], NDArray[np.float64]]:
     """Places of the item that have to move: shares of the vertices (k, n), the moves (k, 3), and weights (k,)."""
     mesh, positions = item
@@ -224,17 +221,13 @@ def _needed(
     movable = np.asarray(samples @ free.astype(float)).ravel() > 0.5
     for layer in layers:
         lying = np.flatnonzero(np.isfinite(layer.wanted) & movable)
-        found = own = layer.surface.clearance(points[lying], layer.starts[lying])
-        if not own_limb:
-            found = layer.surface.clearance(points[lying])
-        lack = layer.wanted[lying] - found.distances
-        # Between two limbs that touch there is no room: there the own one counts.
-        aligned = np.einsum("ki,ki->k", own.normals, found.normals) > 0
-        chosen = np.flatnonzero((lack > 0) & found.known & aligned)
-        at = lying[chosen]
-        rows.append(csr_array(samples[at]))
-        moves.append(lack[chosen, None] * found.normals[chosen])
-        weights.append(sample_mass[at])
+        if all_places:
+            needed = _inside(layer, points[lying], lying)
+            chosen = np.flatnonzero(needed.any(axis=1))
+            at = lying[chosen]
+            rows.append(csr_array(samples[at]))
+            moves.append(needed[chosen])
+            weights.append(sample_mass[at])
         poked = _poking(mesh, positions, layer, free, unit)
         if poked is not None:
             rows.append(poked[0])
@@ -245,12 +238,30 @@ def _needed(
     return csr_array(vstack(rows)), np.concatenate(moves), np.concatenate(weights)
 
 
+def _inside(layer: Layer, points: NDArray[np.float64], numbers: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Find how far points (k, 3), samples of such numbers (k,), have to move out of the surface below, (k, 3).
+
+    First counts the limb that each lay on, then any other, if between the two there is room.
+    """
+    own, every = layer.surface.clearance(points, layer.starts[numbers]), layer.surface.clearance(points)
+    wanted = layer.wanted[numbers]
+    lacks = [np.where(found.known, (wanted - found.distances).clip(min=0), 0.0) for found in (own, every)]
+    left = own.distances + lacks[1] * np.einsum("ki,ki->k", own.normals, every.normals)
+    other = (lacks[1] > lacks[0]) & (left > 0)
+    moves: NDArray[np.float64] = np.where(
+        other[:, None], lacks[1][:, None] * every.normals, lacks[0][:, None] * own.normals
+    )
+    return moves
+
+
 def _poking(
     mesh: TriangleMesh, positions: NDArray[np.float64], layer: Layer, free: NDArray[np.bool_], unit: float
 ) -> tuple[csr_array, NDArray[np.float64]] | None:
-    """Find vertices of the surface below that are above the item, and the moves of the item over them."""
+    """Find places of the surface below that are above the item, and the moves of the item over them."""
     surface, reach = layer.surface, _POKING * unit
-    vertices, normals = surface.mesh.vertices, surface.normals
+    centres = surface.mesh.vertices[surface.mesh.triangles].mean(axis=1)
+    vertices = np.concatenate([surface.mesh.vertices, centres])
+    normals = np.concatenate([surface.normals, surface.mesh.triangle_normals])
     low, high = positions.min(axis=0) - reach, positions.max(axis=0) + reach
     near = np.flatnonzero(((vertices > low) & (vertices < high)).all(axis=1))
     if not len(near):
@@ -265,6 +276,11 @@ def _poking(
     under = (height < 0) & (distance < reach) & (-height > _STRAIGHT * distance)
     under &= np.einsum("kc,kc->k", found.barycentric, layer.outside[corners]) > _MOSTLY
     under &= free[corners].any(axis=1)
+    # The skin of another limb is none of its business.
+    at = found.barycentric.argmax(axis=1)
+    home = layer.starts[np.take_along_axis(corners, at[:, None], axis=1)[:, 0]]
+    under &= np.einsum("ki,ki->k", normals[home], normals[near]) > _ALIKE
+    under &= np.linalg.norm(vertices[home] - vertices[near], axis=1) < _HOME * unit
     # What is at the rim of the item is beside it, not above it.
     rim = item.rim[corners]
     under &= ~((found.barycentric > 1e-3) <= rim).all(axis=1)

@@ -29,6 +29,9 @@ strands of hair."""
 _TOGETHER = 0.005
 """How near, in the same unit, parts are that are one piece: the frame of glasses and their lenses."""
 
+_LARGEST = 0.2
+"""Size, in the same unit, up to which parts that nearly touch are one: glasses are, beads all around a neck are not."""
+
 _NAMED_TOGETHER = 0.05
 """The same for what is said to be rigid as a whole, such as a helmet and its visor."""
 
@@ -65,7 +68,7 @@ def rigid_pieces(
         parts = WeldedParts.of(item)
         rigid = _solid_parts(parts, unit)[parts.vertex_labels] & (labels < 0)
         if rigid.any():
-            labels[rigid] = count + _groups(item, rigid, _TOGETHER * unit, _SMALL * unit, parts)[rigid]
+            labels[rigid] = count + _groups(item, rigid, _TOGETHER * unit, _LARGEST * unit, parts)[rigid]
     return labels
 
 

@@ -14,7 +14,7 @@ from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
-from ...runtime.blas_threads import on_one_thread
+from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
 from ...runtime.progress import Progress
 from .body_motion import BodyMotion
@@ -150,7 +150,7 @@ class _Work:
     through: float = 0.0
 
 
-@on_one_thread
+@can_go_beside
 def wear_steps(
     source: TriangleMesh,
     target: TriangleMesh,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...common.access import view_layer_of
+from ...scene.character import parts_of
 from ...scene.garments import BODY, meshes_of
 from ...transfers.options.wear import WearOptions, wear_settings
 from ...transfers.wear import WearTransfer
@@ -17,6 +18,7 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
     from ...jobs.transfer_job import TransferJob
+    from ...scene.character import Side
 
 __all__ = ["HIERMATCH_OT_wear"]
 
@@ -68,13 +70,14 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
             self.items.add().name = name
         return job
 
-    def _pick(self, context: bpy.types.Context) -> tuple[bpy.types.Object, list[bpy.types.Object]]:
+    def _pick(self, context: bpy.types.Context) -> tuple[Side, list[Side]]:
         """Find the bodies; what else is selected are items."""
         if self._chosen:
             return super()._pick(context)
         source, targets = super()._pick(context)
         self._left_out = ""
-        chosen = [obj for obj in view_layer_of(context).objects.selected if obj not in (source, *targets)]
+        bodies = [part for side in (source, *targets) for part in parts_of(side)]
+        chosen = [obj for obj in view_layer_of(context).objects.selected if obj not in bodies]
         self._chosen = tuple(sorted(obj.name for obj in chosen if _can_be_worn(obj)))
         return source, targets
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
+from tests.addon.garments import add_item
 from tests.addon.rigs import add_armature
 from tests.addon.scenes import snapshot
 from tests.addon.shape_keys import positions
@@ -16,26 +17,6 @@ from tests.addon.shape_keys import positions
 def in_world(obj):
     matrix = np.array(obj.matrix_world)
     return positions(obj) @ matrix[:3, :3].T + matrix[:3, 3]
-
-
-def add_item(body, name, offset):
-    """Add cloth to a body: its own faces, so far outside."""
-    mesh = body.data.copy()
-    mesh.name = name
-    for attribute in [one.name for one in mesh.attributes if not one.is_required and not one.is_internal]:
-        if attribute in mesh.attributes and attribute != "position":
-            mesh.attributes.remove(mesh.attributes[attribute])
-    for key in list(mesh.keys()):
-        del mesh[key]
-    normals = np.array([vertex.normal for vertex in mesh.vertices])
-    size = np.ptp(positions(body), axis=0).max()
-    moved = positions(body) + offset * size * normals
-    mesh.vertices.foreach_set("co", moved.astype(np.float32).ravel())
-    obj = bpy.data.objects.new(name, mesh)
-    obj.matrix_world = body.matrix_world
-    bpy.context.scene.collection.objects.link(obj)
-    bpy.context.view_layer.update()
-    return obj
 
 
 @pytest.fixture
@@ -206,3 +187,9 @@ def test_what_cannot_be_worn_changes_nothing(pair, items, change, message):
     with pytest.raises(RuntimeError, match=message):
         wear(*items)
     assert snapshot() == before
+
+
+def test_a_character_of_several_objects_is_no_body(pair):
+    assert pair
+    with pytest.raises(RuntimeError, match="character of several"):
+        wear("Coat", source="Source + Shirt")

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The subcommand `wear`."""
+
+from __future__ import annotations
+
+import bpy
+from hiermatch.hiermatch_addon.command_line.meshes import MeshArgument, load_meshes
+from hiermatch.hiermatch_addon.command_line.program import main
+
+from tests.addon.garments import add_item
+
+
+def test_a_wardrobe_is_fitted_and_goes_along_into_another_file(dense_pair, tmp_path, capsys):
+    closet = bpy.data.collections.new("Closet")
+    bpy.context.scene.collection.children.link(closet)
+    closet.objects.link(add_item(dense_pair[0], "Shirt", 0.02))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "pair.blend"))
+    arguments = [f"{tmp_path / 'pair.blend'}:{name}" for name in ("Source", "Target")]
+    arguments += ["--no-refine", f"--output={tmp_path / 'out.glb'}"]
+    assert main(["wear", *arguments, "--collection=Closet"]) == 0
+    (shirt,), _ = load_meshes([MeshArgument(tmp_path / "out.glb", "Shirt on Target")])
+    assert len(shirt.data.vertices) > 100
+    assert main(["wear", *arguments, "--collection=Drawer"]) == 1
+    assert 'no collection called "Drawer"' in capsys.readouterr().err
