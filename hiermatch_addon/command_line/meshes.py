@@ -29,6 +29,7 @@ _IMPORTERS: Final[dict[str, tuple[str, ...]]] = {
     ".fbx": ("import_scene.fbx", "wm.fbx_import"),
     ".glb": ("import_scene.gltf",),
     ".gltf": ("import_scene.gltf",),
+    ".vrm": ("import_scene.vrm", "import_scene.gltf"),  # which is glTF with additions
 }
 """For each kind of file the operators that read it, of which the first that this Blender has is taken."""
 

@@ -18,9 +18,9 @@ __all__ = ["main", "make_parser"]
 
 _DESCRIPTION = """\
 Find dense correspondence of two meshes in any pose, and carry rigs, weights, shape keys, UV maps and attributes across
-it.  FILE is a .blend, .obj, .ply, .stl, .fbx, .glb or .gltf file.  FILE:NAME names a mesh in it, an armature with all
-meshes that it moves, or a collection; without a name it is the only mesh of a .blend, and of another file the mesh with
-the most vertices, with all others on its armature.
+it.  FILE is a .blend, .obj, .ply, .stl, .fbx, .glb, .gltf or .vrm file.  FILE:NAME names a mesh in it, an armature with
+all meshes that it moves, or a collection; without a name it is the only mesh of a .blend, and of another file the mesh
+with the most vertices, with all others on its armature.
 """
 
 
