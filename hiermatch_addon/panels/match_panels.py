@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import bpy
 
 from ..common.access import layout_of, view_layer_of
-from ..common.phrases import counted
 from ..common.translated_text import translated
 from ..jobs.verdict import DOUBTFUL
 from ..properties.panel_state import picked, state_of
 from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.setups import current_setup
-from .panel_text import draw_text, wrap_text
+from .panel_text import draw_notes, draw_text, wrap_text
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress, draw_starter
 
@@ -237,7 +236,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
             ("Search", _search_text(summary)),
             ("Time", f"{summary.seconds:.1f} s" if summary.seconds else ""),
         )
-    _draw_notes(layout, context, summary.notes.splitlines())
+    draw_notes(layout, context, "hiermatch_notes", summary.notes.splitlines())
 
 
 def _draw_rows(layout: bpy.types.UILayout, *rows: tuple[str, str]) -> None:
@@ -253,18 +252,6 @@ def _judged(number: float, scale: tuple[tuple[float, str], ...]) -> str:
     """Write a share with a word for whether that is good: that of the first limit that it reaches."""
     word = next(word for least, word in scale if number >= least)
     return f"{number:.0%}, {translated(word)}"
-
-
-def _draw_notes(layout: bpy.types.UILayout, context: bpy.types.Context, notes: list[str]) -> None:
-    """Draw what should be known about the match, to unfold: of a messy scan that is much, and few need it."""
-    if not notes:
-        return
-    header, body = cast("Any", layout).panel("hiermatch_notes", default_closed=True)
-    header.label(text=translated(counted(len(notes), "note")), translate=False)
-    if body is not None:
-        column = body.column()
-        for note in notes:
-            draw_text(column, context, note, "INFO")
 
 
 def _search_text(summary: HIERMATCH_PG_summary) -> str:

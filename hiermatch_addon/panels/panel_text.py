@@ -7,12 +7,13 @@ import textwrap
 from typing import TYPE_CHECKING, Any, Final, cast
 from unicodedata import east_asian_width
 
+from ..common.phrases import counted
 from ..common.translated_text import translated
 
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["draw_text", "letters_across", "wrap_text"]
+__all__ = ["draw_notes", "draw_text", "letters_across", "wrap_text"]
 
 _PIXELS_PER_LETTER = 7
 """Rough width of a letter at normal interface scale, to wrap sentences."""
@@ -27,6 +28,18 @@ def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str,
     column.scale_y = 0.8
     for number, line in enumerate(wrap_text(translated(text), letters_across(context))):
         column.label(text=line, icon="BLANK1" if number else icon, translate=False)
+
+
+def draw_notes(layout: bpy.types.UILayout, context: bpy.types.Context, name: str, notes: list[str]) -> None:
+    """Draw what should be known, to unfold: of a messy scan that is much, and few need it."""
+    if not notes:
+        return
+    header, body = cast("Any", layout).panel(name, default_closed=True)
+    header.label(text=translated(counted(len(notes), "note")), translate=False)
+    if body is not None:
+        column = body.column()
+        for note in notes:
+            draw_text(column, context, note, "INFO")
 
 
 def letters_across(context: bpy.types.Context) -> int:

@@ -15,7 +15,7 @@ from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wrap import WrapOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
-from .panel_text import draw_text
+from .panel_text import draw_notes, draw_text
 from .progress_bar import draw_progress, draw_starter
 
 if TYPE_CHECKING:
@@ -126,8 +126,6 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
         draw_text(box, context, line, "ERROR" if report.doubtful else "INFO")
     for line in report.notes.splitlines():
         draw_text(box, context, line, "ERROR")
-    for line in report.remarks.splitlines():
-        draw_text(box, context, line, "INFO")
     box.label(text=f"{report.seconds:.1f} s", icon="TIME")
     target = bpy.data.objects.get(report.target)
     armature = target if target is None or target.type == "ARMATURE" else find_armature(target)
@@ -137,3 +135,4 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
     hidden = target is not None and is_before(target)
     before = row.operator("hiermatch.before_after", icon="ARROW_LEFTRIGHT", depress=hidden)
     poses.target = before.target = report.target
+    draw_notes(layout, context, "hiermatch_remarks", report.remarks.splitlines())
