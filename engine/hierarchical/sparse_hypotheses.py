@@ -15,12 +15,10 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-from ..geometry.orientation import orientation_agreement, signed_areas
-from ..geometry.squared_differences import squared_differences
 from ..runtime.progress import Progress, Steps, within
-from .descriptors import weighted_correlation
 from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
 from .hierarchy import Refined, level_sizes, refine_steps
+from .lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from .sampled_pair import Pair
 
 if TYPE_CHECKING:
@@ -37,11 +35,9 @@ _KEPT = 4  # which are so many of each orientation,
 _KEPT_DENSE = 2  # and fewer if a dense map is to decide:
 _DENSE_SHARE = 2  # it has starts of its own, so that one in so many coarse matchings is enough.
 _DISTINCT_SHARE = 0.1  # part of the points that has to differ (by half of _DISTINCT) for two refined ones to be kept
-_CURVATURE_WEIGHT = 6.0
 _SYMMETRIES = 2  # so many self-matchings of the source, beside the identity, are tried for the mirror image
 _STRAINED = 0.7  # excess of score and strain of landmarks where a matching contradicts them
 _EXACT = 0.01  # differences of distances, in sqrt(area), below which all are the same
-_LANDMARKS = 20  # the first matched points, to which the orientation of the others is measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,24 +257,13 @@ def assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
     separates the true matching from the 180-degree turn of a person.
     """
     assignment = levels[-1].assignment
-    count = len(assignment)
     pair = coarse.pair
     source, target = pair.source, pair.target
-    known, offered = source.sample_distances[:, :count], target.sample_distances[:, assignment]
-    misfit = squared_differences(known, offered) / count
-    landmarks = min(count, _LANDMARKS)
-    here, there = source.directions[:, :landmarks], target.directions[:, assignment[:landmarks]]
-    first, second = signed_areas(here), signed_areas(there)
     # The sides must agree as the matching itself says, whichever it says.
-    sign = 1 if pair.orientation(assignment) >= 0 else -1
-    sides = squared_differences(first, sign * second) / first.shape[1]
-    lifted = (misfit + 0.01 * sides).argmin(axis=1)
-    residual = float(misfit[np.arange(len(lifted)), lifted].mean())
-    agreements = [
-        weighted_correlation(x, y[lifted], source.cell_areas)
-        for x, y in zip(source.curvatures, target.curvatures, strict=True)
-    ]
-    orientation = float(orientation_agreement(here, there[lifted]).mean())
-    score = float(np.log(max(residual, float(np.finfo(float).tiny))) - _CURVATURE_WEIGHT * np.mean(agreements))
-    cost = pair.problem(count).cost(assignment)
+    misfits = sample_misfits(source, target, assignment, 1 if pair.orientation(assignment) >= 0 else -1)
+    lifted = misfits.all.argmin(axis=1)
+    residual = max(float(misfits.distances[np.arange(len(lifted)), lifted].mean()), float(np.finfo(float).tiny))
+    orientation = mean_orientation(source, target, assignment, lifted)
+    score = float(np.log(residual) - CURVATURE_WEIGHT * curvature_agreement(source, target, lifted))
+    cost = pair.problem(len(assignment)).cost(assignment)
     return Hypothesis(coarse, levels, cost, orientation, score)

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-from ..geometry.orientation import orientation_agreement, signed_areas
-from ..geometry.squared_differences import squared_differences
-from ..hierarchical.descriptors import weighted_correlation
 from ..hierarchical.exact.branch_and_bound import Exclusion, branch_and_bound_steps
 from ..hierarchical.hierarchy import level_sizes, refine_steps
+from ..hierarchical.lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..mesh.surface_points import SurfacePoints
@@ -33,9 +31,6 @@ __all__ = ["SymmetryResult", "find_symmetry", "find_symmetry_steps"]
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
 _MOVED_SHARE = 0.3  # part of the coarse points that has to be in another place: the others may lie on the axis
 _DISTINCT_SHARE = 0.5  # the same between two coarse matchings
-_LANDMARKS = 20  # the first matched points, to which the orientation of the others is measured
-_SIDE_WEIGHT = 0.01  # of the mean squared difference of signed areas beside that of distances
-_CURVATURE_WEIGHT = 6.0
 _INVOLUTION_SCALE = 0.1  # mean distance between a point and the image of its image that counts as far
 _OVERSAMPLING = 2  # times the hypotheses of a match: many swap left and right in a part of the body only
 _ROUNDS = 4  # of making the map its own inverse, and of placing the images; both settle in two or three
@@ -242,7 +237,7 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: NDArray[np.int64]
     """Carry a matching to all samples, make the map its own inverse if it can be, and judge it."""
     distances, count = shape.sample_distances, len(assignment)
     everywhere = np.arange(len(distances))
-    misfit = _misfit(shape, np.arange(count), assignment, sign)
+    misfit = sample_misfits(shape, shape, assignment, sign).all
     images = misfit.argmin(axis=1)
     involution = float(distances[images[images], everywhere].mean())
     for _ in range(_ROUNDS):
@@ -251,29 +246,17 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: NDArray[np.int64]
         images = (misfit + misfit.T).argmin(axis=1)
         if np.array_equal(images, before):
             break
-        misfit = _misfit(shape, np.arange(count), images[:count], sign)
-    landmarks = min(count, _LANDMARKS)
-    orientation = orientation_agreement(
-        shape.directions[:, :landmarks], shape.directions[np.ix_(images, images[:landmarks])]
-    ).mean()
+        misfit = sample_misfits(shape, shape, images[:count], sign).all
+    orientation = mean_orientation(shape, shape, images[:count], images)
     change = distances[:, :count] - distances[np.ix_(images, images[:count])]
-    curvature = float(np.mean([weighted_correlation(c, c[images], shape.cell_areas) for c in shape.curvatures]))
+    curvature = curvature_agreement(shape, shape, images)
     # A map that moves points by little cannot change distances by much, as the flip of a thin body from front to back:
     # what counts is the change for the way that the points go.
     tiny = float(np.finfo(float).tiny)
     way = float(np.square(distances[images, everywhere]).mean())
     score = np.log(max(float(np.square(change).mean()), tiny) / max(way, tiny))
-    score += (involution / _INVOLUTION_SCALE) ** 2 - _CURVATURE_WEIGHT * curvature
-    return _Candidate(coarse, images, float(orientation), involution, curvature, float(score))
-
-
-def _misfit(shape: Shape, points: NDArray[np.int64], images: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
-    """Mean squared change of the distances to known points if sample x goes to sample y, and of sides, (S, S)."""
-    misfit = squared_differences(shape.sample_distances[:, points], shape.sample_distances[:, images]) / len(points)
-    known = slice(None, _LANDMARKS)
-    first = signed_areas(shape.directions[:, points[known]])
-    second = signed_areas(shape.directions[:, images[known]])
-    return misfit + _SIDE_WEIGHT * squared_differences(first, sign * second) / first.shape[1]
+    score += (involution / _INVOLUTION_SCALE) ** 2 - CURVATURE_WEIGHT * curvature
+    return _Candidate(coarse, images, orientation, involution, curvature, float(score))
 
 
 def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:

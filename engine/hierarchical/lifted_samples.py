@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A matching of some samples carried to all samples of two shapes, and what says whether it is right there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..geometry.orientation import orientation_agreement, signed_areas
+from ..geometry.squared_differences import squared_differences
+from .descriptors import weighted_correlation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..shapes.shape import Shape
+
+__all__ = ["CURVATURE_WEIGHT", "Misfits", "curvature_agreement", "mean_orientation", "sample_misfits"]
+
+CURVATURE_WEIGHT = 6.0
+"""How much the agreement of curvatures counts beside the logarithm of the squared change of distances."""
+
+_SIDE_WEIGHT = 0.01
+"""Weight of the mean squared difference of signed areas beside that of distances."""
+
+_ORIENTING = 20
+"""How many matched points, the first, the orientation of the others is measured to."""
+
+
+class Misfits(NamedTuple):
+    """Mean squared change of the distances to matched points if sample x goes to sample y, and with that of sides.
+
+    Both are (S, T) arrays of float.
+    """
+
+    distances: NDArray[np.float64]
+    all: NDArray[np.float64]
+
+
+def sample_misfits(x: Shape, y: Shape, images: NDArray[np.int64], sign: int) -> Misfits:
+    """Compare all samples of two shapes by how they lie to matched points.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The shapes.
+    images : (k,) array of int
+        The samples of Y that the first of X are matched to.
+    sign : int
+        Whether the orientation is kept (1) or mirrored (-1).
+    """
+    count = len(images)
+    change = squared_differences(x.sample_distances[:, :count], y.sample_distances[:, images]) / count
+    first = signed_areas(x.directions[:, : min(count, _ORIENTING)])
+    second = signed_areas(y.directions[:, images[:_ORIENTING]])
+    return Misfits(change, change + _SIDE_WEIGHT * squared_differences(first, sign * second) / first.shape[1])
+
+
+def mean_orientation(x: Shape, y: Shape, images: NDArray[np.int64], lifted: NDArray[np.int64]) -> float:
+    """Mean agreement of orientation, -1 to 1, of a map of all samples (S,), as seen from matched ones, (k,)."""
+    here, there = x.directions[:, : min(len(images), _ORIENTING)], y.directions[:, images[:_ORIENTING]]
+    return float(orientation_agreement(here, there[lifted]).mean())
+
+
+def curvature_agreement(x: Shape, y: Shape, lifted: NDArray[np.int64]) -> float:
+    """Mean correlation, at most 1, of the curvatures with those at the images (S,) of all samples."""
+    pairs = zip(x.curvatures, y.curvatures, strict=True)
+    return float(np.mean([weighted_correlation(own, other[lifted], x.cell_areas) for own, other in pairs]))
