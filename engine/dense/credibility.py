@@ -31,7 +31,6 @@ from scipy.special import expit, logit
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
 
 __all__ = [
     "ALL_ALIKE",
@@ -115,8 +114,8 @@ def map_score(terms: Mapping[str, float]) -> float:
     return float(sum(weight * np.log(max(terms[name], _LEAST_TERM)) for name, weight in _WEIGHTS.items()))
 
 
-def registered_score(score: float, gaps: NDArray[np.float64]) -> float:
-    """Score a registered map by the `map_score` of where it leads, and the gaps (2,), in sqrt(area), that are left.
+def registered_score(score: float, gaps: tuple[float, float]) -> float:
+    """Score a registered map by the `map_score` of where it leads, and the two gaps, in sqrt(area), that are left.
 
     A rough map errs here and there, be it right or wrong as a whole; registered, it shows what it leads to.  The true
     one may take more deforming than a wrong one where proportions differ, but the surfaces meet closer.

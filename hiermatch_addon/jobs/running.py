@@ -34,7 +34,7 @@ def start_soon(context: bpy.types.Context, operator: str, **options: Any) -> Non
 
     def start() -> None:
         manager: Any = bpy.context.window_manager
-        if window not in list(manager.windows):
+        if window is None or window not in list(manager.windows):
             return  # closed meanwhile
         area = next((area for area in window.screen.areas if area.type == "VIEW_3D"), None)
         region = next((region for region in area.regions if region.type == "WINDOW"), None) if area else None

@@ -62,7 +62,7 @@ def write_shape(
 def mirror_axes(obj: bpy.types.Object) -> list[tuple[int, float]]:
     """Return the axes along which a Mirror modifier mirrors about the object's origin, and how near is on the plane."""
     found = []
-    size = max(obj.dimensions) if max(obj.dimensions) > 0 else 1.0
+    size = max(obj.dimensions[axis] for axis in range(3)) or 1.0
     for modifier in obj.modifiers:
         mirror: Any = modifier
         if modifier.type == "MIRROR" and mirror.mirror_object is None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
-from mathutils import Matrix, Vector
+from mathutils import Matrix
 
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
@@ -183,7 +183,7 @@ def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:
     moved = Matrix(motion.tolist())
     if mirror_axes(item):
         return moved @ matrix
-    matrix.translation = moved @ Vector(matrix.translation)
+    matrix.translation = moved @ matrix.to_translation()
     return matrix
 
 

@@ -99,7 +99,7 @@ class _Places:
         count = int(number.max()) + 1
         # A least area, so that places of needles only have a mean as well.
         areas = np.maximum(self.areas, 1e-9 * self.areas.mean())
-        totals = np.bincount(number, areas, count)
+        totals = np.bincount(number, areas, count).astype(np.float64)
         mean = csr_array((areas / totals[number], (number, np.arange(len(number)))), shape=(count, len(number)))
         turned = mean @ (self.rotations * self.scales[:, None, None]).reshape(-1, 9)
         return _Places(

@@ -6,6 +6,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, Final, cast
 
+from ..armatures import armature_of
+
 if TYPE_CHECKING:
     import bpy
 
@@ -41,7 +43,7 @@ def put_aside(armature: bpy.types.Object, why: str) -> None:
             "why": why,
             "slot": slot.identifier if slot is not None else "",
             "nla": animation.use_nla,
-            "position": armature.data.pose_position,
+            "position": armature_of(armature).pose_position,
             "pose": {bone.name: [list(getattr(bone, channel)) for channel in _CHANNELS] for bone in bones},
             "held": held,
         }
@@ -49,11 +51,11 @@ def put_aside(armature: bpy.types.Object, why: str) -> None:
     if animation.action is not None:
         owner[_ACTION] = animation.action
     animation.action, animation.use_nla = None, False
-    armature.data.pose_position = "POSE"
+    armature_of(armature).pose_position = "POSE"
     for bone in bones:
         bone.matrix_basis.identity()
-    for bone, name in held:
-        bones[bone].constraints[name].mute = True
+    for holder, name in held:
+        bones[holder].constraints[name].mute = True
 
 
 def bring_back(armature: bpy.types.Object) -> None:

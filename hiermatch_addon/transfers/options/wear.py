@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """How clothes are fitted to another body: Blender's options, and the plain settings that they make."""
 
 from __future__ import annotations
