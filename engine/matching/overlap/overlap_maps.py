@@ -53,6 +53,9 @@ which they say the same."""
 _NO_RIVAL = 20.0
 """Difference of scores that is said where no other way was found."""
 
+_AGREEING = 0.6
+"""Agreement of the registrations of either surface below which one of them may have failed."""
+
 _LABEL = "Fitting what the surfaces share"
 
 
@@ -131,6 +134,15 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
     if fits is None:
         return None
     members, agreement = _members_of_both(turned.surfaces, fits)
+    if agreement < _AGREEING:
+        # The other surface may have found by itself what it could not follow from here.
+        for each, other in found[1:]:
+            if other != back and not _differ(pair.coarse, _side(best, back), _side(each, other)):
+                own = _fine_fit(turned.surfaces[1], turned.surfaces[0], turned.coarse[1], each.fit.positions)
+                again = _members_of_both(turned.surfaces, (fits[0], own))
+                if again[1] > agreement:
+                    fits, (members, agreement) = (fits[0], own), again
+                break
     if not (members[0].any() and members[1].any()):
         return None
     area = shared_area(*turned.coarse, best.fit)

@@ -38,7 +38,7 @@ CREDIBLE = 0.5
 
 _TINY = float(np.finfo(float).tiny)
 
-_SCORE, _MARGIN, _AGREEMENT, _AREA = (2.5, 0.6), (1.4, 0.35), (0.6, 0.06), (0.2, 0.04)
+_SCORE, _MARGIN, _AGREEMENT, _AREA = (2.5, 0.6), (1.8, 0.35), (0.6, 0.06), (0.2, 0.04)
 """Of what an overlap is judged by, the value at which it is believed as often as not if all else is clear, and by how
 much more or less that changes: see the attributes of `Overlap`."""
 

@@ -78,7 +78,7 @@ def test_points_lie_on_what_is_shared(result):
 
 def overlap(**changes):
     nothing = (np.empty(0), np.empty(0))
-    clear = {"score": 6.0, "margin": 4.0, "agreement": 0.95, "area": 0.5}
+    clear = {"score": 6.0, "margin": 5.0, "agreement": 0.95, "area": 0.5}
     return Overlap(nothing, nothing, nothing, **(clear | changes))
 
 
