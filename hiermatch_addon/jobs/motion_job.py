@@ -15,9 +15,9 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..common.phrases import listed
 from ..properties.bone_pairs import pairing_of, rows_of
-from ..scene.action_curves import object_curves
 from ..scene.armatures import armature_of
-from ..scene.motion_io import (
+from ..scene.motion.action_curves import object_curves
+from ..scene.motion.motion_io import (
     current_motion,
     evaluated_frames,
     needs_evaluation,
@@ -26,8 +26,8 @@ from ..scene.motion_io import (
     set_pose,
     write_action,
 )
-from ..scene.nla_strips import copy_strips
-from ..scene.rigged_body import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of
+from ..scene.motion.nla_strips import copy_strips
+from ..scene.motion.rigged_body import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of
 from .action_keys import SIDE_STEP, baked_keys, bone_channels, sparse_frames, sparse_keys
 from .pairing_job import PairingJob, RigLink, found_again
 from .stepped_job import SteppedJob
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...engine import BonePairing, Steps, TransferredMotion
-    from ..scene.motion_io import ActionKeys, BoneKeys
+    from ..scene.motion.motion_io import ActionKeys, BoneKeys
     from .job import JobOptions
     from .pairing_job import PairedRigs
 

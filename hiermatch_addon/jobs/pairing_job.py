@@ -16,8 +16,8 @@ from ..common.errors import ObjectError
 from ..common.side_names import side_of
 from ..properties.bone_pairs import held_pairs, write_pairing
 from ..scene.armatures import armature_of
+from ..scene.motion.rigged_body import bound_meshes, check_armature, in_own_spaces, object_rotation, read_body, rig_of
 from ..scene.pair import check_pair
-from ..scene.rigged_body import bound_meshes, check_armature, in_own_spaces, object_rotation, read_body, rig_of
 from ..storage.stored_map import find_maps
 from .job import MatchJob
 from .stepped_job import SteppedJob
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...engine import BonePairing, Steps, SurfaceMap
-    from ..scene.rigged_body import RiggedBody
+    from ..scene.motion.rigged_body import RiggedBody
     from ..storage.vertex_maps import StoredMaps
     from .job import JobOptions, Outcome
 

@@ -12,7 +12,7 @@ from mathutils import Matrix, Quaternion, Vector
 from ...engine import BonePairing
 from ..common.errors import ObjectError
 from ..scene.armatures import armature_of
-from ..scene.rigged_body import object_rotation, own_skeleton
+from ..scene.motion.rigged_body import object_rotation, own_skeleton
 from .motion_properties import bone_pairs_of
 
 if TYPE_CHECKING:

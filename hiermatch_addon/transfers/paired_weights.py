@@ -16,7 +16,7 @@ from ..jobs.transfer import TransferReport
 from ..properties.bone_pairs import pairing_of
 from ..scene.armatures import armature_of, find_armature, read_rig, read_skeleton
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
-from ..scene.rigged_body import rig_of
+from ..scene.motion.rigged_body import rig_of
 from .weight_groups import locked_groups
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from ...properties.freshness import refresh
 from ...properties.motion_properties import motion_of
 from ...properties.panel_state import state_of
 from ...properties.summary import remember
+from ...scene.motion.rigged_body import rig_of
 from ...scene.pair import named_object
-from ...scene.rigged_body import rig_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

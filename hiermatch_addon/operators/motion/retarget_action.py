@@ -15,9 +15,9 @@ from ...jobs.job import job_options
 from ...jobs.motion_job import MotionJob, MotionPlan
 from ...properties.motion_properties import MotionOptions, motion_of
 from ...properties.panel_state import state_of
-from ...scene.action_curves import actions_of, bone_curves, named_action, played_action
-from ...scene.nla_strips import strip_actions
-from ...scene.rigged_body import rig_of
+from ...scene.motion.action_curves import actions_of, bone_curves, named_action, played_action
+from ...scene.motion.nla_strips import strip_actions
+from ...scene.motion.rigged_body import rig_of
 from .motion_operator import MotionOperator
 
 if TYPE_CHECKING:

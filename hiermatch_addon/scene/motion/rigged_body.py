@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from ...engine import BonePairing, Skeleton, TriangleMesh
-from ..common.errors import ObjectError
-from .armatures import armature_of, find_armature, read_rig, read_skeleton
-from .mesh_io import read_mesh
-from .pair import named_object
+from ....engine import BonePairing, Skeleton, TriangleMesh
+from ...common.errors import ObjectError
+from ..armatures import armature_of, find_armature, read_rig, read_skeleton
+from ..mesh_io import read_mesh
+from ..pair import named_object
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

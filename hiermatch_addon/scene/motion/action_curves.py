@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..common.errors import ObjectError
-from .armatures import armature_of
+from ...common.errors import ObjectError
+from ..armatures import armature_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

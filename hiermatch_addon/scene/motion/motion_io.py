@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from mathutils import Matrix
 
-from ...engine import Motion, posed_motion, rotation_matrices
+from ....engine import Motion, posed_motion, rotation_matrices
+from ..armatures import armature_of
 from .action_curves import CurveMaker, assign_action, bone_curves, slot_for
-from .armatures import armature_of
 from .rigged_body import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
