@@ -36,10 +36,30 @@ if HAS_BLENDER:
 @pytest.fixture(scope="session")
 def extension():
     """The extension, registered."""
+    from hiermatch.engine.runtime import background
+
+    from tests.addon.remembered import Remembered
+
     package = load_extension()
     package.register()
+    background._used.set(Remembered())  # noqa: SLF001
     yield package
     package.unregister()
+
+
+@pytest.fixture(autouse=True)
+def _computed_anew(request, extension):
+    """Let nothing be remembered where it matters how something is computed."""
+    from hiermatch.engine.runtime import background
+
+    assert extension
+    if request.node.get_closest_marker("computes_anew") is None:
+        yield
+        return
+    remembered = background._used.get()  # noqa: SLF001
+    background._used.set(None)  # noqa: SLF001
+    yield
+    background._used.set(remembered)  # noqa: SLF001
 
 
 @pytest.fixture(autouse=True)

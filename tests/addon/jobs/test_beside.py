@@ -20,6 +20,8 @@ from hiermatch.hiermatch_addon.transfers.options.retarget import chosen_transfer
 from tests.addon.rigs import add_rigged_pair
 from tests.addon.scenes import DENSE, MAP_ATTRIBUTES, QUICK, add_pair, mesh_snapshot, snapshot, values_of
 
+pytestmark = pytest.mark.computes_anew
+
 PATIENCE = 60
 
 

@@ -14,6 +14,8 @@ from hiermatch.hiermatch_addon.operators.match import HIERMATCH_OT_match
 
 from tests.addon.scenes import QUICK, add_blob, add_pair, snapshot, weights_of
 
+pytestmark = pytest.mark.computes_anew
+
 
 @pytest.fixture
 def pair():

@@ -13,6 +13,8 @@ from hiermatch.hiermatch_addon.properties.preferences import HIERMATCH_AP_prefer
 
 from tests.addon.scenes import QUICK, add_blob, add_pair
 
+pytestmark = pytest.mark.computes_anew
+
 
 @pytest.fixture
 def prepared(monkeypatch):

@@ -374,6 +374,7 @@ class TestFile:
         assert written() == expected
 
 
+@pytest.mark.computes_anew
 class TestInSteps:
     """What happens between two steps."""
 

@@ -287,6 +287,7 @@ def test_a_change_while_it_runs_ends_it_with_nothing_written(pair, change):
     job.close()
 
 
+@pytest.mark.computes_anew
 def test_its_progress_never_goes_back(pair):
     source, target = pair
     bpy.context.scene.hiermatch.prefix = "Other"
