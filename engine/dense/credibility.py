@@ -174,4 +174,5 @@ def vertex_credibility(orientation: float, margin: float | None, known: float | 
         The likeness.
     """
     whole = max(orientation, 0.0) * probability_chosen(margin) * probability_right(known)
-    return max(closeness(known) * whole, _LEAST_CREDIBILITY)
+    # Closeness was measured on wrong maps, too: the product would count these twice.
+    return max(min(closeness(known), whole), _LEAST_CREDIBILITY)

@@ -73,7 +73,7 @@ def test_of_two_maps_that_are_as_good_one_is_right():
 )
 def test_vertices_are_trusted_no_more_than_the_map_as_a_whole(orientation, margin, known):
     whole = orientation * probability_chosen(margin) * probability_right(known)
-    assert vertex_credibility(orientation, margin, known) <= whole
+    assert vertex_credibility(orientation, margin, known) == pytest.approx(min(whole, closeness(known)))
     assert vertex_credibility(1.0, None, None) == 1
 
 
