@@ -6,7 +6,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...engine import HierMatchError
-from . import batch, exchange, match, retarget, symmetry, wear
+from . import exchange, match, retarget, symmetry, wear
+from .batches import batch
 from .command import EXIT_CODES, ExitCode, UsageError
 from .console import Console
 from .options import Parser

@@ -19,6 +19,7 @@ from ..properties.panel_state import state_of
 from ..properties.properties import OPTION_NAMES
 from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
+from ..transfers.options.wear import WearOptions
 from ..transfers.options.wrap import WrapOptions
 from ..transfers.retarget_properties import retarget_of
 
@@ -47,7 +48,7 @@ MATCH_NAMES: Final = tuple(name for name in OPTION_NAMES if name not in _OF_A_PA
 
 RETARGET_NAMES: Final = (
     *KINDS,
-    *(name for kind in (*KINDS.values(), WrapOptions, SymmetriseOptions) for name in option_names(kind)),
+    *(name for kind in (*KINDS.values(), WrapOptions, WearOptions, SymmetriseOptions) for name in option_names(kind)),
     "refine",
 )
 """The options of retargeting that a preset holds."""

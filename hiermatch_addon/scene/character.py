@@ -250,6 +250,8 @@ def _ranges(counts: list[int]) -> list[slice]:
     return [slice(int(start), int(end)) for start, end in pairwise(np.cumsum([0, *counts]))]
 
 
-def _is_part(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> bool:
+def _is_part(obj: bpy.types.Object | None, view_layer: bpy.types.ViewLayer) -> bool:
     """Tell whether an object is a mesh with faces that is shown."""
-    return obj.type == "MESH" and bool(len(mesh_of(obj).polygons)) and obj.visible_get(view_layer=view_layer)
+    if obj is None or obj.type != "MESH":  # None: it is being removed
+        return False
+    return bool(len(mesh_of(obj).polygons)) and obj.visible_get(view_layer=view_layer)

@@ -72,7 +72,7 @@ MESSAGES: Final[dict[str, str]] = {
         "二つのメッシュがこのマッチングのペアだと識別するためのもの"
     ),
     "Mesh that is matched, or an armature with all meshes that it moves; if empty, what is active": (
-        "マッチングするメッシュ、またはアーマチュアとそれが動かすすべてのメッシュ。空ならアクティブなもの"
+        "マッチするメッシュ、またはアーマチュアとそれが動かすすべてのメッシュ。空ならアクティブなもの"
     ),
     (
         "Mesh that corresponding points are sought on, or an armature with all meshes that it moves; if empty, what "

@@ -644,15 +644,6 @@ MESSAGES: Final[dict[str, str]] = {
     (
         "Where the map tears vertices away from their neighbors, take the weights from around them along the surface"
     ): "在映射将顶点与相邻顶点撕开之处，沿表面取用周围的权重",
-    "Without Counterpart": "没有对应部分处",
-    "Follow the Map": "遵循映射",
-    (
-        "What vertices get that have no counterpart on the source, as Show > Overlap tells: where the target shows "
-        "more of a body than the source"
-    ): "在源上没有对应部分的顶点得到什么，重叠视图会显示它们：用于目标比源显示了身体更多部分之处",
-    "The weights of the nearest place that the map leads to": "映射所指最近处的权重",
-    "The weights of the vertices around them that have a counterpart": "其周围有对应部分的顶点的权重",
-    "Their weights stay as they are": "其权重保持不变",
     "Rigid Pieces": "刚性部件",
     (
         "Let loose pieces move as one, such as eyes, teeth, buckles and plates, if what they correspond to does on "
@@ -666,6 +657,15 @@ MESSAGES: Final[dict[str, str]] = {
         "目标上用于指定单个部件的顶点组：组中有权重为 1 的顶点的松散部件由一根骨骼驱动，有权重为 0 的顶点的部件从不整体"
         "移动，不论源如何"
     ),
+    "Without Counterpart": "没有对应部分处",
+    "Follow the Map": "遵循映射",
+    (
+        "What vertices get that have no counterpart on the source, as Show > Overlap tells: where the target shows "
+        "more of a body than the source"
+    ): "在源上没有对应部分的顶点得到什么，重叠视图会显示它们：用于目标比源显示了身体更多部分之处",
+    "The weights of the nearest place that the map leads to": "映射所指最近处的权重",
+    "The weights of the vertices around them that have a counterpart": "其周围有对应部分的顶点的权重",
+    "Their weights stay as they are": "其权重保持不变",
     "Mark Rejected": "标记被弃用处",
     (
         "Write a color attribute that shows in red which vertices were torn away from their neighbors, so that "

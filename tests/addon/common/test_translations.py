@@ -26,7 +26,7 @@ READS_CODE_ONLY = True
 """See `conftest.empty_file`: it takes longer than the tests."""
 
 ADDON = [path for path in sorted((ROOT / "hiermatch_addon").rglob("*.py")) if path.parent.name != "translations"]
-INTERFACE = [path for path in ADDON if path.parent.name != "command_line"]
+INTERFACE = [path for path in ADDON if "command_line" not in path.parts]
 ENGINE = sorted((ROOT / "engine").rglob("*.py"))
 NAMES = {"HierMatch"}
 SENTENCES = {

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..common.errors import ObjectError
-from .command import UsageError
-from .options import option_names, to_arguments
-from .retarget import NOT_OF_THE_MATCH
+from ...common.errors import ObjectError
+from ..command import UsageError
+from ..options import option_names, to_arguments
+from ..retarget import NOT_OF_THE_MATCH
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import bpy
 import pytest
-from hiermatch.hiermatch_addon.command_line import batch, workers
+from hiermatch.hiermatch_addon.command_line.batches import batch, workers
+from hiermatch.hiermatch_addon.command_line.batches.ledger import Ledger, summary_rows
+from hiermatch.hiermatch_addon.command_line.batches.manifest import read_manifest, take_shard
 from hiermatch.hiermatch_addon.command_line.command import UsageError
-from hiermatch.hiermatch_addon.command_line.ledger import Ledger, summary_rows
-from hiermatch.hiermatch_addon.command_line.manifest import read_manifest, take_shard
 from hiermatch.hiermatch_addon.command_line.outputs import save
 from hiermatch.hiermatch_addon.command_line.program import main
 from hiermatch.hiermatch_addon.common.errors import ObjectError

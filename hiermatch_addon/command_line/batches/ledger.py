@@ -9,8 +9,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..common.file_writing import write_whole
-from .reports import FORMAT, STATUSES, file_state
+from ...common.file_writing import write_whole
+from ..reports import FORMAT, STATUSES, file_state
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from .command import COMMAND
+from ..command import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -153,7 +153,7 @@ def _blender() -> tuple[list[str], dict[str, str]]:
     environment = dict(os.environ)
     if bpy.app.binary_path:
         return [bpy.app.binary_path, "--command", COMMAND], environment
-    package = Path(__file__).resolve().parent
+    package = Path(__file__).resolve().parents[1]
     root = package.parent.parent
     paths = [str(root.parent), *filter(None, [environment.get("PYTHONPATH")])]
     environment["PYTHONPATH"] = os.pathsep.join(paths)

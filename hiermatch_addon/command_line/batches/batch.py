@@ -7,13 +7,13 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .command import EXIT_CODES, ExitCode, UsageError
-from .console import Console, interruptible
+from ..command import EXIT_CODES, ExitCode, UsageError
+from ..console import Console, interruptible
+from ..meshes import mesh_argument
+from ..options import add_options, given_options, option_names
+from ..reports import file_state
 from .ledger import Ledger, counts, summary_rows
 from .manifest import COMMANDS, read_manifest, take_shard
-from .meshes import mesh_argument
-from .options import add_options, given_options, option_names
-from .reports import file_state
 from .workers import Ended, Task, run_tasks
 
 if TYPE_CHECKING:
