@@ -30,7 +30,7 @@ def running_panel(window_manager: bpy.types.WindowManager) -> str:
 
 def start_soon(context: bpy.types.Context, operator: str, **options: Any) -> None:  # noqa: ANN401 - the operator's own
     """Start an operator, such as "hiermatch.guide_me", in this window once the one that runs has ended."""
-    window = context.window
+    window: Any = context.window
 
     def start() -> None:
         manager: Any = bpy.context.window_manager
