@@ -167,7 +167,9 @@ def pair_bones(
     worth = found.scores[targets, sources]
     given = {(int(a), int(b)) for a, b in fixed}
     worth[[pair in given for pair in zip(sources.tolist(), targets.tolist(), strict=True)]] = 1.0
-    rotations = _swung(placed.rotations, sources, targets, rig.skeleton, skeleton)
+    # Where tails point is left to whoever made the rig: bones that move something turn as their surface does.
+    seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
+    rotations = _swung(seen, sources, targets, rig.skeleton, skeleton)
     return BonePairing(sources, targets, worth, rotations, placed.heads[sources], upright)
 
 

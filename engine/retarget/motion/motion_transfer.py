@@ -228,7 +228,7 @@ class _Body:
     def _scale(self) -> float:
         """How many times as long the target's legs are; without legs, how many times as large the skeleton is."""
         feet = [limb for limb in self.limbs if limb.foot]
-        lengths = sum(limb.source_length for limb in feet), sum(limb.target_length for limb in feet)
+        lengths: tuple[float, ...] = sum(limb.source_length for limb in feet), sum(limb.target_length for limb in feet)
         if not feet:
             points = self.source.heads[self.pairing.sources], self.target.heads[self.pairing.targets]
             lengths = tuple(float(np.linalg.norm(each - each.mean(axis=0))) for each in points)

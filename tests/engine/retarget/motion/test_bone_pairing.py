@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from engine import BonePairing, RigError, TriangleMesh
+from engine import BonePairing, RigError, Skeleton, SurfaceMap, TriangleMesh, fit_rig, pair_bones
 from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, renamed
 from tests.shapes import rotation
 
@@ -61,6 +61,16 @@ def test_a_body_that_faces_elsewhere_is_turned_as_a_whole(someone, paired):
     pairing = paired(body, rig)
     check_right(pairing, someone.rig, rig)
     assert np.allclose(pairing.upright, turn)
+
+
+def test_where_tails_point_does_not_matter(someone):
+    # Files of other programs know joints only: whoever reads them lets bones end anywhere.
+    tree, same = someone.rig.skeleton, SurfaceMap.identity(someone.mesh)
+    odd = Skeleton(tree.parents, tree.heads, tree.heads + 0.1 * np.random.default_rng(0).normal(size=tree.heads.shape))
+    fitted = fit_rig(someone.mesh, someone.mesh, same, same, weights=someone.rig.weights, skeleton=odd, refine=False)
+    pairing = pair_bones(fitted, someone.mesh, someone.mesh, tree, someone.rig.weights)
+    check_right(pairing, someone.rig, someone.rig)
+    assert np.allclose(pairing.rotations, np.eye(3), atol=1e-3)
 
 
 def test_given_pairs_and_bones_left_alone_are_respected(someone, paired):
