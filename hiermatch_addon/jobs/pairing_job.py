@@ -210,7 +210,7 @@ class PairingJob(SteppedJob):
         for leg, rigs in zip(self._legs, found, strict=True):
             outcome = leg.match.finish(view_layer_of(context)) if leg.match is not None else None
             pairing = cast("BonePairing", leg.pairing)
-            write_pairing(cast("bpy.types.Scene", context.scene), *rigs, pairing)
+            write_pairing(cast("bpy.types.Scene", context.scene), rigs[0], rigs[1], pairing)
             notes = tuple(_notes(leg, pairing))
             counts = len(pairing), len(set(pairing.targets.tolist()))
             done.append(

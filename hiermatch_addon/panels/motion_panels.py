@@ -46,7 +46,7 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
         if item.source_rig is not None and item.target_rig is not None:
             button.source, button.target = item.source_rig.name, item.target_rig.name
 
-    def filter_items(
+    def filter_items(  # type: ignore[override]
         self,
         context: bpy.types.Context,
         data: Any,  # noqa: ANN401 - Blender's own

@@ -15,6 +15,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..properties.bone_pairs import pairing_of
 from ..scene.armatures import armature_of, find_armature, read_rig, read_skeleton
+from ..scene.character import parts_of
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
 from ..scene.motion.rigged_body import rig_of
 from .weight_groups import locked_groups
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from ...engine import BonePairing, Skeleton, Steps
     from ..jobs.transfer import Passage
     from ..scene.armatures import SourceRig
+    from ..scene.character import Side
 
 __all__ = ["PairedWeightTransfer"]
 
@@ -58,8 +60,9 @@ class PairedWeightTransfer:
         self._task: _Task | None = None
         self._result: csr_array = csr_array((0, 0))
 
-    def read(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the weights, and the pairs of the two rigs."""
+        source, target = _only_mesh(source), _only_mesh(target)
         check_weights_writable(target)
         rig, armature = read_rig(source), find_armature(source)
         if rig is None or armature is None:
@@ -98,8 +101,9 @@ class PairedWeightTransfer:
         handed = paired_weights(carried.weights, vertices, task.pairing, task.rig.skeleton, task.skeleton)
         self._result = put_in(task.before, handed, task.columns, limit=self._limit)
 
-    def write(self, _context: bpy.types.Context, _source: bpy.types.Object, target: bpy.types.Object) -> TransferReport:
+    def write(self, _context: bpy.types.Context, _source: Side, target: Side) -> TransferReport:
         """Write the groups of the target's bones."""
+        target = _only_mesh(target)
         task = self._read_task
         written = task.columns.new & ~task.columns.locked
         present = np.array([name in target.vertex_groups for name in task.names], bool)
@@ -115,6 +119,20 @@ class PairedWeightTransfer:
         if self._task is None:
             raise RuntimeError("Nothing was read yet.")
         return self._task
+
+
+def _only_mesh(side: Side) -> bpy.types.Object:
+    """Return the only mesh of a side.
+
+    Raises
+    ------
+    ObjectError
+        If it has several.
+    """
+    parts = parts_of(side)
+    if len(parts) > 1:
+        raise ObjectError(f'"{side.name}" has several meshes. Carry weights to another rig from mesh to mesh.')
+    return parts[0]
 
 
 def _side_by_side(columns: list[Any]) -> csr_array:

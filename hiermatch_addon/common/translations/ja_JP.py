@@ -1270,6 +1270,9 @@ MESSAGES: Final[dict[str, str]] = {
     'The bones of "{0}" were changed. Pair the bones again.': (
         '"{0}"のボーンが変更されました。もう一度ボーンをペアにしてください。'
     ),
+    '"{0}" has several meshes. Carry weights to another rig from mesh to mesh.': (
+        '"{0}"には複数のメッシュがあります。他のリグへのウェイトはメッシュごとに移してください。'
+    ),
     'The vertex groups of all paired bones of "{0}" are locked on "{1}", or the bones do not deform. '
     "Unlock some of them.": (
         '"{0}"のペアになったボーンの頂点グループがすべて"{1}"でロックされているか、ボーンが変形しません。いくつか'

@@ -1043,6 +1043,9 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" 没有骨架骨骼的权重。请选择已绑定的源。'
     ),
     'The bones of "{0}" were changed. Pair the bones again.': '"{0}" 的骨骼已被更改。请重新配对骨骼。',
+    '"{0}" has several meshes. Carry weights to another rig from mesh to mesh.': (
+        '"{0}" 有多个网格。请逐个网格地将权重传递到另一套绑定。'
+    ),
     'The vertex groups of all paired bones of "{0}" are locked on "{1}", or the bones do not deform. '
     "Unlock some of them.": ('"{0}" 的所有配对骨骼的顶点组在 "{1}" 上已锁定，或这些骨骼不变形。请解锁其中一些。'),
     "Transferring rotations": "正在传递旋转",

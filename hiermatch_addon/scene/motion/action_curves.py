@@ -58,7 +58,7 @@ def slot_for(action: bpy.types.Action, armature: bpy.types.Object) -> Any:  # no
     slots = getattr(action, "slots", None)
     if not slots:
         return None
-    animation = armature.animation_data
+    animation: Any = armature.animation_data
     if animation is not None and animation.action == action and animation.action_slot is not None:
         return animation.action_slot
     fitting = [slot for slot in slots if slot.target_id_type in {"OBJECT", "UNSPECIFIED"}]
@@ -138,7 +138,7 @@ def _curves(action: bpy.types.Action, slot: Any) -> Iterator[Any]:  # noqa: ANN4
         return
     if slot is None:
         return
-    for layer in action.layers:
+    for layer in cast("Any", action).layers:
         for strip in layer.strips:
             bag = cast("Any", strip).channelbag(slot)
             if bag is not None:

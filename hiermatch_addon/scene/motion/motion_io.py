@@ -139,16 +139,16 @@ def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArr
     for bone, channel, curve in bone_curves(action, armature):
         curves.setdefault((bone, channel), {})[curve.array_index] = curve
     basis = np.tile(np.eye(4), (len(frames), len(pose.bones), 1, 1))
-    for number, bone in enumerate(pose.bones):
-        channel, _ = _ROTATIONS.get(bone.rotation_mode, _EULER)
+    for number, posed in enumerate(pose.bones):
+        channel, _ = _ROTATIONS.get(posed.rotation_mode, _EULER)
         read = {}
         for name in (channel, "location", "scale"):
-            found = curves.get((bone.name, name), {})
-            values = np.tile(np.array(getattr(bone, name), np.float64), (len(frames), 1))
+            found = curves.get((posed.name, name), {})
+            values = np.tile(np.array(getattr(posed, name), np.float64), (len(frames), 1))
             for index, curve in found.items():
                 values[:, index] = [curve.evaluate(frame) for frame in frames]
             read[name] = values
-        turn = rotation_matrices(read[channel], bone.rotation_mode)
+        turn = rotation_matrices(read[channel], posed.rotation_mode)
         basis[:, number, :3, :3] = turn * read["scale"][:, None]
         basis[:, number, :3, 3] = read["location"]
     return posed_motion(own_skeleton(armature), rest_matrices(armature), basis)
