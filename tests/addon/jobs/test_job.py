@@ -153,7 +153,7 @@ def test_an_object_of_the_same_name_is_not_the_same(pair):
 class Modal:
     """The operator without Blender around it: its own methods on a plain object."""
 
-    _worked, _drawn, _left_out = 0.0, 0.0, ""
+    _worked, _drawn, _left_out, _named = 0.0, 0.0, "", False
     doing, cancelled = HIERMATCH_OT_match.doing, HIERMATCH_OT_match.cancelled
     invoke, modal, cancel = HIERMATCH_OT_match.invoke, HIERMATCH_OT_match.modal, HIERMATCH_OT_match.cancel
     _finish, _show_progress = HIERMATCH_OT_match._finish, HIERMATCH_OT_match._show_progress  # noqa: SLF001
