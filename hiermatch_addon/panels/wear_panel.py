@@ -12,6 +12,7 @@ from ..properties.panel_state import state_of
 from ..transfers.options.wear import WearOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
 from .progress_bar import draw_progress
+from .retarget_panels import draw_report
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -41,7 +42,7 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
             item: Any = active
             box.prop(item.hiermatch_wear, "fit")
             box.prop(item.hiermatch_wear, "find_rigid")
-        options = retarget_of(context)
+        options: Any = retarget_of(context)
         names: Iterable[str] = tuple(WearOptions.__annotations__)
         for name in names:
             layout.prop(options, name)
@@ -50,3 +51,4 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         row = layout.row()
         row.scale_y = 1.5
         copy_named(options, row.operator("hiermatch.wear", icon="MATCLOTH"), [*names, "refine"])
+        draw_report(layout, context, options.report)

@@ -26,15 +26,19 @@ __all__ = ["MendedWeights", "mend_weights_steps"]
 _ANGLE = np.radians(50.0)
 """How far each joint is bent, about two axes and both ways."""
 
+_LARGE_PART = 0.02
+"""Part of the body's area that a bone and what hangs on it has to move to be tried: fingers and toes are not, which
+shoes and gloves hold."""
+
 _PARTLY = 0.02
 """Part of a vertex that a bone and what hangs on it has to move for the vertex to be looked at, and that it has not."""
 
 _NEAR = 0.03
 """Distance from the skin, in sqrt(area), of what lies on it."""
 
-_DEEPER, _FULLY = 0.004, 0.02
+_DEEPER, _FULLY = 0.006, 0.03
 """How deep in the skin, in the same unit, is poking through, and how deep calls for the weights of the skin
-alone: 5 and 27 mm on a human."""
+alone: 8 and 40 mm on a human."""
 
 _OUTSIDE = 0.001
 """How far outside, in the same unit, an item lies at rest that has to stay there: not the inside of a shoe."""
@@ -129,7 +133,7 @@ def mend_weights_steps(
             hanging = subtrees[bone]
             on_item, on_skin = (np.asarray(both[:, hanging].sum(axis=1)).ravel() for both in (mixed, skin_weights))
             chosen = np.flatnonzero(lying & (on_item > _PARTLY) & (on_item < 1 - _PARTLY))
-            if not len(chosen):
+            if not len(chosen) or on_skin @ body.vertex_areas < _LARGE_PART * body.area:
                 continue
             for rotation in _bends(skeleton.tails[bone] - skeleton.heads[bone]):
                 head = skeleton.heads[bone]
