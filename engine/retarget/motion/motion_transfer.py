@@ -85,6 +85,9 @@ class TransferredMotion:
     placed: NDArray[np.bool_]
     scale: float
 
+    def __repr__(self) -> str:
+        return f"<TransferredMotion: {int(self.moved.sum())} of {len(self.moved)} bones turn, scale {self.scale:.3g}>"
+
 
 def transfer_motion(
     motion: Motion,

@@ -78,6 +78,10 @@ class LocalTransforms:
     rotations: NDArray[np.float64]
     locations: NDArray[np.float64]
 
+    def __repr__(self) -> str:
+        poses, bones = self.locations.shape[:2]
+        return f"<LocalTransforms: {poses} poses of {bones} bones>"
+
 
 def posed_motion(skeleton: Skeleton, rest: NDArray[np.float64], basis: NDArray[np.float64]) -> Motion:
     """Pose a skeleton: forward kinematics.

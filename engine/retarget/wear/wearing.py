@@ -95,6 +95,9 @@ class WornItem:
     left: NDArray[np.bool_] | None = None
     margin: float = 0.0
 
+    def __repr__(self) -> str:
+        return f"<WornItem: {self.mesh.vertex_count} vertices, fit {self.fit}>"
+
 
 @dataclass(frozen=True, eq=False)
 class FittedItem:

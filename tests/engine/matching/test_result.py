@@ -10,7 +10,7 @@ import engine
 from engine import MatchSettings, Polygons, Shape, SurfaceMap, TriangleMesh, find_symmetry, match, retrieve
 from tests.shapes import creature
 
-PLAIN = {"MatchQuality", "MatchSettings", "Progress", "RetrievalSettings"}
+PLAIN = {"MatchQuality", "MatchSettings", "MotionSettings", "Progress", "RetrievalSettings"}
 """What has no arrays."""
 
 
