@@ -18,7 +18,7 @@ from ..shapes.prepared_surface import prepared_steps
 from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import CREDIBLE, overlap_match_steps
-from .partial_match import border_length, has_border, part_matched_steps
+from .partial_match import border_length, has_border, part_matched_steps, piece_matched_steps
 from .shape_matching import MatchTask, matched_steps
 
 if TYPE_CHECKING:
@@ -155,10 +155,18 @@ def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float) -> Steps[Match
 def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     """Match surfaces of which much may have been cut off: what they share first, and all of them if that is unclear."""
     overlap = yield from within(overlap_match_steps(x, y, task), 0.0, _OVERLAP)
+    cut = border_length(x) > _CUT, border_length(y) > _CUT
     if overlap is not None and overlap.credibility >= CREDIBLE and min(overlap.shares) < _SHARED:
-        return overlap.result
+        found = overlap.result
+        if all(cut) or found.source_to_target is None or found.target_to_source is None:
+            return found
+        # Where all of one surface is on the other, it is matched with that piece as with a whole surface, closer.
+        whole, shown = (x, found.source_to_target) if cut[1] else (y, found.target_to_source)
+        piece = shown.has_partner[whole.vertices]
+        closer = piece_matched_steps(found, x, y, task, piece, of_source=cut[1])
+        return (yield from within(closer, _OVERLAP, 1.0))
     try:
-        if border_length(x) > _CUT and border_length(y) > _CUT:
+        if all(cut):
             # Neither shows all of the other: no piece of one is to be looked for.
             result, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _OVERLAP, 1.0)
         else:

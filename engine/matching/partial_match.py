@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .result import MatchResult
     from .shape_matching import MatchTask
 
-__all__ = ["border_length", "has_border", "part_matched_steps"]
+__all__ = ["border_length", "has_border", "part_matched_steps", "piece_matched_steps"]
 
 _LEAST_BORDER = 0.1
 """Length of its border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
@@ -102,23 +102,58 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
         found += [(piece, whole is x) for piece in pieces]
     found.sort(key=lambda pair: pair[0].score)
     task.clock.lap("missing parts")
-    rounds = _MOST * _ROUNDS
     for number, (piece, of_source) in enumerate(found[:_MOST]):
-        way = _Way(x, y, of_source, task)
-        covered = piece.covered
-        for again in range(_ROUNDS):
-            begin, end = (_FOUND + (1 - _FOUND) * (number * _ROUNDS + again + i) / rounds for i in (0, 1))
-            other = yield from within(way.matched_steps(covered), begin, end)
-            if other is None or not _is_better(other, result, least, of_source=of_source):
-                break
-            # Its notes would speak of openings where a piece was cut out.
-            result = replace(other, notes=result.notes)
-            more = way.continued(other, covered)
-            if more is None:
-                break
-            covered = covered | more
+        begin, end = (_FOUND + (1 - _FOUND) * (number + i) / _MOST for i in (0, 1))
+        steps = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
+        result = yield from within(steps, begin, end)
         if result.quality is not None and not is_less_alike(result.quality.likeness, ALL_ALIKE):
             break
+    return result
+
+
+def piece_matched_steps(
+    result: MatchResult,
+    x: Shape,
+    y: Shape,
+    task: MatchTask,
+    piece: NDArray[np.bool_],
+    *,
+    of_source: bool,
+    least: float = CREDIBLE,
+) -> Steps[MatchResult]:
+    """Match with only a piece of one surface, and with more of it where the other goes on beyond.
+
+    Parameters
+    ----------
+    result : MatchResult
+        What is known so far.
+    x, y : Shape
+        The source and the target.
+    task : MatchTask
+        What is wanted.
+    piece : (n,) array of bool
+        Vertices of the surface that is to be cut down: of `x` if `of_source`, else of `y`.
+    of_source : bool
+        Which surface that is.
+    least : float
+        Likeness that a match with a piece needs to be taken.
+
+    Returns
+    -------
+    MatchResult
+        The most credible match, the given one among them.
+    """
+    way = _Way(x, y, of_source, task)
+    for again in range(_ROUNDS):
+        other = yield from within(way.matched_steps(piece), again / _ROUNDS, (again + 1) / _ROUNDS)
+        if other is None or not _is_better(other, result, least, of_source=of_source):
+            break
+        # Its notes would speak of openings where a piece was cut out.
+        result = replace(other, notes=result.notes)
+        more = way.continued(other, piece)
+        if more is None:
+            break
+        piece = piece | more
     return result
 
 
