@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..dense.credibility import CREDIBLE as LIKELY
 from ..hierarchical.settings import MatchSettings
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
@@ -18,7 +19,14 @@ from ..shapes.prepared_surface import prepared_steps
 from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import CREDIBLE, overlap_match_steps
-from .partial_match import border_length, has_border, part_matched_steps, piece_matched_steps
+from .partial_match import (
+    border_length,
+    has_border,
+    is_better_part,
+    part_matched_steps,
+    piece_matched_steps,
+    shows_all_of_part,
+)
 from .shape_matching import MatchTask, matched_steps
 
 if TYPE_CHECKING:
@@ -46,6 +54,9 @@ _SHARED = 0.8
 
 _OVERLAP, _FIRST_AFTER = 0.35, 0.6
 """Parts of the work after which it is known what surfaces share, and then how they match as they are."""
+
+_CLOSER = 0.5
+"""Part of the work with a part and the piece that it shares after which that is matched closely."""
 
 _HOPELESS = 0.1
 """Confidence up to which a match of surfaces as they are is not worth more than one of what they might share."""
@@ -157,14 +168,9 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     overlap = yield from within(overlap_match_steps(x, y, task), 0.0, _OVERLAP)
     cut = border_length(x) > _CUT, border_length(y) > _CUT
     if overlap is not None and overlap.credibility >= CREDIBLE and min(overlap.shares) < _SHARED:
-        found = overlap.result
-        if all(cut) or found.source_to_target is None or found.target_to_source is None:
-            return found
-        # Where all of one surface is on the other, it is matched with that piece as with a whole surface, closer.
-        whole, shown = (x, found.source_to_target) if cut[1] else (y, found.target_to_source)
-        piece = shown.has_partner[whole.vertices]
-        closer = piece_matched_steps(found, x, y, task, piece, of_source=cut[1])
-        return (yield from within(closer, _OVERLAP, 1.0))
+        if all(cut):
+            return overlap.result
+        return (yield from within(_part_steps(overlap.result, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))
     try:
         if all(cut):
             # Neither shows all of the other: no piece of one is to be looked for.
@@ -176,6 +182,26 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
             raise
         return overlap.result
     return _better(result, overlap)
+
+
+def _part_steps(overlap: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
+    """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
+
+    If some of the part has no partner then, it is looked for on all of the whole surface as well.
+    """
+    whole, shown = (x, overlap.source_to_target) if of_source else (y, overlap.target_to_source)
+    if shown is None:
+        return overlap
+    piece = shown.has_partner[whole.vertices]
+    steps = piece_matched_steps(overlap, x, y, task, piece, of_source=of_source)
+    result = yield from within(steps, 0.0, _CLOSER)
+    if shows_all_of_part(result, of_source=of_source):
+        return result
+    try:
+        other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
+    except MatchError:
+        return result
+    return other if is_better_part(other, result, LIKELY, of_source=of_source) else result
 
 
 def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:

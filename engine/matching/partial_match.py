@@ -24,7 +24,14 @@ if TYPE_CHECKING:
     from .result import MatchResult
     from .shape_matching import MatchTask
 
-__all__ = ["border_length", "has_border", "part_matched_steps", "piece_matched_steps"]
+__all__ = [
+    "border_length",
+    "has_border",
+    "is_better_part",
+    "part_matched_steps",
+    "piece_matched_steps",
+    "shows_all_of_part",
+]
 
 _LEAST_BORDER = 0.1
 """Length of its border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
@@ -104,8 +111,8 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
     task.clock.lap("missing parts")
     for number, (piece, of_source) in enumerate(found[:_MOST]):
         begin, end = (_FOUND + (1 - _FOUND) * (number + i) / _MOST for i in (0, 1))
-        steps = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
-        result = yield from within(steps, begin, end)
+        matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
+        result = yield from within(matching, begin, end)
         if result.quality is not None and not is_less_alike(result.quality.likeness, ALL_ALIKE):
             break
     return result
@@ -146,7 +153,7 @@ def piece_matched_steps(
     way = _Way(x, y, of_source, task)
     for again in range(_ROUNDS):
         other = yield from within(way.matched_steps(piece), again / _ROUNDS, (again + 1) / _ROUNDS)
-        if other is None or not _is_better(other, result, least, of_source=of_source):
+        if other is None or not is_better_part(other, result, least, of_source=of_source):
             break
         # Its notes would speak of openings where a piece was cut out.
         result = replace(other, notes=result.notes)
@@ -214,11 +221,17 @@ def _cut_steps(shape: Shape, covered: NDArray[np.bool_], name: str) -> Steps[Sha
     return (yield from within(with_limbs_steps(cut, name, np.arange(mesh.vertex_count)), 0.7, 1.0))
 
 
-def _is_better(other: MatchResult, result: MatchResult, least: float, *, of_source: bool) -> bool:
+def is_better_part(other: MatchResult, result: MatchResult, least: float, *, of_source: bool) -> bool:
     """Say whether a match with less of a surface is more credible than that with more of it, and credible enough."""
     if other.quality is not None and is_less_alike(other.quality.likeness, least):
         return False
     return _credibility(other, of_source=of_source) > _credibility(result, of_source=of_source)
+
+
+def shows_all_of_part(result: MatchResult, *, of_source: bool) -> bool:
+    """Say whether all of the part has a partner: all of the target, if the source is cut down, and the other way."""
+    quality = result.quality
+    return quality is not None and (quality.coverage if of_source else quality.source_coverage) >= _COVERED
 
 
 def _credibility(result: MatchResult, *, of_source: bool) -> float:
