@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-r"""How credible maps are: the score that they are compared by, and the probabilities that every decision is made by.
+r"""Credibility of maps: the score that they are compared by, and the probabilities that every decision is made by.
 
 The score of a map between samples is a weighted sum of the logarithms of its terms :math:`t_k`, see `map_energies`,
 

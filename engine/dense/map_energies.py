@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How credible a map between two surfaces is."""
+"""Energies of a map between two surfaces: the terms of its score."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which parts of a surface another one lacks, told by the maps between them."""
+"""Missing parts: regions of a surface without a counterpart on another, told by the maps between them."""
 
 from __future__ import annotations
 

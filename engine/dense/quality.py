@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a dense map may be trusted, in numbers and in a sentence."""
+"""Quality of a dense map, in numbers and in a sentence."""
 
 from __future__ import annotations
 

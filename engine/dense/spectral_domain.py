@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the search for maps between surfaces needs to know of one of them."""
+"""Spectral domains: samples, eigenfunctions and signatures of one surface, as the search for maps needs them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a surface is near to one of its vertices, along the surface."""
+"""Geodesic balls: the part of a surface near one of its vertices."""
 
 from __future__ import annotations
 

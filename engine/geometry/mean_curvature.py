@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a surface bends outwards or inwards around a point, at a chosen scale."""
+"""Mean curvature at a chosen scale."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a surface another one shows that is only a part of it."""
+"""The region of a surface that is covered by a part of it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where on a surface another one may belong that is only a part of it, such as the bust of a body."""
+"""Placements of a part, such as the bust of a body, on a whole surface."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a match returns."""
+"""The result of a match."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much a deformation bends and stretches a surface: the as-rigid-as-possible energy with smooth rotations."""
+"""Elastic energy of a deformation: as-rigid-as-possible, with smooth rotations."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the cleaning of a mesh tells its owner."""
+"""Notes on the cleaning of a mesh, for its owner."""
 
 from __future__ import annotations
 

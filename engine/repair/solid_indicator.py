@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is inside of surfaces that are open, lie in each other, or leave gaps: a function on a grid."""
+"""Indicator function, on a grid, of the solid inside surfaces that are open, lie in each other, or leave gaps."""
 
 from __future__ import annotations
 

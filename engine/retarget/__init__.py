@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is carried across a map."""
+"""Transfer of rigs, weights, values, motion and clothes across a map."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a surface ends: the openings of a garment, through which the body that wears it goes on."""
+"""Openings of a garment: ends of a surface through which the body that wears it goes on."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a helper does, a process beside this one that takes over parts of its work; see `worker`."""
+"""The main loop of a helper process, which takes over parts of the work of another; see `worker`."""
 
 from __future__ import annotations
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is computed once per surface: proxy meshes, samples, distances, operators."""
+"""Shapes: proxy meshes, samples, distances and operators, computed once per surface."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a mesh is matched: its main part, cleaned and not too dense, and the way back to the mesh."""
+"""Prepared surfaces: the main part of a mesh, cleaned and not too dense, and the way back to the mesh."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is matched in the place of a mesh: a coarse one instead of a million vertices, a finer one of few."""
+"""Proxy meshes: the remeshing of a mesh on which the match is computed, coarser for dense meshes."""
 
 from __future__ import annotations
 

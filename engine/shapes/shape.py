@@ -55,6 +55,7 @@ class _Operators:
 
     @cached_property
     def laplace(self) -> LaplaceBeltrami:
+        """The Laplace-Beltrami operator of the mesh."""
         return laplace_beltrami(self.mesh)
 
     def of(self, surface: PreparedSurface | None) -> _Operators:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the command says: results on the standard output, all else on the error stream.
+"""The console of the command: results on the standard output, all else on the error stream.
 
 Blender and its importers print on the standard output as they like.  The process that the command has for itself
 therefore turns that output over to the error stream, or to nothing if it is to be quiet, and keeps the real one for

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an operator of Blender's says when it fails, in a line."""
+"""Errors of Blender's operators, as one line."""
 
 from __future__ import annotations
 

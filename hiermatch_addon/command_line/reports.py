@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What became of a command, as JSON for other programs; `docs/command-line.md` describes it."""
+"""Reports of a command, as JSON for other programs; `docs/command-line.md` describes them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an operator or panel always finds in its context, typed.
+"""Typed access to the context of an operator or panel.
 
 Blender's own types call these optional, because a context may lack them in places where no operator runs.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What makes the standing demo cat a character: an armature, weights, shape keys, a UV map and a material."""
+"""The rig of the standing demo cat, with weights, shape keys, a UV map and a material."""
 
 from __future__ import annotations
 

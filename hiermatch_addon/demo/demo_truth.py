@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a match of the demo pair, as it is written on the objects, is from the truth."""
+"""Errors of a match of the demo pair, as it is written on the objects."""
 
 from __future__ import annotations
 

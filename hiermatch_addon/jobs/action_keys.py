@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which keys an armature gets for motion that was computed for it."""
+"""Keys of an armature for motion that was computed for it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What meshes were prepared to in this session, so that matching one of them again takes less time."""
+"""Prepared shapes of this session, so that matching a mesh again takes less time."""
 
 from __future__ import annotations
 

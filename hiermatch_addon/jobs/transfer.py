@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can be carried from one matched mesh to another, seen from outside: each kind reads, computes and writes."""
+"""The protocol of transfers between matched meshes: each kind reads, computes and writes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a match can be trusted that things are carried across, and what is doubtful about it."""
+"""The verdict on a match that things are carried across, and the doubts about it."""
 
 from __future__ import annotations
 

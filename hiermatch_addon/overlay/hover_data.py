@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which of the drawn pairs the mouse points at, and what is drawn to show it, as plain arrays."""
+"""The drawn pair under the mouse and its highlight, as plain arrays."""
 
 from __future__ import annotations
 

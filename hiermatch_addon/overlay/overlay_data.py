@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn over the viewport to show which places correspond, as plain arrays.
+"""The overlay's points and lines between corresponding places, as plain arrays.
 
 Nothing here knows the graphics card; all that it draws is computed here.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the overlay shows of a scene: read from the lists and from the meshes as they are shown."""
+"""The content of the overlay: read from the lists and from the meshes as they are shown."""
 
 from __future__ import annotations
 

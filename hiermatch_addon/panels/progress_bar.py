@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a job is, in the panel that it was started from, and the buttons that start one."""
+"""The progress bar of a job, in the panel that it was started from, and the buttons that start one."""
 
 from __future__ import annotations
 

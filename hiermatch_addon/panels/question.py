@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a running job asks, with a button for each answer."""
+"""The question of a running job, with a button for each answer."""
 
 from __future__ import annotations
 

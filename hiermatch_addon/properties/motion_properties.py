@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""What is kept on the scene for motion: the pairs of bones, and how motion is carried over."""
+"""The scene's properties for motion: the pairs of bones, and the options of carrying motion over."""
 
 from __future__ import annotations
 

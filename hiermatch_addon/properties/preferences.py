@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""What is set once for all files, in the preferences of the extension."""
+"""Preferences of the extension, set once for all files."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""What the panels for steering a match remember: the rows of their lists, and how the overlay is drawn."""
+"""Properties of the panels for steering a match: the rows of their lists, and the options of the overlay."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panel remembers of the match that was written last, or that the picked meshes carry."""
+"""The panel's summary of the match that was written last, or that the picked meshes carry."""
 
 from __future__ import annotations
 

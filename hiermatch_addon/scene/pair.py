@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which two objects or characters to match, and whether they can be matched."""
+"""The two objects or characters to match, and the checks that they can be matched."""
 
 from __future__ import annotations
 

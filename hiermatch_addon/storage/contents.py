@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a match writes on two objects, as plain arrays."""
+"""The content that a match writes on two objects, as plain arrays."""
 
 from __future__ import annotations
 

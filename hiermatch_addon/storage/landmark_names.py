@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the user calls landmarks, such as "Nose": kept on all meshes of both sides, by the landmarks' numbers."""
+"""Names of landmarks, such as "Nose": kept on all meshes of both sides, by the landmarks' numbers."""
 
 from __future__ import annotations
 

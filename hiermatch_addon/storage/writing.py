@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a match writes on objects, and how it is taken away again.
+"""Writing of a match on objects, and its removal.
 
 Everything new is built beside what is there under a temporary name; only when all of it stands on both objects, the
 old is removed and the new takes its name.  So a failure half way leaves the objects as they were.

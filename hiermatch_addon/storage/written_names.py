@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which vertex groups and attributes of an object are a match's own, and none of the artist's."""
+"""Names of the vertex groups and attributes that are a match's own, and none of the artist's."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which attributes of a mesh can be carried to another."""
+"""The attributes of a mesh that can be carried to another."""
 
 from __future__ import annotations
 

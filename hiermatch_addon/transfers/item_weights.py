@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which weights a fitted item gets: its own, or those of the skin below."""
+"""Weights of a fitted item: its own, or those of the skin below."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""What the retargeting panels remember: the options of all kinds, and what became of the last transfer."""
+"""The scene's properties for retargeting: the options of all kinds, and the report of the last transfer."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one mesh carries, made symmetric across the map to its own mirror image, in any pose and topology."""
+"""Symmetrising of values on one mesh, across the map to its own mirror image, in any pose and topology."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which vertex groups are carried, and which of them move bones."""
+"""The vertex groups that are carried, and those of them that move bones."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which parts of two meshes belong together: by size, shape and place, and where they touch what is mapped already."""
+"""Pairs of components of two meshes: by size, shape and place, and by where they touch what is mapped already."""
 
 from __future__ import annotations
 

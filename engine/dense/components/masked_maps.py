@@ -25,13 +25,16 @@ class _HasMaps(Protocol):
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     @property
-    def source_to_target(self) -> SurfaceMap | None: ...
+    def source_to_target(self) -> SurfaceMap | None:
+        """The map from the source."""
 
     @property
-    def target_to_source(self) -> SurfaceMap | None: ...
+    def target_to_source(self) -> SurfaceMap | None:
+        """The map from the target."""
 
     @property
-    def quality(self) -> MatchQuality | None: ...
+    def quality(self) -> MatchQuality | None:
+        """How far they can be trusted."""
 
 
 Maps = TypeVar("Maps", bound=_HasMaps)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How space around a surface moves with it: local similarities fitted to a map of the surface."""
+"""Local similarities fitted to a map of a surface: the motion of the space around it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What two surfaces share, and how it corresponds, in full resolution."""
+"""The overlap of two surfaces and the maps between its two sides, in full resolution."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How credible it is that two surfaces overlap as a registration has it."""
+"""The score of an overlap of two surfaces, by the registration that it comes from."""
 
 from __future__ import annotations
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What hangs together in a mesh: half-edges, neighbours, components, borders, orientation."""
+"""Connectivity of a mesh: half-edges, neighbours, components, borders, orientation."""

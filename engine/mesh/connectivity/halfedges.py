@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which triangles belong together across each edge, also where an edge has more than two."""
+"""Paired half-edges of triangles, also where an edge has more than two."""
 
 from __future__ import annotations
 

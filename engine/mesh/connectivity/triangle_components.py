@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which triangles hang together across paired half-edges."""
+"""Connected components of triangles across paired half-edges."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which bones of two rigs belong together, by the surface that they move and the joints around which they turn."""
+"""Pairs of bones of two rigs, by the surface that they move and the joints around which they turn."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which bones carry which joints of a rig into another body, also those of bones that move no vertex.
+"""Carriers of joints: the bones that take a joint of a rig into another body, also for bones that move no vertex.
 
 Joints at one place stay at one place: a chain stays connected, and a control that stands at an ankle stands at the
 ankle.  So joints are grouped by their place first, and each group is carried as one point, by one or several bones.

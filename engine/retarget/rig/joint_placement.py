@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the joints of a rig go in another body, and how its bones are turned there."""
+"""Places of a rig's joints in another body, and the turns of its bones there."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a deformation turns and scales a surface around each vertex: what directions on it have to go through as well."""
+"""Deformation gradients: rotation and scale of a deformation around each vertex, for directions on the surface."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the faces of one mesh, and their corners, lie on another that its vertices are mapped to."""
+"""Places of the faces of one mesh, and of their corners, on another that its vertices are mapped to."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How space around a body moves with it, when the body becomes another one: what it wears moves like that."""
+"""Motion of the space around a body that becomes another one, which takes along what the body wears."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far clothes are from skin, or from what is worn below, and which way they have to move where they are inside."""
+"""Clearance of clothes above skin or what is worn below, and the way out of it where they are inside."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which vertices surely got the weights of a wrong place: those that a map tears away from their neighbours."""
+"""Rejection of weights of a wrong place: at vertices that a map tears away from their neighbours."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How close together the vertices of a coarse mesh should be, from place to place."""
+"""Sizing field of a coarse mesh: the distance of its vertices from place to place."""
 
 from __future__ import annotations
 

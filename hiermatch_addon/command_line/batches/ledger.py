@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is known of the pairs of a batch: one report each, in one folder, that outlives every interruption."""
+"""The ledger of a batch: one report for each pair, in one folder, that outlives every interruption."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ruff: noqa: N999 - this is how Blender calls the language
-"""What the interface says, in Simplified Chinese: the English as it stands in the code, and its translation."""
+"""Texts of the interface in Simplified Chinese: the English as it stands in the code, and its translation."""
 
 from __future__ import annotations
 

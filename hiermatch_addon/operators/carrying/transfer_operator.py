@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""What all operators have in common that carry something from a source to targets."""
+"""Common base of the operators that carry something from a source to targets."""
 
 from __future__ import annotations
 

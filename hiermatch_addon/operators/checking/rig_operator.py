@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which target is meant by the operators that look at what a retarget has made."""
+"""Common base of the operators that look at the result of a retarget: the target that is meant."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators between two armatures have in common: which two, named or picked or selected."""
+"""Common base of the operators between two armatures, named or picked or selected."""
 
 from __future__ import annotations
 

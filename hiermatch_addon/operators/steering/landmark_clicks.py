@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators have in common that wait for clicks on corresponding places of two meshes."""
+"""Common base of the operators that wait for clicks on corresponding places of two meshes."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""What operators on the landmarks and matched points of two meshes have in common."""
+"""Common base of the operators on the landmarks and matched points of two meshes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which vertices are meant: by a selection, by empties, or by a click into the viewport."""
+"""Picked vertices: by a selection, by empties, or by a click into the viewport."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a dense map stretches the surface around each vertex."""
+"""Stretch of the surface around each vertex by a dense map."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can be seen of a match in colours: color attributes of both meshes, made when they are wanted first."""
+"""Views of a match in colours: color attributes of both meshes, made when they are wanted first."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a target gets its rig: Blender's options, and the plain settings that they make."""
+"""Options of fitting a rig: Blender's properties, and the plain settings that they make."""
 
 from __future__ import annotations
 

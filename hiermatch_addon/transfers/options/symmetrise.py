@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a mesh is made symmetric: Blender's options, and the plain settings that they make."""
+"""Options of making a mesh symmetric: Blender's properties, and the plain settings that they make."""
 
 from __future__ import annotations
 

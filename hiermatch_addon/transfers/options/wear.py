@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""How clothes are fitted to another body: Blender's options, and the plain settings that they make."""
+"""Options of fitting clothes: Blender's properties, and the plain settings that they make."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How one mesh is laid onto another: Blender's options, and the plain settings that they make."""
+"""Options of wrapping one mesh onto another: Blender's properties, and the plain settings that they make."""
 
 from __future__ import annotations
 
