@@ -13,7 +13,8 @@ of the deformation that lays one surface onto the other,
 .. math:: \ell = -s - 4 \log E.
 
 From the likeness follows how probable it is that the map as a whole is right, by a logistic function that
-``python -m tests.benchmarks.calibration`` fits on pairs whose truth is known [1]_.
+``python -m tests.benchmarks.calibration`` is to fit on pairs whose truth is known [1]_; the constants of today are
+older than that command.
 
 References
 ----------
