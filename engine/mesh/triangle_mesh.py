@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 __all__ = ["TriangleMesh"]
 
+_FARTHEST = 1e75
+"""Coordinate, in any unit, up to which the squares of areas are numbers: their fourth powers are below 1e308."""
+
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
@@ -221,6 +224,13 @@ def _as_vertices(vertices: ArrayLike) -> NDArray[np.float64]:
         raise MeshError(
             f"{bad.sum()} of {len(array)} vertices have a position that is not a finite number, "
             f"vertex {np.flatnonzero(bad)[0]} first. Delete these vertices or repair them."
+        )
+    far = (np.abs(array) > _FARTHEST).any(axis=1)
+    if far.any():
+        raise MeshError(
+            f"{far.sum()} of {len(array)} vertices are too far away for areas to be computed, "
+            f"vertex {np.flatnonzero(far)[0]} first, at {np.abs(array).max():.0e}. "
+            "Delete these vertices or repair them."
         )
     return _read_only(array)
 

@@ -110,7 +110,9 @@ MECHANISMS = {
     "joined pieces": [("engine.matching.matching.matched_with_pieces_steps", lambda _: pieces_apart)],
     "parts": [("engine.matching.matching.part_matched_steps", lambda _: lambda result, *_given: returned(result))],
     "spikes pulled in": [("engine.repair.cleaning._pull_in_spikes", lambda _: nothing)],
-    "pinched gaps": [("engine.repair.cleaning.pinched_gaps", lambda _: lambda *_given: np.empty(0, np.int64))],
+    "pinched gaps": [
+        ("engine.repair.cleaning.pinched_gaps", lambda _: lambda *_given: (np.empty((0, 3), np.int64),) * 2)
+    ],
 }
 """Mechanism -> what is put in the place of what, made of the latter."""
 

@@ -81,6 +81,14 @@ def test_closest_in_needles(width):
         assert_closest(points, turned, *closest_in_triangles(points, *turned.transpose(1, 0, 2)), tolerance=1e-13)
 
 
+@pytest.mark.parametrize("scale", [1.0, 1e12])
+def test_triangles_whose_corners_nearly_coincide_are_edges(scale):
+    points, a, b = scale * np.random.default_rng(0).normal(size=(3, 500, 3))
+    with np.errstate(all="raise", under="ignore"):
+        result = closest_in_triangles(points, a, b, np.nextafter(b, a))
+    assert_closest(points, np.stack([a, b, b], axis=1), *result, tolerance=1e-13)
+
+
 def test_points_of_the_triangles_are_their_own_closest_points():
     random = np.random.default_rng(0)
     corners = random.normal(size=(500, 3, 3))

@@ -19,6 +19,7 @@ TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
         (np.empty((0, 3)), [[0, 1, 2]], "no vertices"),
         ([[0, 0, 0], [1, 0, 0], [0, np.nan, 0]], [[0, 1, 2]], "1 of 3 vertices .* vertex 2 first"),
         ([[0, 0, np.inf], [1, 0, 0], [0, np.nan, 0]], [[0, 1, 2]], "2 of 3 vertices .* vertex 0 first"),
+        ([[0, 0, 0], [1, 0, 0], [0, -1e300, 0]], [[0, 1, 2]], r"1 of 3 .* far away .* vertex 2 first, at 1e\+300"),
         (TRIANGLE, [], "no faces"),
         (TRIANGLE, np.empty((0, 3), int), "no faces"),
         (TRIANGLE, [[0, 1, 2], [0, 1]], r"not an \(m, 3\) array of vertex indices"),
