@@ -47,7 +47,7 @@ from .retarget.weights.weight_transfer import CarriedWeights, Columns, carry_wei
 from .retarget.wrapping import WrappedSurface, kept_in_place, wrap_steps
 from .runtime.background import Background, called_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
-from .runtime.progress import Progress, Steps, run, within
+from .runtime.progress import Preview, Progress, Steps, run, within
 from .runtime.worker import close_helpers, use_processes
 from .shapes.known_shapes import KnownShapes
 from .shapes.shape import Shape
@@ -85,6 +85,7 @@ __all__ = [
     "MotionSettings",
     "PlacedJoints",
     "Polygons",
+    "Preview",
     "Progress",
     "RestPose",
     "Retrieval",

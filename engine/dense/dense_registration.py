@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
-from ..runtime.progress import Steps, within
+from ..registration.registration import points_at
+from ..runtime.progress import Preview, Progress, Steps, within
 from .dense_hypotheses import USUAL, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
 from .proposers import PROPOSERS, Contest, are_distinct, contenders
@@ -121,6 +122,7 @@ def registered_pair_steps(
             x, y, starts, search=search, mirrored=False, searched=searched, selection=selection
         )
         hypotheses = yield from within(proposals, 0.1, 0.4)
+        yield Progress(0.4, "Comparing maps", _preview(hypotheses[0]))
     else:
         steered = yield from within(steered_hypotheses_steps(x, y, starts, landmarks, search=search), 0.1, 0.4)
         x, hypotheses, mirrored = steered.x, steered.hypotheses, steered.mirrored
@@ -141,6 +143,8 @@ def registered_pair_steps(
     follow = Follower(x, y, source, target, ties, ties_back)
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
+    if not mirrored:  # of the surface as it was given
+        yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
     # Where no map is looked for, the one that is given is followed as it is.
     proposers = PROPOSERS if search else ()
     contest = Contest(follow, landmarks, selection)
@@ -157,6 +161,15 @@ def registered_pair_steps(
     margin = _margin(best, others, fits, () if as_they_are else untried, source.mass)
     registered = closest.registration, closest.reverse, (best, *others)
     return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips)
+
+
+def _preview(hypothesis: MapHypothesis, registration: Registration | None = None) -> Preview:
+    """Show where samples correspond by a hypothesis, or by the registration that it led to."""
+    x, y = hypothesis.domains
+    places, there = x.shape.mesh.vertices[x.vertices], y.shape.mesh
+    if registration is None:
+        return Preview(places, there.vertices[y.vertices[hypothesis.points.on_y]])
+    return Preview(places, points_at(registration.on_target, there.triangles, there.vertices)[x.vertices])
 
 
 def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[CloseFit]]:

@@ -8,12 +8,33 @@ A long computation is a generator that yields `Progress` in short steps and retu
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass
-from typing import TypeVar
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, TypeVar
 
-__all__ = ["Progress", "Steps", "run", "within"]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["Preview", "Progress", "Steps", "run", "within"]
 
 Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, eq=False)
+class Preview:
+    """A coarse map that may be the result, known long before it.
+
+    Attributes
+    ----------
+    source, target : (k, 3) array of float
+        Corresponding places of two surfaces, in the space of either.
+    """
+
+    source: NDArray[np.float64]
+    target: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        return f"<Preview: {len(self.source)} places>"
 
 
 @dataclass(frozen=True)
@@ -26,10 +47,13 @@ class Progress:
         Part of the work that is done, 0 to 1; never decreases within one computation.
     label : str
         What is being done, for a person to read.
+    preview : Preview or None
+        What has just become known of the result.
     """
 
     fraction: float
     label: str
+    preview: Preview | None = field(default=None, compare=False)
 
 
 Steps = Generator[Progress, None, Result]
@@ -73,6 +97,7 @@ def within(steps: Steps[Result], start: float, end: float, label: str | None = N
                 progress = next(steps)
             except StopIteration as stop:
                 return stop.value
-            yield Progress(start + (end - start) * progress.fraction, label or progress.label)
+            fraction = start + (end - start) * progress.fraction
+            yield replace(progress, fraction=fraction, label=label or progress.label)
     finally:
         steps.close()

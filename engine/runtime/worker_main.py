@@ -8,6 +8,7 @@ import pickle
 import time
 import traceback
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from .blas_threads import one_thread
@@ -17,7 +18,7 @@ from .pipes import can_take, has_more, receive, send
 from .progress import run
 
 if TYPE_CHECKING:
-    from .progress import Steps
+    from .progress import Preview, Steps
 
 __all__ = ["READY", "serve"]
 
@@ -66,6 +67,7 @@ class _Work:
 
     def __init__(self, orders: int, told: int | None) -> None:
         self._orders, self._told, self._last = orders, told, 0.0
+        self._preview: Preview | None = None  # what has not been told yet
 
     def result(self, steps: Steps[Result]) -> Result | tuple[Result, list[str]]:
         """Do it; with what was warned of if it is followed."""
@@ -85,9 +87,10 @@ class _Work:
                 return stop.value
             if has_more(self._orders):  # no order comes before a reply: the other side is gone
                 raise SystemExit
+            self._preview = progress.preview or self._preview
             if self._told is not None and time.monotonic() - self._last >= _TOLD and can_take(self._told):
-                send(self._told, pack((None, progress)))
-                self._last = time.monotonic()
+                send(self._told, pack((None, replace(progress, preview=self._preview))))
+                self._last, self._preview = time.monotonic(), None
             yield progress
 
 

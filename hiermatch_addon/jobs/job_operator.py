@@ -10,14 +10,15 @@ import bpy
 
 from ...engine import HierMatchError
 from ..common.access import view_layer_of, window_manager_of
-from ..common.redraw import redraw_sidebars
+from ..common.redraw import redraw_sidebars, redraw_views
 from ..common.translated_text import translated
 from ..properties.panel_state import progress_of
+from .shown_preview import show_preview
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-    from ...engine import Progress
+    from ...engine import Preview, Progress
 
     _Operator = bpy.types.Operator
 else:
@@ -42,6 +43,7 @@ class Job(Protocol):
     """Work that goes on step by step and writes nothing until it is finished."""
 
     progress: Progress
+    preview: Preview | None
 
     def work_beside(self) -> None:
         """Let the engine compute in another process, where there can be one."""
@@ -151,12 +153,15 @@ class JobOperator(_Operator):
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:
             workspace.status_text_set(None)
-        redraw_sidebars(window_manager_of(context))
+        show_preview(None)
+        redraw_views(window_manager_of(context))
 
     def _show_progress(self, context: bpy.types.Context) -> None:
         """Show how far the job is, in the panel and the status bar."""
         now, shown = self._job.progress, progress_of(context)
         shown.fraction, shown.label = now.fraction, now.label
+        if show_preview(self._job.preview):
+            redraw_views(window_manager_of(context))
         if time.perf_counter() - self._drawn < _REDRAW:
             return
         self._drawn = time.perf_counter()

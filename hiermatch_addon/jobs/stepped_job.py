@@ -13,7 +13,7 @@ from ...engine import Background, Progress
 if TYPE_CHECKING:
     import bpy
 
-    from ...engine import Steps
+    from ...engine import Preview, Steps
 
 __all__ = ["SteppedJob"]
 
@@ -29,10 +29,13 @@ class SteppedJob(ABC):
     ----------
     progress : Progress
         How far the work is.
+    preview : Preview or None
+        The latest coarse map that has become known on the way.
     """
 
     def __init__(self) -> None:
         self.progress = Progress(0.0, "Starting")
+        self.preview: Preview | None = None
         self._steps: Steps[Any] = self._all_steps()
         self._done = False
         self._background: Background | None = None
@@ -59,6 +62,7 @@ class SteppedJob(ABC):
                     self.progress = next(self._steps)
                 except StopIteration:
                     self._done = True
+                self.preview = self.progress.preview or self.preview
                 if time.perf_counter() >= end or (self._background is not None and self._background.is_waiting):
                     break
         return self._done

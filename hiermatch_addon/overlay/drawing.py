@@ -18,12 +18,16 @@ from bpy.app.handlers import persistent
 from gpu_extras.batch import batch_for_shader
 
 from ..common.translated_text import translated
+from ..jobs.shown_preview import preview
 from .hover_data import hovered, pointed_at
-from .overlay_data import Drawing, project
+from .overlay_data import Drawing, preview_points, project
 from .overlay_io import read_drawing, signature
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from ...engine import Preview
+    from .overlay_data import PointCloud
 
 __all__ = ["draw_hovered", "pair_under_mouse", "show_pending", "start_overlay", "stop_overlay"]
 
@@ -54,6 +58,7 @@ class _Overlay:
         self._points: list[tuple[Any, Any, float]] = []
         self._lines: list[tuple[Any, float]] = []
         self._label_places: NDArray[np.float64] = np.empty((0, 3))
+        self._previewed: tuple[Preview | None, list[tuple[Any, Any, float]]] = (None, [])
         self._shaders: dict[str, Any] = {}
 
     def update(self, context: bpy.types.Context) -> bool:
@@ -75,16 +80,20 @@ class _Overlay:
         """Draw lines and points, in the world."""
         context = bpy.context
         space = cast("bpy.types.SpaceView3D", context.space_data)
-        if not space.overlay.show_overlays or not self.update(context):
+        if not space.overlay.show_overlays:
+            return
+        lines, points = (self._lines, self._points) if self.update(context) else ([], [])
+        points = [*points, *self._preview_points()]
+        if not lines and not points:
             return
         scale = cast("Any", context.preferences).system.ui_scale
         state, matrices, shader = _gpu.state, _gpu.matrix, self._shader("POLYLINE_FLAT_COLOR")
         state.blend_set("ALPHA")
         state.depth_mask_set(False)  # noqa: FBT003 - Blender's own
-        if self._lines:
+        if lines:
             shader.bind()
             shader.uniform_float("viewportSize", state.viewport_get()[2:])
-        for batch, width in self._lines:
+        for batch, width in lines:
             shader.uniform_float("lineWidth", width * scale)
             batch.draw(shader)
         with matrices.push_pop_projection():
@@ -94,7 +103,7 @@ class _Overlay:
             shader = self._point_shader()
             for behind in (True, False):
                 state.depth_test_set("GREATER" if behind else "LESS_EQUAL")
-                for faint, bright, width in self._points:
+                for faint, bright, width in points:
                     state.point_size_set(width * scale)
                     (faint if behind else bright).draw(shader)
         state.depth_test_set("NONE")
@@ -162,20 +171,29 @@ class _Overlay:
 
     def _upload(self) -> None:
         """Make the batches."""
-        points, lines = self._point_shader(), self._shader("POLYLINE_FLAT_COLOR")
-        self._points = [
-            (
-                batch_for_shader(points, "POINTS", {"pos": cloud.positions, "color": cloud.faint}),
-                batch_for_shader(points, "POINTS", {"pos": cloud.positions, "color": cloud.colors}),
-                cloud.width,
-            )
-            for cloud in self._drawing.points
-        ]
+        lines = self._shader("POLYLINE_FLAT_COLOR")
+        self._points = [self._point_batches(cloud) for cloud in self._drawing.points]
         self._lines = [
             (batch_for_shader(lines, "LINES", {"pos": group.positions, "color": group.colors}), group.width)
             for group in self._drawing.lines
         ]
         self._label_places = np.array([label.place for label in self._drawing.labels], np.float64).reshape(-1, 3)
+
+    def _point_batches(self, cloud: PointCloud) -> tuple[Any, Any, float]:
+        """Make what draws points where a surface hides them, and where they are seen, and their width."""
+        shader = self._point_shader()
+        faint, bright = (
+            batch_for_shader(shader, "POINTS", {"pos": cloud.positions, "color": colors})
+            for colors in (cloud.faint, cloud.colors)
+        )
+        return faint, bright, cloud.width
+
+    def _preview_points(self) -> list[tuple[Any, Any, float]]:
+        """Return what draws the coarse map of the job that runs, if there is any."""
+        found = preview()
+        if found is not self._previewed[0]:
+            self._previewed = found, [] if found is None else [self._point_batches(preview_points(found))]
+        return self._previewed[1]
 
     def _shader(self, name: str) -> Any:  # noqa: ANN401 - Blender's stubs leave it open
         if name not in self._shaders:

@@ -11,12 +11,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..storage.views.colors import distortion_colors
+from ..storage.views.colors import distortion_colors, match_colors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Drawing", "Label", "Lines", "Marks", "Places", "PointCloud", "Shown", "drawing", "place", "project"]
+    from ...engine import Preview
+
+__all__ = [
+    "Drawing",
+    "Label",
+    "Lines",
+    "Marks",
+    "Places",
+    "PointCloud",
+    "Shown",
+    "drawing",
+    "place",
+    "preview_points",
+    "project",
+]
 
 _POINT, _LANDMARK, _CHOSEN = 6.0, 9.0, 13.0
 """Widths of points, in pixels at normal interface scale."""
@@ -132,6 +146,13 @@ class Drawing:
     pairs: Marks = _NONE
     landmarks: Marks = _NONE
     distortion: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+
+
+def preview_points(preview: Preview) -> PointCloud:
+    """Show corresponding places of two surfaces in the same colour, that of the place on the source."""
+    colors = np.column_stack([match_colors(preview.source), np.ones(len(preview.source))])
+    both = np.concatenate([preview.source, preview.target])
+    return PointCloud(_buffer(both), _buffer(np.concatenate([colors, colors])), _LANDMARK)
 
 
 def place(positions: NDArray[np.float32], places: Places, matrix: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -12,9 +12,12 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine import HierMatchError, MatchSettings, close_helpers, use_processes
+from hiermatch.engine.mesh.closest_points import ClosestPoints
+from hiermatch.engine.registration.registration import points_at
 from hiermatch.engine.runtime.worker import call_background
 from hiermatch.hiermatch_addon.jobs.job import JobOptions, MatchJob, job_options
 from hiermatch.hiermatch_addon.jobs.transfer_job import TransferJob, TransferOptions
+from hiermatch.hiermatch_addon.scene.character import read_surface
 from hiermatch.hiermatch_addon.transfers.options.retarget import chosen_transfers
 
 from tests.addon.rigs import add_rigged_pair
@@ -64,11 +67,29 @@ def test_a_match_writes_the_same(dense_pair):
     written = [{name: values_of(obj.data.attributes[name]) for name in MAP_ATTRIBUTES} for obj in dense_pair]
     job = MatchJob(bpy.context, source, target, JobOptions(settings=MatchSettings(**DENSE)))
     job.work_beside()
-    advance(job)
-    job.finish(bpy.context.view_layer)
+    seen = []
+    advance(job, lambda: seen.append((job.progress.fraction, job.preview)))
+    outcome = job.finish(bpy.context.view_layer)
+    assert_previewed([(fraction, found) for fraction, found in seen if found is not None], dense_pair, outcome.result)
     for obj, before in zip(dense_pair, written, strict=True):
         for name in MAP_ATTRIBUTES:
             np.testing.assert_array_equal(values_of(obj.data.attributes[name]), before[name])
+
+
+def assert_previewed(seen, pair, result):
+    """Assert that a coarse map was known well before the end, on both surfaces and near the map that came of it."""
+    fraction, preview = seen[0]
+    assert fraction < 0.8
+    assert len({id(found) for _, found in seen}) <= 3
+    surfaces = [read_surface(obj, bpy.context.evaluated_depsgraph_get(), use_modifiers=False) for obj in pair]
+    size = np.sqrt(surfaces[1].area)
+    found = [
+        ClosestPoints(mesh).nearest(points)
+        for mesh, points in zip(surfaces, (preview.source, preview.target), strict=True)
+    ]
+    assert max(np.sqrt(one.squared_distances).max() for one in found) < 0.02 * size
+    images = points_at(found[0], surfaces[0].triangles, result.source_to_target.positions)
+    assert np.linalg.norm(images - preview.target, axis=1).mean() < 0.1 * size
 
 
 def test_what_is_carried_is_the_same(tmp_path):

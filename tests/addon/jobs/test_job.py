@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+from itertools import chain, repeat
 from types import SimpleNamespace
 
 import bpy
+import numpy as np
 import pytest
-from hiermatch.engine import HierMatchError, MatchSettings, Progress
+from hiermatch.engine import HierMatchError, MatchSettings, Preview, Progress
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.jobs.job import JobOptions, MatchJob
+from hiermatch.hiermatch_addon.jobs.shown_preview import preview
 from hiermatch.hiermatch_addon.operators.match import HIERMATCH_OT_match
 
 from tests.addon.scenes import QUICK, add_blob, add_pair, snapshot, weights_of
@@ -195,6 +198,18 @@ def test_it_shows_how_far_it_is(operator):
         shown = bpy.context.window_manager.hiermatch
         assert (shown.fraction, shown.label) == (pytest.approx(share), "Weighing")
     operator.send("ESC")
+
+
+def test_a_coarse_map_is_shown_until_it_ends(operator):
+    before, found = snapshot(), Preview(np.zeros((2, 3)), np.ones((2, 3)))
+    told = [Progress(0.4, "Comparing maps", found), Progress(0.6, "Fitting the surfaces")]
+    operator._job._steps = (progress for progress in chain(told, repeat(told[-1])))  # noqa: SLF001
+    while operator._job.progress.fraction < 0.6:  # noqa: SLF001
+        operator.send("TIMER")
+        assert preview() is found
+    operator.send("ESC")
+    assert preview() is None
+    assert snapshot() == before
 
 
 @pytest.mark.parametrize("event", ["MOUSEMOVE", "MIDDLEMOUSE", "Z"])

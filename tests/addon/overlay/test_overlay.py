@@ -8,7 +8,16 @@ import ast
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.overlay.overlay_data import Marks, Places, Shown, drawing, place, project
+from hiermatch.engine import Preview
+from hiermatch.hiermatch_addon.overlay.overlay_data import (
+    Marks,
+    Places,
+    Shown,
+    drawing,
+    place,
+    preview_points,
+    project,
+)
 from hiermatch.hiermatch_addon.overlay.overlay_io import read_drawing, signature
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks
 from hiermatch.hiermatch_addon.storage.views.colors import distortion_colors
@@ -68,6 +77,13 @@ class TestData:
         assert found.points[-1].width > found.points[0].width
         assert found.points[-1].positions == pytest.approx(np.stack([pairs.source[2], pairs.target[2]]), abs=1e-6)
         assert found.lines[-1].width > found.lines[0].width
+
+    def test_a_preview_has_the_same_color_at_both_ends(self):
+        source, target = np.random.default_rng(0).normal(size=(2, 50, 3))
+        cloud = preview_points(Preview(source, target))
+        assert cloud.positions == pytest.approx(np.concatenate([source, target]), abs=1e-6)
+        assert (cloud.colors[:50] == cloud.colors[50:]).all()
+        assert len(np.unique(cloud.colors[:50], axis=0)) > 40
 
     def test_landmarks_that_are_off_are_grey(self):
         found = drawing(NONE, np.empty(0), marks(2), np.array([True, False]), Shown())
