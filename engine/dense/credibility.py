@@ -12,9 +12,9 @@ of the deformation that lays one surface onto the other,
 
 .. math:: \ell = -s - 4 \log E.
 
-From the likeness follows how probable it is that the map as a whole is right, by a logistic function that
-``python -m tests.benchmarks.calibration`` is to fit on pairs whose truth is known [1]_; the constants of today are
-older than that command.
+From the likeness follows how probable it is that the map as a whole is right, by a logistic function.  Its constants
+were chosen by hand; ``python -m tests.benchmarks.calibration`` compares them with a fit [1]_ on pairs whose truth is
+known, which so far says less than they do.
 
 References
 ----------
