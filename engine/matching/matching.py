@@ -22,6 +22,7 @@ from .overlap.overlap_match import CREDIBLE, overlap_match_steps
 from .partial_match import (
     border_length,
     has_border,
+    is_all_alike,
     is_better_part,
     part_matched_steps,
     piece_matched_steps,
@@ -187,7 +188,8 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
 def _part_steps(overlap: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
-    If some of the part has no partner then, it is looked for on all of the whole surface as well.
+    If some of the part has no partner then, or the piece is less like it than one body is like itself in another pose,
+    all of the whole surface is tried as well: a body whose faces are missing here and there is no part.
     """
     whole, shown = (x, overlap.source_to_target) if of_source else (y, overlap.target_to_source)
     if shown is None:
@@ -195,7 +197,7 @@ def _part_steps(overlap: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of
     piece = shown.has_partner[whole.vertices]
     steps = piece_matched_steps(overlap, x, y, task, piece, of_source=of_source)
     result = yield from within(steps, 0.0, _CLOSER)
-    if shows_all_of_part(result, of_source=of_source):
+    if shows_all_of_part(result, of_source=of_source) and is_all_alike(result):
         return result
     try:
         other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
