@@ -12,7 +12,7 @@ from scipy.ndimage import binary_closing, binary_opening
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["contacts_of", "held_shifts"]
+__all__ = ["contacts_of", "grounded_lifts", "held_shifts"]
 
 _LOW = 0.08
 """How far above its lowest place a point may be that stands, in units of the leg."""
@@ -106,6 +106,33 @@ def held_shifts(
         place = place + (level - place @ up) * up
         shifts[begin:end] = place - path
     return _faded(shifts, holding >= 0, max(1, round(_FADE * rate)))
+
+
+def grounded_lifts(
+    heights: NDArray[np.float64], wanted: NDArray[np.float64], level: NDArray[np.float64], length: float
+) -> NDArray[np.float64]:
+    """Find how far a foot has to be lifted in each pose so that it is as near to the ground as it should be.
+
+    This needs no foot that stands: in a walk on the spot the ground moves below it.
+
+    Parameters
+    ----------
+    heights, wanted : (f, 2) array of float
+        How high ankle and ball of the foot are, and how high they should be.
+    level : (2,) array of float
+        How high they are when the foot rests on the ground.
+    length : float
+        Length of the leg.
+
+    Returns
+    -------
+    (f,) array of float
+        The lift, none for a foot far above the ground; neither point is below the ground then unless it should be.
+    """
+    shares = (1 - (wanted - level) / (2 * _LOW * length)).clip(0, 1)
+    lifts = (shares**2 * (wanted - heights)).sum(axis=1) / np.maximum(shares.sum(axis=1), np.finfo(float).tiny)
+    sunk = np.minimum(wanted, level) - heights - lifts[:, None]
+    return np.asarray(lifts + sunk.max(axis=1).clip(0))
 
 
 def _faded(values: NDArray[np.float64], held: NDArray[np.bool_], span: int) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,20 +38,20 @@ class Limb:
         The upper and the lower segment.
     upper, lower : arrays of int
         The target's bones in them.
-    source_joints, target_joints : tuple of four joints
-        Where the upper segment begins, the lower one begins and ends, and a further point beyond, such as ankle and
-        ball of a foot; the end twice if there is none.
+    source_joints, target_joints : tuple of five joints
+        Where the upper segment begins, the lower one begins and ends; and the last two joints of all that hangs on it,
+        such as ankle and ball of a foot: the end again where nothing does.
     foot : bool
         Whether it reaches down to the ground in both rigs.
     source_length, target_length : float
-        Length of both segments together at rest.
+        Length at rest, of both segments and of what is between them and the last two joints.
     """
 
     parts: tuple[int, int]
     upper: NDArray[np.int64]
     lower: NDArray[np.int64]
-    source_joints: tuple[Joint, Joint, Joint, Joint]
-    target_joints: tuple[Joint, Joint, Joint, Joint]
+    source_joints: tuple[Joint, Joint, Joint, Joint, Joint]
+    target_joints: tuple[Joint, Joint, Joint, Joint, Joint]
     foot: bool
     source_length: float
     target_length: float
@@ -60,12 +61,12 @@ class Limb:
         return np.stack([_place(posed, joint) for joint in self.target_joints[:3]], axis=-2)
 
     def target_points(self, posed: Motion | Skeleton) -> NDArray[np.float64]:
-        """Where the target's limb ends, and the point beyond, (f, 2, 3) or (2, 3)."""
-        return np.stack([_place(posed, joint) for joint in self.target_joints[2:]], axis=-2)
+        """Where the last two joints of the target's limb are, (f, 2, 3) or (2, 3)."""
+        return np.stack([_place(posed, joint) for joint in self.target_joints[3:]], axis=-2)
 
     def source_points(self, posed: Motion | Skeleton) -> NDArray[np.float64]:
         """Return the same two of the source."""
-        return np.stack([_place(posed, joint) for joint in self.source_joints[2:]], axis=-2)
+        return np.stack([_place(posed, joint) for joint in self.source_joints[3:]], axis=-2)
 
 
 def _place(posed: Motion | Skeleton, joint: Joint) -> NDArray[np.float64]:
@@ -74,7 +75,7 @@ def _place(posed: Motion | Skeleton, joint: Joint) -> NDArray[np.float64]:
 
 
 def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: NDArray[np.float64]) -> list[Limb]:
-    """Find the limbs: of each way from a tip up to the trunk the two longest segments in a row that do not branch.
+    """Find the limbs: of each way from a tip up to the trunk the two longest segments in a row.
 
     Parameters
     ----------
@@ -98,6 +99,8 @@ def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: NDArra
         heights.append(np.ptp(levels @ up) if len(levels) else 0.0)
         extents.append(np.ptp(levels, axis=0).max() if len(levels) else 0.0)
     found: dict[tuple[int, int], Limb] = {}
+    bearing: list[set[int]] = [set() for _ in range(len(segments))]
+    ways = []
     branches = np.bincount(segments.parents[segments.parents >= 0], minlength=len(segments))
     for tip in np.flatnonzero(branches == 0):
         way = [int(tip)]
@@ -114,21 +117,29 @@ def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: NDArra
                 for tree, *each in ((source, starts[0], ends[0]), (target, starts[1], ends[1]))
             ]
         )
-        pairs = [number for number in range(len(way) - 2) if branches[way[number + 1]] == 1]
+        reaches = np.cumsum(lengths, axis=1)  # from the tip
+        for (below, part), reach in zip(pairwise(way), reaches.T, strict=False):
+            if (reach > _SHORTEST * np.array(extents)).all():
+                bearing[part].add(below)
+        ways.append((way, starts, ends, lengths))
+    for way, starts, ends, lengths in ways:
+        # Nothing as long as a limb hangs beside the way: a back is followed by legs and is none.
+        free = [not bearing[part] - {below} for below, part in pairwise([-1, *way])]
+        pairs = [number for number in range(len(way) - 2) if branches[way[number + 1]] == 1 and all(free[: number + 1])]
         if not pairs:
             continue
         low = max(pairs, key=lambda number: (lengths[:, number] + lengths[:, number + 1]).sum())
-        long = lengths[:, low] + lengths[:, low + 1]
+        last = min(low, 2)
+        long = lengths[:, last : low + 2].sum(axis=1)
         key = way[low + 1], way[low]
         if key in found or (long < _SHORTEST * np.array(extents)).any():
             continue
         joints = []
         for side in range(2):
-            end = ends[side][low]
-            beyond = ends[side][low - 1] if low > 0 else end
-            joints.append((starts[side][low + 1], starts[side][low], end, beyond))
+            beyond = ends[side][last], ends[side][max(last - 1, 0)]
+            joints.append((starts[side][low + 1], starts[side][low], ends[side][low], *beyond))
         reach = [
-            min(_place(tree, joint) @ up for joint in each[2:]) - level
+            min(_place(tree, joint) @ up for joint in each[3:]) - level
             for tree, each, up, level in zip((source, target), joints, ups, lowest, strict=True)
         ]
         foot = all(high < _NEAR_GROUND * height for high, height in zip(reach, heights, strict=True))

@@ -13,10 +13,11 @@ from ...geometry.procrustes import nearest_rotations
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, run
-from .contacts import contacts_of, held_shifts
+from .contacts import contacts_of, grounded_lifts, held_shifts
 from .hand_contacts import BodyLine, hand_shifts
 from .limbs import Limb, limbs_of
 from .posed_motion import Motion
+from .rest_rotations import posed_rotations
 from .segments import Segments
 from .two_bone_ik import bent_limb, needed_drop
 
@@ -145,7 +146,7 @@ def transfer_motion_steps(
     _check(motion, pairing, target, settings)
     ups = np.array([[0.0, 0, 1]] * 2) if ups is None else ups / np.linalg.norm(ups, axis=1, keepdims=True)
     yield Progress(0.0, "Transferring rotations")
-    body = _Body(motion.skeleton, pairing, target, ups)
+    body = _Body(motion, pairing, target, ups)
     turns = body.turns(motion.turns)
     yield Progress(0.3, "Posing the bones")
     paths = body.paths(motion.heads, turns, settings.stride)
@@ -179,9 +180,9 @@ def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: Mot
 class _Body:
     """The target's bones, and what moves them."""
 
-    def __init__(self, source: Skeleton, pairing: BonePairing, target: Skeleton, ups: NDArray[np.float64]) -> None:
-        self.source, self.pairing, self.target, self.ups = source, pairing, target, ups
-        self.segments = Segments.of(pairing.sources, pairing.targets, source, target)
+    def __init__(self, motion: Motion, pairing: BonePairing, target: Skeleton, ups: NDArray[np.float64]) -> None:
+        self.source, self.pairing, self.target, self.ups = motion.skeleton, pairing, target, ups
+        self.segments = Segments.of(pairing.sources, pairing.targets, self.source, target).held_in(motion)
         self.moved = np.zeros(len(target), bool)
         self.moved[pairing.targets] = True
         # Of each segment the bones that hang on no other of it.
@@ -196,7 +197,8 @@ class _Body:
                 self.placed[self.tops[part]] = True
                 self._holders[self.tops[part]] = self.segments.targets[above][-1] if above >= 0 else -1
         self._order = self._in_order()
-        self.limbs = limbs_of(self.segments, source, target, ups)
+        self.limbs = limbs_of(self.segments, self.source, target, ups)
+        self._rotations = posed_rotations(pairing, self.segments, self.limbs, self.source, target)
         self.scale = self._scale()
         self._rise = 0.0
         # In the pose in which the source rests the target's feet are to be as high as they are in its own.
@@ -215,7 +217,7 @@ class _Body:
     def turns(self, source_turns: NDArray[np.float64]) -> NDArray[np.float64]:
         """How the target's bones with partners turn, (f, b, 3, 3); the others are left at rest."""
         pairing = self.pairing
-        turned = pairing.upright @ source_turns[:, pairing.sources] @ np.swapaxes(pairing.rotations, -1, -2)
+        turned = pairing.upright @ source_turns[:, pairing.sources] @ np.swapaxes(self._rotations, -1, -2)
         result = np.tile(np.eye(3), (len(source_turns), len(self.target), 1, 1))
         order = np.argsort(pairing.targets, kind="stable")
         bones, starts, counts = np.unique(pairing.targets[order], return_index=True, return_counts=True)
@@ -322,10 +324,11 @@ def _with_feet(
     for limb in feet:
         points = limb.source_points(motion)
         touching = contacts_of(points, up, length, settings.rate)
-        heights = body.scale * (points - limb.source_points(body.source)) @ up
-        heights = heights + limb.target_points(levels)[0] @ body.ups[1]
-        shifts = held_shifts(limb.target_points(posed), touching, heights, body.ups[1], settings.rate)
-        goals.append(limb.joints(posed)[:, 2] + shifts)
+        level, places = limb.target_points(levels)[0] @ body.ups[1], limb.target_points(posed)
+        heights = body.scale * (points - limb.source_points(body.source)) @ up + level
+        shifts = held_shifts(places, touching, heights, body.ups[1], settings.rate)
+        lifts = grounded_lifts((places + shifts[:, None]) @ body.ups[1], heights, level, body.scale * length)
+        goals.append(limb.joints(posed)[:, 2] + shifts + lifts[:, None] * body.ups[1])
     drops = [needed_drop(limb.joints(posed), goal, body.ups[1]) for limb, goal in zip(feet, goals, strict=True)]
     return goals, _smoothed(np.max(drops, axis=0), settings.rate)
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,8 +14,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..rig.skeleton import Skeleton
+    from .posed_motion import Motion
 
 __all__ = ["Segments"]
+
+_FIXED = 0.01
+"""How far a joint may move against a bone that holds it, in units of the rig's extent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +82,36 @@ class Segments:
     def below(self, part: int) -> NDArray[np.int64]:
         """Segments that hang directly on one."""
         return np.flatnonzero(self.parents == part)
+
+    def above(self, part: int) -> list[int]:
+        """Segments that one hangs on, the nearest first."""
+        return _chain(self.parents, part)
+
+    def held_in(self, motion: Motion) -> Segments:
+        """Find what holds segments that hang on nothing in either rig, such as feet that a solver put at the legs.
+
+        Such a foot moves against the body, but its joint does not against the lower leg.
+        """
+        tops, parents, carried = np.flatnonzero(self.parents < 0), self.parents.copy(), self.carried.copy()
+        if len(tops) < 2 or len(motion) < 2:
+            return self
+        reach = _FIXED * np.ptp(motion.skeleton.heads, axis=0).max()
+        trunk = max(tops, key=lambda top: sum(int(top) in self.above(part) for part in range(len(self))))
+        for top in tops:
+            joint = motion.heads[:, self.sources[top][0]]
+            places = {}
+            for part in range(len(self)):
+                bone = self.sources[part][-1]
+                places[part] = np.einsum("fji,fj->fi", motion.turns[:, bone], joint - motion.heads[:, bone])
+            holders = [
+                part
+                for part, place in places.items()
+                if part not in tops and int(top) not in self.above(part) and np.ptp(place, axis=0).max() < reach
+            ]
+            if top != trunk and holders and np.ptp(places[int(trunk)], axis=0).max() > reach:
+                parents[top] = min(holders, key=lambda part: np.linalg.norm(places[part][0]))
+                carried[top] = False
+        return replace(self, parents=parents, carried=carried)
 
 
 def _in_order(tree: Skeleton, bones: NDArray[np.int64]) -> NDArray[np.int64]:

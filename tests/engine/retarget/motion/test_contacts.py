@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from engine.retarget.motion.contacts import contacts_of, held_shifts
+from engine.retarget.motion.contacts import contacts_of, grounded_lifts, held_shifts
 
 UP = np.array([0.0, 0.0, 1.0])
 RATE = 30
@@ -63,3 +63,19 @@ def test_from_heel_to_ball_nothing_jumps():
 def test_what_never_stands_is_not_shifted():
     points = stepping()
     assert not held_shifts(points, np.zeros((len(points), 2), bool), points @ UP, UP, RATE).any()
+
+
+def test_a_foot_near_the_ground_is_brought_to_its_height_without_standing():
+    wanted = np.array([[0.0, 0.0], [0.02, 0.0], [0.5, 0.5]])
+    heights = wanted + np.array([[0.05], [-0.03], [0.1]])
+    lifts = grounded_lifts(heights, wanted, np.zeros(2), 1.0)
+    assert np.isclose(lifts[0], -0.05)
+    assert np.isclose(lifts[1], 0.03)  # neither point is below the ground
+    assert lifts[2] == 0  # high above the ground it is left alone
+
+
+def test_no_point_of_a_foot_goes_through_the_ground_unless_the_source_s_does():
+    random = np.random.default_rng(0)
+    wanted, heights = random.uniform(-0.1, 0.4, (50, 2)), random.uniform(-0.4, 0.4, (50, 2))
+    after = heights + grounded_lifts(heights, wanted, np.array([0.0, 0.02]), 1.0)[:, None]
+    assert (after >= np.minimum(wanted, [0.0, 0.02]) - 1e-12).all()

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from engine import Skeleton
 from engine.retarget.motion.limbs import limbs_of
 from engine.retarget.motion.segments import Segments
 from tests.people import coarse_rig, fine_rig, renamed
@@ -27,3 +28,22 @@ def test_two_legs_stand_on_the_ground_and_two_arms_do_not(someone, paired, make)
     for limb in limbs:
         if limb.foot:
             assert np.isclose(limb.source_length, limb.target_length, rtol=0.02)
+
+
+def test_a_back_that_bears_legs_is_no_limb_and_a_leg_of_four_reaches_the_ground():
+    # A back of three bones along x; at its ends two legs of four bones and a stub of a belly; a neck and a head.
+    parents, heads = [-1, 0, 1], [[0.0, 0, 1], [0.6, 0, 1], [1.2, 0, 1]]
+    for bone, x in ((0, 0.0), (2, 1.2)):
+        for side in (-0.2, 0.2):
+            parents += [bone, *range(len(parents), len(parents) + 3)]
+            heads += [[x, side, 0.9], [x + 0.1, side, 0.6], [x - 0.05, side, 0.25], [x, side, 0.05]]
+    parents += [1, 2, len(parents) + 1]
+    heads += [[0.6, 0, 0.95], [1.4, 0, 1.2], [1.6, 0, 1.4]]
+    points = np.array(heads)
+    bones = Skeleton(np.array(parents), points, points + np.array([0.05, 0, 0]))
+    numbers = np.arange(len(parents))
+    limbs = limbs_of(Segments.of(numbers, numbers, bones, bones), bones, bones, UPS)
+    legs = [limb for limb in limbs if limb.foot]
+    assert sorted(limb.parts for limb in legs) == [(3, 4), (7, 8), (11, 12), (15, 16)]
+    assert all((0, False) not in limb.source_joints and not {0, 1, 2} & set(limb.parts) for limb in limbs)
+    assert np.allclose(legs[0].source_points(bones), points[[5, 6]])

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from engine import Skeleton
+from engine import Motion, Skeleton
 from engine.retarget.motion.segments import Segments
 
 
@@ -29,6 +29,28 @@ def test_what_hangs_elsewhere_in_the_target_is_held_as_in_the_source():
     assert segments.parents.tolist() == [-1, 0, 1, 2]
     assert segments.carried.tolist() == [True, True, True, False]
     assert Segments.of(pairs, pairs, detached, normal).carried.all()
+
+
+def test_a_foot_that_hangs_on_nothing_is_held_by_the_leg_that_ends_in_it():
+    # Hips, a leg of two bones and a foot of its own, at the origin, one below, two below and three below.
+    parents = [-1, 0, 1, -1]
+    heads = np.array([[0.0, 0, -number] for number in range(4)])
+    bones = Skeleton(np.array(parents), heads, heads - [0, 0, 1])
+    pairs = np.arange(4)
+    segments = Segments.of(pairs, pairs, bones, bones)
+    angles = np.linspace(0, 1, 5)
+    places, turns = np.tile(heads, (5, 1, 1)), np.tile(np.eye(3), (5, 4, 1, 1))
+    turns[:, 2] = [[[np.cos(a), 0, -np.sin(a)], [0, 1, 0], [np.sin(a), 0, np.cos(a)]] for a in angles]
+    places[:, 3] = places[:, 2] + np.einsum("fij,j->fi", turns[:, 2], heads[3] - heads[2])
+    held = segments.held_in(Motion(bones, turns, places))
+    assert held.parents.tolist() == [-1, 0, 1, 2]
+    assert held.carried.tolist() == [True, True, True, False]
+    assert held.above(3) == [2, 1, 0]
+    still = Motion(bones, np.tile(np.eye(3), (5, 4, 1, 1)), np.tile(heads, (5, 1, 1)))
+    assert segments.held_in(still).parents.tolist() == [-1, 0, 1, -1]
+    apart = places.copy()
+    apart[:, 3, 0] += np.linspace(0, 2, 5)  # it goes its own way
+    assert segments.held_in(Motion(bones, turns, apart)).parents.tolist() == [-1, 0, 1, -1]
 
 
 def test_without_pairs_there_are_none():
