@@ -143,8 +143,7 @@ def registered_pair_steps(
     follow = Follower(x, y, source, target, ties, ties_back)
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
-    if not mirrored:  # of the surface as it was given
-        yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
+    yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
     # Where no map is looked for, the one that is given is followed as it is.
     proposers = PROPOSERS if search else ()
     contest = Contest(follow, landmarks, selection)
@@ -166,10 +165,12 @@ def registered_pair_steps(
 def _preview(hypothesis: MapHypothesis, registration: Registration | None = None) -> Preview:
     """Show where samples correspond by a hypothesis, or by the registration that it led to."""
     x, y = hypothesis.domains
-    places, there = x.shape.mesh.vertices[x.vertices], y.shape.mesh
+    there = y.shape.mesh
     if registration is None:
-        return Preview(places, there.vertices[y.vertices[hypothesis.points.on_y]])
-    return Preview(places, points_at(registration.on_target, there.triangles, there.vertices)[x.vertices])
+        images = there.vertices[y.vertices[hypothesis.points.on_y]]
+    else:
+        images = points_at(registration.on_target, there.triangles, there.vertices)[x.vertices]
+    return Preview(x.shape.surface.as_given(x.shape.mesh.vertices[x.vertices]), images)
 
 
 def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[CloseFit]]:

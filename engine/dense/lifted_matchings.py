@@ -97,6 +97,7 @@ class LiftedMatchings:
         misfits, landings = self._assessed(matchings, sign)
 
         def differ(number: int, other: int) -> bool:
+            """Say whether two matchings lead to different places on the mean."""
             return bool(self._apart[landings[number], landings[other]].mean() > _APART)
 
         return matchings[best_distinct(np.argsort(misfits, kind="stable").tolist(), differ, most)]

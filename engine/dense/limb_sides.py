@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a map takes each limb to its own side: what the middle of the body says of where limbs belong."""
+"""Sides of limbs: where they belong by the middle of the body, and whether a map takes each to its own side."""
 
 from __future__ import annotations
 

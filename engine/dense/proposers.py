@@ -87,6 +87,7 @@ def contenders(contest: Contest, candidates: list[Candidate]) -> list[Candidate]
     close = [candidate for candidate in candidates if candidate.score <= candidates[0].score + selection.contested]
 
     def differ(candidate: Candidate, other: Candidate) -> bool:
+        """Say whether the registrations of two candidates are different maps."""
         return are_distinct(candidate.registration.positions, other.registration.positions, areas)
 
     return best_distinct(close, differ, selection.most)

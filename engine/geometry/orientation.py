@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a correspondence keeps the orientation of the surface or mirrors it."""
+"""Orientation of a correspondence: whether it keeps that of the surface or mirrors it."""
 
 from __future__ import annotations
 

@@ -243,6 +243,7 @@ def _best_distinct(leads: list[_Lead], most: int) -> list[_Lead]:
     """Keep the best few, leaving out those that have become the same as a better one."""
 
     def differ(lead: _Lead, other: _Lead) -> bool:
+        """Say whether two leads take a good part of the points elsewhere."""
         moves = lead.coarse.pair.target.sample_distances[lead.assignment, other.assignment]
         return bool((moves > _DISTINCT / 2).mean() > _DISTINCT_SHARE)
 

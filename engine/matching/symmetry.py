@@ -226,6 +226,7 @@ def _candidate_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[list[_C
     identity = np.arange(pair.source.sample_count)
 
     def moved(candidate: _Candidate, other: NDArray[np.int64]) -> bool:
+        """Say whether a candidate takes a good part of the samples elsewhere than other images (n,)."""
         return bool((distances[candidate.images, other] > _FAR / 2).mean() > _MOVED_SHARE)
 
     ranked = sorted(candidates, key=lambda candidate: candidate.score)

@@ -513,10 +513,10 @@ def _closest_on_sides(
     """Find v and w of the closest points on the three sides, from the scalar products (k,) of the vectors."""
     bc_bc = ab_ab + ac_ac - 2 * ab_ac
     bc_bp = ac_ap - ab_ap - ab_ac + ab_ab
-    lengths = (np.maximum(square, _TINY) for square in (ab_ab, ac_ac, bc_bc))
+    squares = (np.maximum(square, _TINY) for square in (ab_ab, ac_ac, bc_bc))
     on_ab, on_ac, on_bc = (
         np.minimum(np.maximum(along, 0), square) / square
-        for along, square in zip((ab_ap, ac_ap, bc_bp), lengths, strict=True)
+        for along, square in zip((ab_ap, ac_ap, bc_bp), squares, strict=True)
     )
     # Squared distances less |ap|^2, which all have in common.
     to_ab = on_ab * (on_ab * ab_ab - 2 * ab_ap)

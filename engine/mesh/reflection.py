@@ -3,15 +3,26 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from .surface_points import SurfacePoints
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["reflected_mesh", "reflected_points"]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["reflected_mesh", "reflected_points", "reflected_positions"]
 
 
 def reflected_mesh(mesh: TriangleMesh) -> TriangleMesh:
     """Reflect a mesh; its normals still point outwards, because the last two corners of triangles are exchanged."""
-    return TriangleMesh(mesh.vertices * [-1, 1, 1], mesh.triangles[:, [0, 2, 1]])
+    return TriangleMesh(reflected_positions(mesh.vertices), mesh.triangles[:, [0, 2, 1]])
+
+
+def reflected_positions(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Reflect positions (k, 3) in the plane x = 0."""
+    return positions * [-1.0, 1.0, 1.0]
 
 
 def reflected_points(reflection: TriangleMesh, points: SurfacePoints) -> SurfacePoints:

@@ -127,6 +127,7 @@ def can_go_beside(function: Callable[Given, Steps[Result]]) -> Callable[Given, S
 
     @wraps(function)
     def begun(*args: Given.args, **kwargs: Given.kwargs) -> Steps[Result]:
+        """Carry it out in the `Background` that is used, or here."""
         background = _used.get()
         if background is None:
             return (yield from here(*args, **kwargs))

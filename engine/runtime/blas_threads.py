@@ -95,6 +95,7 @@ def on_one_thread(function: Callable[Given, Steps[Result]]) -> Callable[Given, S
 
     @wraps(function)
     def begun(*args: Given.args, **kwargs: Given.kwargs) -> Steps[Result]:
+        """Go through its steps, each on one thread."""
         steps = function(*args, **kwargs)
         try:
             while True:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..mesh.closest_points import ClosestPoints
-from ..mesh.reflection import reflected_mesh, reflected_points
+from ..mesh.reflection import reflected_mesh, reflected_points, reflected_positions
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.cleaning import clean
@@ -42,6 +42,8 @@ class PreparedSurface:
         What stands for the main part.
     wanted : int
         About how many vertices what is matched should have.
+    is_reflected : bool
+        Whether it is the reflection of the mesh that was given.
     """
 
     original: TriangleMesh
@@ -49,6 +51,7 @@ class PreparedSurface:
     cleaned: CleanSurface
     proxy: Proxy
     wanted: int
+    is_reflected: bool = False
 
     def reflected(self) -> PreparedSurface:
         """Reflect the surface in a plane; vertices and triangles keep their numbers."""
@@ -60,7 +63,12 @@ class PreparedSurface:
             original=original,
             cleaned=replace(cleaned, original=original, pieces=pieces),
             proxy=replace(proxy, mesh=coarse, points=reflected_points(coarse, proxy.points)),
+            is_reflected=not self.is_reflected,
         )
+
+    def as_given(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Find where points of the surface (k, 3) are on the mesh that was given, (k, 3), if this is its reflection."""
+        return reflected_positions(positions) if self.is_reflected else positions
 
     @property
     def mesh(self) -> TriangleMesh:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether one of our jobs is running, as Blender itself knows it."""
+"""The job of ours that is running, if any, as Blender itself knows it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether the match that the panel shows is still one of the meshes as they are.
+"""Freshness of the match that the panel shows: whether it is still one of the meshes as they are.
 
 To find that out takes a look at every vertex.  So nothing is looked at while the panel is drawn, but a moment after a
 mesh that carries a match was edited, after objects came or went, after undo and redo, and after a file was opened.

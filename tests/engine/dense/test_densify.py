@@ -18,6 +18,7 @@ from engine import (
     match_steps,
 )
 from engine.dense.missing_parts import round_trips
+from engine.mesh.closest_points import ClosestPoints
 from engine.registration import fine_registration
 from engine.registration.elastic import ElasticSurface
 from tests.bodies import mirrored_body
@@ -326,10 +327,17 @@ def test_progress_of_a_densification_rises(symmetric, symmetric_result):
     source, target = symmetric[:2]
     mirrored = symmetric_result.mirrored
     steps = densify_steps(source, target, mirrored.source_points, mirrored.target_points)
-    fractions = [report.fraction for report in steps]
+    reports = list(steps)
+    fractions = [report.fraction for report in reports]
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] < 0.05
     assert fractions[-1] <= 1
+    previews = [report.preview for report in reports if report.preview is not None]
+    assert previews
+    for preview in previews:
+        for mesh, places in ((source, preview.source), (target, preview.target)):
+            distances = ClosestPoints(mesh).nearest(places).squared_distances
+            assert distances.max() < 1e-18 * mesh.area
 
 
 def test_points_beside_the_main_part_are_refused_in_words(symmetric, symmetric_result):

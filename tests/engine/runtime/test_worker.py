@@ -361,6 +361,7 @@ print(helper.pid)
 """
     (pid,) = python(script)
     wait_until(lambda: is_gone(int(pid)))
+    assert is_gone(int(pid))
 
 
 def test_helpers_find_an_engine_inside_of_another_package(tmp_path):
