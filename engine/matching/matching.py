@@ -18,7 +18,7 @@ from ..runtime.worker import call_helpers
 from ..shapes.prepared_surface import prepared_steps
 from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
-from .overlap.overlap_match import CREDIBLE, overlap_match_steps
+from .overlap.overlap_match import overlap_match_steps
 from .partial_match import (
     border_length,
     has_border,
@@ -168,7 +168,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     """Match surfaces of which much may have been cut off: what they share first, and all of them if that is unclear."""
     overlap = yield from within(overlap_match_steps(x, y, task), 0.0, _OVERLAP)
     cut = border_length(x) > _CUT, border_length(y) > _CUT
-    if overlap is not None and overlap.credibility >= CREDIBLE and min(overlap.shares) < _SHARED:
+    if overlap is not None and overlap.is_likely and min(overlap.shares) < _SHARED:
         if all(cut):
             return overlap.result
         return (yield from within(_part_steps(overlap.result, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))

@@ -26,7 +26,7 @@ set."""
 _LEAST = 4
 """Candidates in a set at least."""
 
-_COMMON, _APART = 0.4, 0.12
+_COMMON, _APART = 0.4, 0.08
 """Part of the smaller of two sets that must be in both for them to be compared, and median length of the path between
 their places from which on they are different."""
 
@@ -102,12 +102,24 @@ def consistent_sets(
     of_places = _Places(first)
     support = ((near[first][:, of_places.numbers] * share[of_places.numbers]) * of_places.best(together).T).sum(axis=1)
     found: list[tuple[float, ConsistentSet]] = []
-    for seed in np.argsort(-support, kind="stable")[: plan.seeds]:
+    for seed in _seeds(support, first, plan.seeds):
         grown = _grown(together, of_places, int(seed), share[first], near[first[seed]][first])
         if grown is not None:
             found.append(grown)
     found.sort(key=lambda pair: -pair[0])
     return _distinct([each for _, each in found], candidates, patches, plan.most)
+
+
+def _seeds(support: NDArray[np.float32], first: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """Take the best supported candidates, so many at most: first the best of each place (k,), then the second best.
+
+    What many candidates support would else be found again and again, and what two surfaces share may be small.
+    """
+    order = np.lexsort((-support, first))
+    counts = np.bincount(first)
+    ranks = np.empty(len(first), np.int64)
+    ranks[order] = np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return np.lexsort((-support, ranks))[:most]
 
 
 def _grown(

@@ -15,7 +15,7 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.parallel_map import shared_steps
 from ...runtime.progress import Progress, within
 from .overlap_score import shared_area
-from .overlap_search import CoarsePair, overlap_fits_steps
+from .overlap_search import CoarsePair, overlap_fits_steps, scored_fit
 from .part_registration import FINE, TURNED, Landmarks, placed, register_parts
 from .part_surface import PartSurface
 
@@ -46,15 +46,15 @@ _ROTATION_RADIUS, _TETHER = 0.06, 1e-9
 _HOLD = 3.0
 """How much the coarse surface counts when the fine one is placed by it: for a surface of a thousand vertices."""
 
-_COMMON, _OTHER = 0.3, 0.12
+_COMMON, _OTHER = 0.3, 0.06
 """Part of the smaller of two overlaps that both must have, and median distance of the images, in units of length, up to
 which they say the same."""
 
 _NO_RIVAL = 20.0
 """Difference of scores that is said where no other way was found."""
 
-_AGREEING = 0.6
-"""Agreement of the registrations of either surface below which one of them may have failed."""
+_FOLLOWED = 6
+"""How many different registrations, of either surface, are followed by one of the other."""
 
 _LABEL = "Fitting what the surfaces share"
 
@@ -122,39 +122,22 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
     first = yield from within(surfaces[0].proxy_steps(_COARSE), 0.0, 0.02)
     second = yield from within(surfaces[1].proxy_steps(_COARSE), 0.02, 0.04)
     pair = CoarsePair((surfaces[0], surfaces[1]), (first, second))
-    ways = yield from within(shared_steps(_one_way_steps, pair, (False, True)), 0.04, 0.85)
-    found = sorted(((each, back) for back, way in enumerate(ways) for each in way), key=lambda either: -either[0].score)
+    ways = yield from within(shared_steps(_one_way_steps, pair, (False, True)), 0.04, 0.8)
+    found = yield from within(_mutual_steps(pair, (ways[0], ways[1])), 0.8, 0.86)
     if not found:
         return None
-    best, back = found[0]
-    rivals = [each.score for each, other in found[1:] if _differ(pair.coarse, _side(best, back), _side(each, other))]
-    margin = best.score - rivals[0] if rivals else _NO_RIVAL
-    turned = pair.turned() if back else pair
-    fits = yield from within(_fine_fits_steps(turned, best.fit), 0.85, 1.0)
-    if fits is None:
-        return None
-    members, agreement = _members_of_both(turned.surfaces, fits)
-    if agreement < _AGREEING:
-        # The other surface may have found by itself what it could not follow from here.
-        for each, other in found[1:]:
-            if other != back and not _differ(pair.coarse, _side(best, back), _side(each, other)):
-                own = _fine_fit(turned.surfaces[1], turned.surfaces[0], turned.coarse[1], each.fit.positions)
-                again = _members_of_both(turned.surfaces, (fits[0], own))
-                if again[1] > agreement:
-                    fits, (members, agreement) = (fits[0], own), again
-                break
+    best = found[0]
+    margin = best.score - found[1].score if len(found) > 1 else _NO_RIVAL
+    fits = yield from within(_fine_fits_steps(pair, best), 0.86, 1.0)
+    members, agreement = _members_of_both(pair.surfaces, fits)
     if not (members[0].any() and members[1].any()):
         return None
-    area = shared_area(*turned.coarse, best.fit)
-    order = slice(None, None, -1 if back else 1)
-    positions, images = (
-        (fits[0].positions, fits[1].positions)[order],
-        (fits[0].there.images, fits[1].there.images)[order],
-    )
+    area = (shared_area(*pair.coarse, best.fits[0]) + shared_area(*pair.turned().coarse, best.fits[1])) / 2
+    positions, images = zip(*((fit.positions, fit.there.images) for fit in fits), strict=True)
     return Overlap(
         (positions[0] * lengths[1] + centres[1], positions[1] * lengths[0] + centres[0]),
-        (images[0], images[1]),
-        members if not back else members[::-1],
+        images,
+        members,
         best.score,
         float(margin),
         agreement,
@@ -165,6 +148,52 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
 def _one_way_steps(pair: CoarsePair, back: bool) -> Steps[list[ScoredFit]]:  # noqa: FBT001 -- an item of `shared_steps`
     """Lay one surface onto the other, or the other way round."""
     return (yield from overlap_fits_steps(pair.turned() if back else pair))
+
+
+@dataclass(frozen=True, eq=False)
+class _MutualFit:
+    """Registrations of coarse surfaces onto each other that say the same.
+
+    Attributes
+    ----------
+    fits : pair of Fit
+        Of the first surface onto the second, and of the second onto the first.
+    score : float
+        The mean of their scores.
+    """
+
+    fits: tuple[Fit, Fit]
+    score: float
+
+
+def _mutual_steps(pair: CoarsePair, ways: tuple[list[ScoredFit], list[ScoredFit]]) -> Steps[list[_MutualFit]]:
+    """Follow the most credible registrations of either surface by one of the other: right ones look right from both.
+
+    Returns
+    -------
+    list of _MutualFit
+        The most credible first; no two of them say the same.
+    """
+    alone = sorted(((each, back) for back, way in enumerate(ways) for each in way), key=lambda either: -either[0].score)
+    taken: list[_Side] = []
+    found: list[_MutualFit] = []
+    for each, back in alone:
+        own = _side(each, back)
+        if any(not _differ(pair.coarse, own, other) for other in taken):
+            continue
+        taken.append(own)
+        turned = pair.turned() if back else pair
+        others = [other for other in ways[1 - back] if not _differ(pair.coarse, own, _side(other, 1 - back))]
+        followed = _turned_fit(turned, each.fit)
+        others += [] if followed is None else [followed]
+        if others:
+            other = max(others, key=lambda scored: scored.score)
+            fits = (other.fit, each.fit) if back else (each.fit, other.fit)
+            found.append(_MutualFit(fits, (each.score + other.score) / 2))
+        yield Progress(len(taken) / _FOLLOWED, _LABEL)
+        if len(taken) == _FOLLOWED:
+            break
+    return sorted(found, key=lambda mutual: -mutual.score)
 
 
 _Side = tuple["NDArray[np.int64]", "NDArray[np.bool_]"]
@@ -186,23 +215,26 @@ def _differ(coarse: tuple[PartSurface, PartSurface], first: _Side, second: _Side
     return bool(len(apart) and np.median(apart) > _OTHER)
 
 
-def _fine_fits_steps(pair: CoarsePair, fit: Fit) -> Steps[tuple[Fit, Fit] | None]:
-    """Follow a registration of coarse surfaces in full resolution, and register the other surface to the first."""
-    source, target = pair.surfaces
+def _turned_fit(pair: CoarsePair, fit: Fit) -> ScoredFit | None:
+    """Register the second coarse surface onto the first, by a registration of the first onto the second."""
     coarse, other = pair.coarse
-    there = _fine_fit(source, target, coarse, fit.positions)
-    yield Progress(0.4, _LABEL)
     known = np.flatnonzero(fit.members_back)
     if len(known) < _LEAST_MEMBERS:
         return None
     images = fit.back.images[known]
     marks = Landmarks(known, coarse.vertices[images], other.mass[known])
     positions, marks = placed(other, marks, fit.rotations[images].transpose(0, 2, 1), other.paths(known))
-    back = register_parts(other, coarse, positions, TURNED, marks=marks)
-    yield Progress(0.6, _LABEL)
-    reverse = _fine_fit(target, source, other, back.positions)
+    return scored_fit(other, coarse, register_parts(other, coarse, positions, TURNED, marks=marks))
+
+
+def _fine_fits_steps(pair: CoarsePair, best: _MutualFit) -> Steps[tuple[Fit, Fit]]:
+    """Follow registrations of coarse surfaces in full resolution."""
+    (source, target), (coarse, other) = pair.surfaces, pair.coarse
+    there = _fine_fit(source, target, coarse, best.fits[0].positions)
+    yield Progress(0.5, _LABEL)
+    back = _fine_fit(target, source, other, best.fits[1].positions)
     yield Progress(1.0, _LABEL)
-    return there, reverse
+    return there, back
 
 
 def _fine_fit(source: PartSurface, target: PartSurface, coarse: PartSurface, positions: NDArray[np.float64]) -> Fit:

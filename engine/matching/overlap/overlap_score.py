@@ -28,8 +28,9 @@ _GAP, _STRAIN, _CURVATURE, _INNER, _AREA = (
 that is left, elastic energy by area, mean difference of curvatures, length of the outline of the overlap that is at no
 cut, and area of the overlap, in units of length."""
 
-_BIAS = -3.0
-"""Chosen so that registrations of score zero are right as often as not, if there is no other evidence."""
+_BIAS = -5.1
+"""Chosen so that two surfaces are laid onto each other rightly as often as not where the mean score is zero: by a
+logistic fit on the parts of `docs/results.md`, of which 57 of 78 were matched rightly."""
 
 _AT_CUT = 0.05
 """Distance to where a surface was cut up to which an outline ends there."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,13 +23,16 @@ if TYPE_CHECKING:
 
     from ...runtime.progress import Steps
     from .consistent_sets import ConsistentSet
-    from .part_registration import Fit
+    from .part_registration import Fit, Round
     from .part_surface import PartSurface
 
-__all__ = ["CoarsePair", "ScoredFit", "overlap_fits_steps"]
+__all__ = ["CoarsePair", "ScoredFit", "overlap_fits_steps", "scored_fit"]
 
 _PATCHES = 160, 300
 """Patches of the surface that is laid onto the other, and of that one."""
+
+_TRIED_ROUNDS, _FOLLOWED = 3, 20
+"""Rounds that all registrations go through, and how many of these are followed to the end."""
 
 _REGROWN, _POLISHED, _KEPT = 6, 5, 8
 """How many of the best fits are grown again, are registered once more, and are returned."""
@@ -80,23 +83,52 @@ def overlap_fits_steps(pair: CoarsePair) -> Steps[list[ScoredFit]]:
     source, target = pair.coarse
     yield Progress(0.0, _LABEL)
     starts = yield from within(_starts_steps(pair), 0.0, 0.3)
+    begun = []
+    for number, start in enumerate(starts):
+        begun.append(_followed(source, target, start, FAST[:_TRIED_ROUNDS]))
+        yield Progress(0.3 + 0.4 * (number + 1) / len(starts), _LABEL)
     fits = []
-    for number, (positions, marks, from_marks) in enumerate(starts):
-        fits.append(
-            _scored(source, target, register_parts(source, target, positions, FAST, marks=marks, from_marks=from_marks))
-        )
-        yield Progress(0.3 + 0.55 * (number + 1) / len(starts), _LABEL)
+    chosen = sorted(range(len(starts)), key=lambda number: -begun[number].score)[:_FOLLOWED]
+    for number, one in enumerate(chosen):
+        start = replace(starts[one], positions=begun[one].fit.positions)
+        fits.append(_followed(source, target, start, FAST[_TRIED_ROUNDS:], _TRIED_ROUNDS))
+        yield Progress(0.7 + 0.15 * (number + 1) / len(chosen), _LABEL)
     best = _distinct(fits, _REGROWN)
     for number, each in enumerate(list(best)):
         best.append(_regrown(source, target, each))
         yield Progress(0.85 + 0.07 * (number + 1) / _REGROWN, _LABEL)
     for number, each in enumerate(_distinct(best, _POLISHED)):
-        best.append(_scored(source, target, register_parts(source, target, each.fit.positions, REST)))
+        best.append(scored_fit(source, target, register_parts(source, target, each.fit.positions, REST)))
         yield Progress(0.92 + 0.08 * (number + 1) / _POLISHED, _LABEL)
     return _distinct(best, _KEPT)
 
 
-_Start = tuple["NDArray[np.float64]", Landmarks, "NDArray[np.float64] | None"]
+@dataclass(frozen=True, eq=False)
+class _Start:
+    """How a coarse surface may be laid onto another, n vertices.
+
+    Attributes
+    ----------
+    positions : (n, 3) array of float
+        Where its vertices are.
+    marks : Landmarks
+        What says so.
+    from_marks : (n,) array of float, optional
+        Distances from these, if they are only in a piece of it.
+    """
+
+    positions: NDArray[np.float64]
+    marks: Landmarks
+    from_marks: NDArray[np.float64] | None
+
+
+def _followed(
+    source: PartSurface, target: PartSurface, start: _Start, rounds: tuple[Round, ...], done: int = 0
+) -> ScoredFit:
+    """Register coarse surfaces from a start."""
+    marks, from_marks = start.marks, start.from_marks
+    fit = register_parts(source, target, start.positions, rounds, marks=marks, from_marks=from_marks, done=done)
+    return scored_fit(source, target, fit)
 
 
 def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
@@ -120,12 +152,13 @@ def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
                 nearest[first], there.vertices[patches[1].vertices[second]], each.weights.astype(np.float64)
             )
             positions, marks = placed(coarse, marks, candidates.rotations[each.members], paths)
-            starts.append((positions, marks, paths.min(axis=0) if np.isfinite(plan.radius) else None))
+            starts.append(_Start(positions, marks, paths.min(axis=0) if np.isfinite(plan.radius) else None))
         yield Progress(0.5 + (number + 1) / (2 * len(PLANS)), _LABEL)
     return starts
 
 
-def _scored(source: PartSurface, target: PartSurface, fit: Fit) -> ScoredFit:
+def scored_fit(source: PartSurface, target: PartSurface, fit: Fit) -> ScoredFit:
+    """Give a registration its score."""
     return ScoredFit(fit, overlap_score(source, target, fit))
 
 
@@ -159,4 +192,6 @@ def _regrown(source: PartSurface, target: PartSurface, scored: ScoredFit) -> Sco
     marks = Landmarks(good, target.vertices[fit.there.images[good]], source.mass[good])
     positions, marks = placed(source, marks, fit.rotations[good], paths)
     from_marks = paths.min(axis=0) + _BEYOND
-    return _scored(source, target, register_parts(source, target, positions, FAST, marks=marks, from_marks=from_marks))
+    return scored_fit(
+        source, target, register_parts(source, target, positions, FAST, marks=marks, from_marks=from_marks)
+    )

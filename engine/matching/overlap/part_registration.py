@@ -96,7 +96,7 @@ REST = _rounds(1, 3, 4, 5, 6, 7, 8, 8)
 FINE = _rounds(5, 6, 7, 8, 8)
 """In full resolution."""
 
-TURNED = _rounds(5, 6, 7)
+TURNED = _rounds(4, 5, 5, 6, 7)
 """The other surface onto this one, from what was found."""
 
 _FOUND = Round(0, 0.06, 0.1, 0.05)
@@ -206,6 +206,7 @@ def register_parts(
     *,
     marks: Landmarks | None = None,
     from_marks: NDArray[np.float64] | None = None,
+    done: int = 0,
 ) -> Fit:
     """Deform a surface onto another, where both have a partner.
 
@@ -224,9 +225,11 @@ def register_parts(
         What holds the surface in the first rounds.
     from_marks : (n,) array of float, optional
         Distance of each vertex from these: what is far is matched in later rounds only, when it is in place.
+    done : int
+        Rounds that went before.
     """
     positions, count, elastic = start, source.count, source.elastic
-    for number, stage in enumerate(rounds):
+    for number, stage in enumerate(rounds, done):
         there, back = _matched(source, target, positions, stage)
         own, theirs = stage.weight * source.mass * there.credit, stage.weight * target.mass * back.credit
         if from_marks is not None:

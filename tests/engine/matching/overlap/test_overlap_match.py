@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, TriangleMesh, match
-from engine.matching.overlap.overlap_maps import Overlap
+from engine.matching.overlap.overlap_maps import Overlap, overlap_steps
 from engine.matching.overlap.overlap_match import CREDIBLE, credibility
+from engine.runtime.progress import run
 from tests.shapes import compacted, creature
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -78,11 +79,20 @@ def test_points_lie_on_what_is_shared(result):
 
 def overlap(**changes):
     nothing = (np.empty(0), np.empty(0))
-    clear = {"score": 6.0, "margin": 5.0, "agreement": 0.95, "area": 0.5}
+    clear = {"score": 4.0, "margin": 5.0, "agreement": 0.95, "area": 0.5}
     return Overlap(nothing, nothing, nothing, **(clear | changes))
 
 
-@pytest.mark.parametrize("doubtful", [{"score": 1.0}, {"margin": 0.3}, {"agreement": 0.4}, {"area": 0.08}])
+@pytest.mark.parametrize("doubtful", [{"score": -0.1}, {"margin": 0.3}, {"agreement": 0.3}, {"area": 0.04}])
 def test_one_reason_to_doubt_is_enough(doubtful):
     assert credibility(overlap()) > 0.95
     assert credibility(overlap(**doubtful)) < 0.1
+
+
+def test_it_does_not_matter_which_surface_is_which(front, back):
+    here = run(overlap_steps(front[0], back[0]))
+    there = run(overlap_steps(back[0], front[0]))
+    assert there.score == pytest.approx(here.score, abs=1e-6)
+    assert there.margin == pytest.approx(here.margin, abs=1e-6)
+    for own, other in zip(here.members, there.members[::-1], strict=True):
+        assert (own == other).mean() > 0.995

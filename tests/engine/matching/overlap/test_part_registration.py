@@ -68,6 +68,15 @@ def test_the_score_does_not_depend_on_which_surface_is_which(whole, half, fit):
     assert overlap_score(half[0], whole[0], back) == pytest.approx(overlap_score(whole[0], half[0], fit), abs=3)
 
 
+def test_rounds_can_be_gone_through_in_parts(whole, half):
+    start = whole[0].vertices + np.array([0.02, 0.0, 0.0])
+    near = np.zeros(whole[0].count)
+    at_once = register_parts(whole[0], half[0], start, FINE, from_marks=near)
+    begun = register_parts(whole[0], half[0], start, FINE[:2], from_marks=near)
+    rest = register_parts(whole[0], half[0], begun.positions, FINE[2:], from_marks=near, done=2)
+    np.testing.assert_allclose(rest.positions, at_once.positions, atol=1e-12)
+
+
 def test_far_places_wait_until_those_at_the_landmarks_lie(whole, half):
     """With nothing near to the landmarks, no match counts, and the surface stays as it was."""
     surface, _ = whole

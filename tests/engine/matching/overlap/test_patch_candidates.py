@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.matching.overlap.consistent_sets import Plan, consistent_sets
+from engine.matching.overlap.consistent_sets import Plan, _seeds, consistent_sets
 from engine.matching.overlap.oriented_patches import oriented_patches
 from engine.matching.overlap.part_surface import PartSurface
 from engine.matching.overlap.patch_candidates import compatibilities, patch_candidates
@@ -84,3 +84,10 @@ def test_what_is_cut_off_is_not_seen_and_does_not_count(body, compared):
     here = both[seen.vertices, 3:][candidates.first]
     near = np.linalg.norm(there - here, axis=1) < 0.35
     assert len(np.unique(candidates.first[near])) > 0.8 * COUNT
+
+
+def test_every_place_is_a_seed_before_any_place_is_one_twice():
+    support = np.array([9, 8, 7, 1, 3, 2], np.float32)
+    first = np.array([0, 0, 0, 1, 2, 2])
+    np.testing.assert_array_equal(_seeds(support, first, 6), [0, 4, 3, 1, 5, 2])
+    np.testing.assert_array_equal(_seeds(support, first, 2), [0, 4])
