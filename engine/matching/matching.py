@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..dense.credibility import CREDIBLE as LIKELY
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE
 from ..hierarchical.settings import MatchSettings
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
@@ -18,11 +18,11 @@ from ..runtime.worker import call_helpers
 from ..shapes.prepared_surface import prepared_steps
 from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
-from .overlap.overlap_match import overlap_match_steps
+from .overlap.overlap_match import CLEAR, overlap_match_steps
 from .partial_match import (
     border_length,
     has_border,
-    is_all_alike,
+    is_as_alike,
     is_better_part,
     part_matched_steps,
     piece_matched_steps,
@@ -171,7 +171,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     if overlap is not None and overlap.is_likely and min(overlap.shares) < _SHARED:
         if all(cut):
             return overlap.result
-        return (yield from within(_part_steps(overlap.result, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))
+        return (yield from within(_part_steps(overlap, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))
     try:
         if all(cut):
             # Neither shows all of the other: no piece of one is to be looked for.
@@ -185,25 +185,28 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     return _better(result, overlap)
 
 
-def _part_steps(overlap: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
+def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
     If some of the part has no partner then, or the piece is less like it than one body is like itself in another pose,
-    all of the whole surface is tried as well: a body whose faces are missing here and there is no part.
+    or like another whole body if the overlap is clear, all of the whole surface is tried as well: a body whose faces
+    are missing here and there is no part.
     """
-    whole, shown = (x, overlap.source_to_target) if of_source else (y, overlap.target_to_source)
+    known = overlap.result
+    whole, shown = (x, known.source_to_target) if of_source else (y, known.target_to_source)
     if shown is None:
-        return overlap
+        return known
     piece = shown.has_partner[whole.vertices]
-    steps = piece_matched_steps(overlap, x, y, task, piece, of_source=of_source)
+    steps = piece_matched_steps(known, x, y, task, piece, of_source=of_source)
     result = yield from within(steps, 0.0, _CLOSER)
-    if shows_all_of_part(result, of_source=of_source) and is_all_alike(result):
+    enough = MUCH_ALIKE if overlap.credibility >= CLEAR else ALL_ALIKE
+    if shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough):
         return result
     try:
         other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
     except MatchError:
         return result
-    return other if is_better_part(other, result, LIKELY, of_source=of_source) else result
+    return other if is_better_part(other, result, CREDIBLE, of_source=of_source) else result
 
 
 def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "border_length",
     "has_border",
-    "is_all_alike",
+    "is_as_alike",
     "is_better_part",
     "part_matched_steps",
     "piece_matched_steps",
@@ -114,7 +114,7 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
         begin, end = (_FOUND + (1 - _FOUND) * (number + i) / _MOST for i in (0, 1))
         matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
         result = yield from within(matching, begin, end)
-        if is_all_alike(result):
+        if is_as_alike(result, ALL_ALIKE):
             break
     return result
 
@@ -235,9 +235,9 @@ def shows_all_of_part(result: MatchResult, *, of_source: bool) -> bool:
     return quality is not None and (quality.coverage if of_source else quality.source_coverage) >= _COVERED
 
 
-def is_all_alike(result: MatchResult) -> bool:
+def is_as_alike(result: MatchResult, enough: float) -> bool:
     """Say whether what is matched is so much alike that nothing else is worth trying."""
-    return result.quality is not None and not is_less_alike(result.quality.likeness, ALL_ALIKE)
+    return result.quality is not None and not is_less_alike(result.quality.likeness, enough)
 
 
 def _credibility(result: MatchResult, *, of_source: bool) -> float:

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from ..shape_matching import MatchTask
     from .overlap_maps import Overlap
 
-__all__ = ["CREDIBLE", "OverlapMatch", "credibility", "overlap_match_steps"]
+__all__ = ["CLEAR", "OverlapMatch", "credibility", "overlap_match_steps"]
 
-CREDIBLE = 0.5
+CLEAR = 0.5
 """Credibility from which on an overlap is more likely right than not."""
 
 _TINY = float(np.finfo(float).tiny)
@@ -65,12 +65,15 @@ class OverlapMatch:
         The match.
     is_likely : bool
         Whether it is more likely right than not, by its score alone.
+    credibility : float
+        How far it can be trusted as a whole, 0 to 1.
     shares : pair of float
         Part of the area of the main part of the source, and of the target, that is shared.
     """
 
     result: MatchResult
     is_likely: bool
+    credibility: float
     shares: tuple[float, float]
 
 
@@ -114,7 +117,7 @@ def overlap_match_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[OverlapMat
     task.clock.lap("lift")
     yield Progress(0.98, _LABEL)
     result = _result((x, y), overlap, task, (forward, backward), quality)
-    return OverlapMatch(result, overlap.score > 0, shared.shares)
+    return OverlapMatch(result, overlap.score > 0, likely, shared.shares)
 
 
 def _found_steps(x: Shape, y: Shape) -> Steps[Overlap | None]:
@@ -214,7 +217,7 @@ def _quality(shared: _Shared, margin: float) -> MatchQuality:
     distortion = float(weights @ np.abs(np.log(stretch[usable]))) / max(float(weights.sum()), _TINY)
     confidence = float(areas @ shared.trust(0)) / total * max(orientation, 0.0)
     disagreement = float(areas @ shared.trips(0)) / total
-    credible = shared.likely >= CREDIBLE
+    credible = shared.likely >= CLEAR
     sentence = overlap_sentence(shared.shares, credible=credible)
     # What is not likely right has no partner as likely as not.
     shares = [share * (1.0 if credible else shared.likely) for share in shared.shares]

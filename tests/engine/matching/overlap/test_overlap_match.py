@@ -6,7 +6,7 @@ import pytest
 
 from engine import MatchSettings, TriangleMesh, match
 from engine.matching.overlap.overlap_maps import Overlap, overlap_steps
-from engine.matching.overlap.overlap_match import CREDIBLE, credibility
+from engine.matching.overlap.overlap_match import CLEAR, credibility
 from engine.runtime.progress import run
 from tests.shapes import compacted, creature
 
@@ -66,7 +66,7 @@ def test_the_shares_are_said(result, front, back):
     assert quality.coverage == pytest.approx(target, abs=0.12)
     assert f"{quality.source_coverage:.0%} of the source" in quality.sentence
     assert f"{quality.coverage:.0%} of the target" in quality.sentence
-    assert quality.confidence > CREDIBLE
+    assert quality.confidence > CLEAR
 
 
 def test_points_lie_on_what_is_shared(result):
