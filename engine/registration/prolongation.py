@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array, eye_array
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.connectivity.adjacency import vertex_adjacency
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.unit_vectors import unit_vectors
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
 from .torn_patches import NearVertices, with_patches_mended
@@ -187,7 +188,7 @@ class _Lift:
 
     def _turned(self, blended: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
         normals = np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertex_normals[vertices])
-        return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)
+        return unit_vectors(normals)
 
     def starts(
         self, vertices: NDArray[np.int64], positions: NDArray[np.float64], normals: NDArray[np.float64]

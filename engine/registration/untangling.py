@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.unit_vectors import unit_vectors
 from ..runtime.progress import Progress, Steps
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ _SMALLEST = 0.01  # part of the mean area from which on a triangle counts: one w
 _TETHER = 1e-3  # weight of staying in place, squared distances in units of the mean area, against the areas that lack
 _CHUNK = 200_000
 _TORN = 6.0  # times the median: edges that a map stretches more than this lead to another place
-_TINY = np.finfo(float).tiny
 
 
 def follow_neighbours(mesh: TriangleMesh, values: NDArray[np.int64], astray: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -138,7 +138,7 @@ class _Image:
         self.positions = located(target, self.triangles, self.barycentric)
         there = target.triangles[self.triangles]
         normals = np.einsum("vc,vcd->vd", self.barycentric, target.vertex_normals[there])[self.corners].sum(axis=1)
-        self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)  # (f, 3)
+        self.normals = unit_vectors(normals)  # (f, 3)
 
     def areas(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
         """Areas of the triangles, as seen from their sides, for positions (v, 3) of the vertices: (f,)."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...mesh.unit_vectors import unit_vectors
 from .part_surface import summed_rows
 
 if TYPE_CHECKING:
@@ -103,11 +104,10 @@ def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:
 
 def _frames(normals: NDArray[np.float64]) -> NDArray[np.float64]:
     """Find axes (s, 3, 3), right-handed, the last along each normal (s, 3)."""
-    upwards = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)
+    upwards = unit_vectors(normals)
     # Any axis that is not along the normal will do.
     aside = np.eye(3)[np.abs(upwards).argmin(axis=1)]
-    first = np.cross(upwards, aside)
-    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), _TINY)
+    first = unit_vectors(np.cross(upwards, aside))
     return np.stack([first, np.cross(upwards, first), upwards], axis=1)
 
 

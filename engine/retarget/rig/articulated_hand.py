@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...geometry.procrustes import nearest_rotations
+from ...mesh.unit_vectors import unit_vectors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -184,7 +185,7 @@ class HandSolver:
         self._own = np.array([place[int(bone)] for bone in digits])
         self._above = np.array([place[int(bone)] for bone in hand.skeleton.parents[digits]])
         axes = hand.skeleton.tails[digits] - hand.skeleton.heads[digits]
-        self._axes = axes / np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), _TINY)
+        self._axes = unit_vectors(axes)
         self._ties = np.zeros((4 * count, 4 * count))
         for bone in hand.group.bones:
             child, parent = place[int(bone)], place[int(hand.skeleton.parents[bone])]
@@ -208,7 +209,7 @@ class HandSolver:
         points = self._design @ pose.unknowns.reshape(-1, 3)
         turns = (self._hand.weights @ pose.rotations.reshape(-1, 9)).reshape(-1, 3, 3)
         normals = np.einsum("sij,sj->si", turns, self._hand.normals)
-        return points, normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)
+        return points, unit_vectors(normals)
 
     def _found_pairs(
         self, pose: HandPose, reach: float

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array, eye_array, vstack
 
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
+from ...mesh.unit_vectors import unit_vectors
 from ...registration.elastic import ElasticSurface
 
 if TYPE_CHECKING:
@@ -151,8 +152,7 @@ class PosedRegistration:
             found = self._homes.on_target(self._target_search, found, now)
         triangles = self._target_search_triangles[found.triangles]
         places = np.einsum("kc,kcd->kd", found.barycentric, target.points[triangles])
-        seen = np.einsum("kc,kcd->kd", found.barycentric, target.normals[triangles])
-        seen /= np.maximum(np.linalg.norm(seen, axis=1, keepdims=True), np.finfo(float).tiny)
+        seen = unit_vectors(np.einsum("kc,kcd->kd", found.barycentric, target.normals[triangles]))
         trust = np.clip(np.einsum("kd,kd->k", seen, normals), 0, 1) ** 2
         trust = trust / (1 + found.squared_distances / _REACH**2)
         trust = trust if seeking is None else trust * seeking

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array
 
+from ...mesh.unit_vectors import unit_vectors
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -65,7 +67,7 @@ def vertex_density(cells: SurfaceCells) -> NDArray[np.float64]:
     normals = cells.normals
     for _ in range(_NORMAL_ROUNDS):
         normals = average @ normals
-    normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), _TINY)
+    normals = unit_vectors(normals)
 
     turns = np.square(normals[a] - normals[b]).sum(axis=1)
     lengths = np.square(cells.positions[a] - cells.positions[b]).sum(axis=1)
