@@ -9,7 +9,7 @@ from .hierarchical.settings import SETUPS, MatchSettings
 from .hierarchical.sparse_result import CoarseMatch, Level
 from .matching.matching import match, match_steps
 from .matching.refinement import distortion_after, placed_by_map, refine_map, refine_map_steps
-from .matching.result import MatchResult
+from .matching.result import DIRECT, MIRRORED, MatchResult
 from .matching.retrieval import Retrieval, RetrievalSettings, RetrievedMatch, retrieve, retrieve_steps
 from .matching.symmetry import SymmetryResult, find_symmetry, find_symmetry_steps
 from .matching.symmetry_map import symmetry_map, symmetry_map_steps
@@ -54,6 +54,8 @@ from .shapes.shape import Shape
 from .shapes.surface_distances import distances_to_vertices_steps
 
 __all__ = [
+    "DIRECT",
+    "MIRRORED",
     "SETUPS",
     "Background",
     "BonePairing",

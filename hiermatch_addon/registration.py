@@ -61,6 +61,7 @@ from .operators.swap import HIERMATCH_OT_swap
 from .operators.use_setup import HIERMATCH_OT_use_setup
 from .overlay.drawing import start_overlay, stop_overlay
 from .overlay.hover import HIERMATCH_GGT_hover, HIERMATCH_GT_hover
+from .panels.answer_menu import HIERMATCH_MT_answers
 from .panels.match_panels import HIERMATCH_PT_match
 from .panels.motion_panels import HIERMATCH_PT_motion, HIERMATCH_UL_bone_pairs
 from .panels.preset_menu import HIERMATCH_OT_add_preset, HIERMATCH_PT_presets, register_presets, unregister_presets
@@ -94,6 +95,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_forget_shapes,
     HIERMATCH_OT_use_setup,
     HIERMATCH_OT_flip,
+    HIERMATCH_MT_answers,
     HIERMATCH_OT_swap,
     HIERMATCH_OT_clear,
     HIERMATCH_OT_export_match,

@@ -91,6 +91,30 @@ def octopus(pose, resolution, turn=0.0):
     return vertices, triangles, rest
 
 
+def starfish(resolution, turn=0.0, arms=5):
+    """Body with arms that are all alike, with a bump on its back so that it cannot be turned over."""
+    angles = 2 * np.pi * np.arange(arms) / arms
+    limbs = [((0, 0, 0), (2 * np.cos(angle), 2 * np.sin(angle), 0), 0.35, 0.15) for angle in angles]
+    bump = ((0, 0, 0), (0, 0, 0.3), 0.5, 0.35)
+    return capsule_surface([*limbs, bump], [[-2.4, -2.4, -0.8], [2.4, 2.4, 0.9]], resolution, turn)
+
+
+def table(resolution, turn=0.0):
+    """A longish top on four legs: the same if it is turned by half."""
+    legs = [((x, y, 0), (x, y, -1.6), 0.14, 0.14) for x in (-1.2, 1.2) for y in (-0.8, 0.8)]
+    top = [((-1.2, y, 0), (1.2, y, 0), 0.16, 0.16) for y in np.linspace(-0.8, 0.8, 8)]
+    return capsule_surface([*legs, *top], [[-1.7, -1.3, -2], [1.7, 1.3, 0.5]], resolution, turn)
+
+
+def two_headed(resolution, turn=0.0):
+    """Trunk with the same head and legs at either end, the other way round: the same if it is turned by half."""
+    half = [((0, 0, 0), (1.0, 0, 0.1), 0.3, 0.3), ((1.0, 0.1, 0.2), (1.5, 0.25, 0.9), 0.2, 0.15)]
+    half += [((0.8, 0.2, 0), (0.9, 0.3, -1.0), 0.14, 0.1), ((0.7, -0.2, 0), (0.6, -0.5, -0.8), 0.14, 0.12)]
+    way = np.array([-1, -1, 1])
+    other = [(tuple(way * a), tuple(way * b), *radii) for a, b, *radii in half]
+    return capsule_surface([*half, *other], [[-1.9, -1.0, -1.3], [1.9, 1.0, 1.3]], resolution, turn)
+
+
 def fish(resolution=24):
     """Long body along x with a fin on its back and, behind a thin stalk, a fluke that looks the same from below."""
     vertices, triangles = icosphere(resolution)

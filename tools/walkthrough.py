@@ -104,11 +104,11 @@ def match_and_flip(look: Callable[[str], None]) -> Any:  # noqa: ANN401 - a gene
 
     press(bpy.ops.hiermatch.flip)
     yield from until(lambda: not running(), "Flipping")
-    check(state().summary.mirrored, "The mirrored answer was not written")
+    check(state().summary.answer == 1, "The mirrored answer was not written")
     look("05-flipped")
     press(bpy.ops.hiermatch.flip)
     yield from until(lambda: not running(), "Flipping back")
-    check(not state().summary.mirrored, "The first answer was not written again")
+    check(state().summary.answer == 0, "The first answer was not written again")
 
 
 def steer(look: Callable[[str], None]) -> Any:  # noqa: ANN401 - a generator of pauses

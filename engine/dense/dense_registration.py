@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..registration.registration import points_at
 from ..runtime.progress import Preview, Progress, Steps, within
+from .credibility import is_clear_choice
 from .dense_hypotheses import USUAL, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
 from .proposers import PROPOSERS, Contest, are_distinct, contenders
-from .registered_hypotheses import Candidate, CloseFit, Follower
+from .registered_hypotheses import Candidate, CloseFit, Follower, at_vertices
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ..mesh.closest_points import FoundPoints
     from ..registration.registration import Registration
     from ..shapes.landmarks import Landmarks
     from ..shapes.shape import Shape
@@ -58,6 +61,9 @@ class RegisteredPair:
     trips : pair of (n_x,) and (n_y,) arrays of float, optional
         How far, in sqrt(area), vertices were from where both registrations brought them, there and back, before the
         target followed the source at last: where that is much they may err.
+    alternatives : tuple of FoundPoints
+        Where other maps that are as credible take the vertices of the source, the most credible first: of a body that
+        is the same from several sides.  They are known about as well as they had to be to be compared.
     """
 
     x: Shape
@@ -71,6 +77,7 @@ class RegisteredPair:
     landmarks: Landmarks | None = None
     mirrored: bool = False
     trips: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+    alternatives: tuple[FoundPoints, ...] = ()
 
     @property
     def likeness(self) -> float | None:
@@ -157,9 +164,13 @@ def registered_pair_steps(
     if best.hypothesis.is_rough:
         # Others are compared with what functional maps make of it, not with the rough map.
         best = yield from within(follow.refined_steps(best), 1.0, 1.0)
-    margin = _margin(best, others, fits, () if as_they_are else untried, source.mass)
+    rivals = _rivals(best, others, fits, () if as_they_are else untried, source.mass)
+    # With limbs put right, the hypothesis is another one than those that were sorted out by their scores.
+    margin = max(min(gap for gap, _ in rivals), 0.0) if rivals else None
     registered = closest.registration, closest.reverse, (best, *others)
-    return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips)
+    pair = RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips)
+    alternatives = yield from _alternatives_steps(follow, rivals, closest.registration)
+    return replace(pair, alternatives=alternatives)
 
 
 def _preview(hypothesis: MapHypothesis, registration: Registration | None = None) -> Preview:
@@ -179,23 +190,40 @@ def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[
     return sorted(fits, key=lambda fit: fit.score)
 
 
-def _margin(
+def _rivals(
     best: Candidate,
     others: list[Candidate],
     fits: list[CloseFit],
     untried: Sequence[MapHypothesis],
     areas: NDArray[np.float64],
-) -> float | None:
-    """By how much the second choice is less credible; hypotheses that were not registered count by their own score."""
+) -> list[tuple[float, Registration | MapHypothesis]]:
+    """List other maps, and by how much each is less credible, by its own score if it was not registered."""
     # Starts that differ in a limb may lead to the same place at last.
     last = fits[0].registration.positions
-    rivals = [fit for fit in fits[1:] if are_distinct(last, fit.registration.positions, areas)]
-    gaps = [fit.score - fits[0].score for fit in rivals]
+    others_closely = [fit for fit in fits[1:] if are_distinct(last, fit.registration.positions, areas)]
+    rivals: list[tuple[float, Registration | MapHypothesis]]
+    rivals = [(fit.score - fits[0].score, fit.registration) for fit in others_closely]
     closely = {id(fit.candidate) for fit in fits}
     for other in others:
         taken = other.registration.positions
         if id(other) not in closely and are_distinct(best.registration.positions, taken, areas):
-            gaps.append(other.score - best.score)
-    gaps += [hypothesis.score - best.hypothesis.score for hypothesis in untried]
-    # With limbs put right, the hypothesis is another one than those that were sorted out by their scores.
-    return max(float(min(gaps)), 0.0) if gaps else None
+            rivals.append((other.score - best.score, other.registration))
+    return rivals + [(hypothesis.score - best.hypothesis.score, hypothesis) for hypothesis in untried]
+
+
+def _alternatives_steps(
+    follow: Follower, rivals: list[tuple[float, Registration | MapHypothesis]], chosen: Registration
+) -> Steps[tuple[FoundPoints, ...]]:
+    """Choose the maps that are about as credible as the one that is taken, and differ from it and each other."""
+    close = sorted((rival for rival in rivals if not is_clear_choice(max(rival[0], 0.0))), key=itemgetter(0))
+    taken, found = [chosen.positions], []
+    for _, rival in close:
+        if isinstance(rival, MapHypothesis):
+            images = yield from within(rival.images_steps(), 1.0, 1.0)
+            positions, points = follow.start(images), at_vertices(follow.target, images.on_y)
+        else:
+            positions, points = rival.positions, rival.on_target
+        if all(are_distinct(positions, other, follow.source.mass) for other in taken):
+            taken.append(positions)
+            found.append(points)
+    return tuple(found)

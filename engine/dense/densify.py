@@ -30,7 +30,7 @@ from .credibility import vertex_credibility
 from .dense_hypotheses import LandmarkStart
 from .dense_registration import EIGENPAIRS, registered_pair_steps
 from .functional_maps import nearest_both_ways
-from .quality import MatchQuality, assess_maps, with_pieces
+from .quality import MatchQuality, assess_maps, with_alternatives, with_pieces
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -85,9 +85,13 @@ def densify(
     target_points: SurfacePoints,
     *,
     maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
+    margin: float | None = None,
+    alternatives: int = 0,
 ) -> DenseMatch:
     """Extend a sparse correspondence to all vertices; see `densify_steps`."""
-    return run(densify_steps(source, target, source_points, target_points, maps=maps))
+    return run(
+        densify_steps(source, target, source_points, target_points, maps=maps, margin=margin, alternatives=alternatives)
+    )
 
 
 @can_go_beside
@@ -98,6 +102,8 @@ def densify_steps(
     target_points: SurfacePoints,
     *,
     maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
+    margin: float | None = None,
+    alternatives: int = 0,
 ) -> Steps[DenseMatch]:
     """Extend a sparse correspondence to all vertices, in steps.
 
@@ -114,6 +120,11 @@ def densify_steps(
     maps : pair of SurfaceMap, optional
         Of two meshes, maps there and back by another correspondence: what has no partner by these has none by this
         one, if that is much.
+    margin : float, optional
+        By how much, at most, the correspondence is more credible than others that are known to keep the orientation,
+        if it does so itself.
+    alternatives : int
+        How many of these are about as credible.
 
     Returns
     -------
@@ -140,7 +151,10 @@ def densify_steps(
     shapes = seen.limited(_SAMPLES, MEASURED), y.limited(_SAMPLES, MEASURED)
     steps = registered_pair_steps(*shapes, (start,), search=mirrored, as_they_are=mirrored)
     pair = yield from within(steps, 0.35, 0.8)
+    if margin is not None and not mirrored:
+        pair = replace(pair, margin=margin if pair.margin is None else min(pair.margin, margin))
     dense = yield from within(dense_match_steps(pair, involution=involution), 0.8, 1.0)
+    dense = replace(dense, quality=with_alternatives(dense.quality, 0 if mirrored else alternatives))
     if mirrored:
         dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))
     return with_pieces_only(dense, (x.original, y.original), covered)

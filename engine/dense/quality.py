@@ -26,6 +26,7 @@ __all__ = [
     "of_covered_part",
     "overlap_sentence",
     "trip_confidence",
+    "with_alternatives",
     "with_pieces",
 ]
 
@@ -79,6 +80,8 @@ class MatchQuality:
     pieces_alone : float
         Part of the surface of either mesh, of the one that has more of it, that is in separate pieces without a
         counterpart on the other.
+    alternatives : int
+        How many other maps are about as credible, and offered.
     """
 
     orientation: float
@@ -91,6 +94,7 @@ class MatchQuality:
     source_coverage: float = 1.0
     likeness: float | None = None
     pieces_alone: float = 0.0
+    alternatives: int = 0
 
 
 def map_confidence(
@@ -210,6 +214,12 @@ def with_pieces(quality: MatchQuality, alone: float, share: float) -> MatchQuali
     return replace(more, sentence=_sentence(more))
 
 
+def with_alternatives(quality: MatchQuality, count: int) -> MatchQuality:
+    """Say of a map, too, how many others are about as credible, and offered."""
+    more = replace(quality, alternatives=count)
+    return replace(more, sentence=_sentence(more))
+
+
 def of_covered_part(quality: MatchQuality, share: float, *, of_source: bool) -> MatchQuality:
     """Say of a map, too, that it was made with only so large a part of the source, or of the target."""
     if of_source:
@@ -230,6 +240,9 @@ def _doubt(quality: MatchQuality) -> str:
         return "The map turns large parts of the surface over: do not trust it; try landmarks."
     if is_less_alike(quality.likeness, EVEN):
         return "The shapes have too little in common: leave out what only one of them has, or try landmarks."
+    if quality.alternatives:
+        count = quality.alternatives + 1
+        return f"{count} maps are about as likely: choose another answer if this one is wrong, or add a landmark."
     if not is_clear_choice(quality.margin):
         return "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong."
     return ""

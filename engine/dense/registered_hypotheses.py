@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     _Common = tuple["Follower", MapDomain, MapDomain]
     Trips = tuple[NDArray[np.float64], NDArray[np.float64]]
 
-__all__ = ["Candidate", "CloseFit", "Follower", "Settling"]
+__all__ = ["Candidate", "CloseFit", "Follower", "Settling", "at_vertices"]
 
 _SMOOTH = 40
 """Eigenfunctions that the source is placed by before it is registered."""
@@ -194,7 +194,7 @@ class Follower:
         images = yield from within(hypothesis.images_steps(), 0.0, 0.2)
         start = self.start(images)
         posed = (start + smooth_start(source, target, images.on_y, self._functions)) / 2
-        first = _at_vertices(target, images.on_y), _at_vertices(source, images.on_x)
+        first = at_vertices(target, images.on_y), at_vertices(source, images.on_x)
         guides = self._guides(hypothesis, images)
         stages = GUIDED, SOFT
         steps = register_steps(source, target, start, stages, first, posed=posed, ties=self.ties, guides=guides)
@@ -401,6 +401,7 @@ def _registered_steps(common: _Common, item: tuple[NDArray[np.float64], Stage, f
     return (yield from steps)
 
 
-def _at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
+def at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
+    """Name vertices of a surface as points on it."""
     points = SurfacePoints.at_vertices(surface.mesh, vertices)
     return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))

@@ -15,7 +15,15 @@ if TYPE_CHECKING:
     from ..mesh.surface_map import SurfaceMap
     from ..mesh.surface_points import SurfacePoints
 
-__all__ = ["MatchResult"]
+__all__ = ["DIRECT", "MIRRORED", "MatchResult", "turned_name"]
+
+DIRECT, MIRRORED = "direct", "mirrored"
+"""Names of the answer that was chosen and of the one that exchanges left and right."""
+
+
+def turned_name(number: int) -> str:
+    """Name the alternatives that keep left and right, counted from 1."""
+    return f"turned {number}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,17 +49,14 @@ class MatchResult:
         The hierarchy, coarse to fine.
     coarse : CoarseMatch
         The exact first step.
-    mirrored : MatchResult or None
-        The other answer for a symmetric shape: same source points, opposite orientation; None if there is none.
-        Its own `mirrored` is None.
     source_distances : (k, n) array of float or None
         Geodesic distance from each matched point to every vertex of the source; inf where there is no path.  None if
         there are dense maps, which carry values to every vertex better.
     target_distances : (k, m) array of float or None
         The same on the target.
     source_to_target : SurfaceMap or None
-        For every vertex of the source its point on the target, as far as the match was dense and this is not the
-        mirrored answer.
+        For every vertex of the source its point on the target, as far as the match was dense and this is not an
+        alternative.
     target_to_source : SurfaceMap or None
         For every vertex of the target its point on the source.
     quality : MatchQuality or None
@@ -60,6 +65,12 @@ class MatchResult:
         What the user should know, such as parts that were left out: one sentence each.
     seconds : dict of str to float
         Time spent per stage; not part of what is reproducible.
+    name : str
+        "direct", or as one of the alternatives "mirrored", "turned 1", "turned 2" and so on.
+    alternatives : tuple of MatchResult
+        Other right answers for shapes that look the same from several sides, with the same source points: the mirrored
+        one first, if there is one, then those that are about as credible as this one, the most credible first.  Their
+        points are what is known of them: `densify` makes their dense maps.  They have no alternatives themselves.
     """
 
     source_points: SurfacePoints
@@ -71,7 +82,6 @@ class MatchResult:
     orientation: float
     levels: tuple[Level, ...]
     coarse: CoarseMatch
-    mirrored: MatchResult | None
     source_distances: NDArray[np.float64] | None
     target_distances: NDArray[np.float64] | None
     notes: tuple[str, ...]
@@ -79,6 +89,13 @@ class MatchResult:
     source_to_target: SurfaceMap | None = None
     target_to_source: SurfaceMap | None = None
     quality: MatchQuality | None = None
+    name: str = DIRECT
+    alternatives: tuple[MatchResult, ...] = ()
+
+    @property
+    def mirrored(self) -> MatchResult | None:
+        """The alternative of the opposite orientation, of a symmetric shape; None if there is none."""
+        return next((answer for answer in self.alternatives if answer.name == MIRRORED), None)
 
     def __repr__(self) -> str:
         dense = "" if self.quality is None else f", dense with confidence {self.quality.confidence:.2f}"

@@ -14,6 +14,7 @@ from ..dense.dense_hypotheses import LandmarkStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
 from ..dense.densify import MEASURED, DenseMatch, dense_match_steps
 from ..dense.initial_maps import RoughSearch
+from ..dense.quality import with_alternatives
 from ..hierarchical.hierarchy import refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
@@ -25,7 +26,7 @@ from ..shapes.genus_reduction import evened_steps
 from ..shapes.landmarks import locate_landmarks, placed_at_vertices
 from ..shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from ..shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
-from .result import MatchResult
+from .result import MIRRORED, MatchResult, turned_name
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -55,9 +56,9 @@ class Clock:
         self._last = now
 
     def noted(self, result: MatchResult) -> MatchResult:
-        """Note on a result, and on its mirrored one, all laps until now."""
-        mirrored = None if result.mirrored is None else self.noted(result.mirrored)
-        return replace(result, mirrored=mirrored, seconds=dict(self.laps))
+        """Note on a result, and on its alternatives, all laps until now."""
+        alternatives = tuple(self.noted(answer) for answer in result.alternatives)
+        return replace(result, alternatives=alternatives, seconds=dict(self.laps))
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,15 +136,14 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
         for answer in answers:
             rows = yield from _distance_rows_steps(answer)
             results.append(_result(answer, known, notes, clock.laps, rows))
-        return replace(results[0], mirrored=results[1] if len(results) > 1 else None)
-    direct, mirrored, dense = yield from within(_dense_steps(answers, finer, known, searched, clock), sparse_end, 1.0)
-    result = _result(direct, known, notes, clock.laps)
+        return replace(results[0], alternatives=tuple(replace(other, name=MIRRORED) for other in results[1:2]))
+    direct, others, dense = yield from within(_dense_steps(answers, finer, known, searched, clock), sparse_end, 1.0)
     return replace(
-        result,
-        mirrored=None if mirrored is None else _result(mirrored, known, notes, clock.laps),
+        _result(direct, known, notes, clock.laps),
+        alternatives=tuple(replace(_result(other, known, notes, clock.laps), name=name) for name, other in others),
         source_to_target=dense.source_to_target,
         target_to_source=dense.target_to_source,
-        quality=dense.quality,
+        quality=with_alternatives(dense.quality, sum(name != MIRRORED for name, _ in others)),
     )
 
 
@@ -153,10 +153,10 @@ def _dense_steps(
     landmarks: Landmarks | None,
     searched: RoughSearch | None,
     clock: Clock,
-) -> Steps[tuple[Answer, Answer | None, DenseMatch]]:
-    """Find the dense map, and the sparse answers that agree with it: the true and the mirrored one.
+) -> Steps[tuple[Answer, list[tuple[str, Answer]], DenseMatch]]:
+    """Find the dense map, the sparse answer that agrees with it, and its alternatives by their names.
 
-    It is found on finer shapes than those of the answers where these are coarse.
+    The map is found on finer shapes than those of the answers where these are coarse.
     """
     pair = answers[0].coarse.pair
     x, y = pair.source, pair.target
@@ -173,15 +173,27 @@ def _dense_steps(
     clock.lap("registration")
     dense = yield from within(dense_match_steps(registered), 0.75, 0.9)
     clock.lap("lift")
-    found, vertices = dense.source_to_target, x.vertices[x.samples[: len(answers[0].points)]]
-    images = y.surface.on_mesh(
-        SurfacePoints.from_barycentric(y.original, found.triangles[vertices], found.barycentric[vertices])
-    )
-    if landmarks is not None:
-        images = placed_at_vertices(images, y.mesh, np.arange(len(landmarks)), landmarks.target.matched)
+    count = len(answers[0].points)
+    found, vertices = dense.source_to_target, x.vertices[x.samples[:count]]
+
+    def placed(points: SurfacePoints) -> SurfacePoints:
+        """Put images on the original target where they are matched."""
+        images = y.surface.on_mesh(points)
+        if landmarks is None:
+            return images
+        return placed_at_vertices(images, y.mesh, np.arange(len(landmarks)), landmarks.target.matched)
+
+    images = placed(SurfacePoints.from_barycentric(y.original, found.triangles[vertices], found.barycentric[vertices]))
     direct, mirrored = yield from within(_agreeing_steps(answers, images), 0.9, 1.0)
+    others = [] if mirrored is None else [(MIRRORED, mirrored)]
+    fine_x, fine_y = finer
+    for number, other in enumerate(registered.alternatives, start=1):
+        places = other.triangles[fine_x.samples[:count]], other.barycentric[fine_x.samples[:count]]
+        turned = placed(fine_y.surface.on_original(SurfacePoints.from_barycentric(fine_y.mesh, *places)))
+        yield from pair.target_metric.prepare_nearest_steps(turned)
+        others.append((turned_name(number), moved(direct, turned)))
     clock.lap("agreement")
-    return direct, mirrored, dense
+    return direct, others, dense
 
 
 def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple[Answer, Answer | None]]:
@@ -264,7 +276,6 @@ def _result(
             coarse.proven,
             coarse.nodes,
         ),
-        mirrored=None,
         source_distances=rows[0],
         target_distances=rows[1],
         notes=notes,

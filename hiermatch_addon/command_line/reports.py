@@ -103,8 +103,8 @@ class Report:
             "orientation": answer.orientation,
             "proven": answer.proven,
             "gap": answer.gap,
-            "mirrored": stored.mirrored,
-            "has_mirrored": len(stored.answers) > 1,
+            "answer": answer.name,
+            "alternatives": [other.name for other in stored.answers[1:]],
             "refined": answer.refined,
             "quality": None if answer.quality is None else dict(vars(answer.quality)),
         }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 import numpy as np
 
-from ...engine import symmetry_map_steps
+from ...engine import DIRECT, symmetry_map_steps
 from ..common.access import mesh_of, view_layer_of
 from ..scene.character import parts_of
 from ..scene.mesh_io import position_digest, read_mesh, topology
@@ -117,9 +117,18 @@ def _as_file(obj: bpy.types.Object, found: DenseMatch, quality: Quality) -> Matc
         written=written,
         source_points=none,
         answers=(
-            Answer(none, np.empty(0), quality.distortion, quality.orientation, proven=False, gap=1.0, quality=quality),
+            Answer(
+                DIRECT,
+                none,
+                np.empty(0),
+                quality.distortion,
+                quality.orientation,
+                proven=False,
+                gap=1.0,
+                quality=quality,
+            ),
         ),
-        mirrored=False,
+        chosen=0,
         notes=(),
     )
     count = len(mesh.vertices)

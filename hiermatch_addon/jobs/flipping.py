@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The other answer of a match that two meshes keep: from what they keep to what is written on them anew."""
+"""Another answer of a match that two meshes keep: from what they keep to what is written on them anew."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..storage.answer_writing import following_steps, mapped_contents_steps, res
 from ..storage.contents import contents_steps
 from ..storage.halves import find_keyed
 from ..storage.stored_match import StoredMatch
-from ..storage.vertex_maps import StoredMaps, map_name
+from ..storage.vertex_maps import StoredMaps, read_all_maps
 from .rewriting_job import RewritingJob
 
 if TYPE_CHECKING:
@@ -33,9 +33,9 @@ _MAPPED = 0.95
 
 
 class FlipJob(RewritingJob):
-    """Writes the other answer of a match in place of the one that is written.
+    """Writes another answer of a match in place of the one that is written.
 
-    The dense maps of the answer that was written stay on the meshes, so that the way back takes no time.
+    The dense maps of answers that were written once stay on the meshes, so that the way back takes no time.
 
     Parameters
     ----------
@@ -43,14 +43,16 @@ class FlipJob(RewritingJob):
         Where the objects are.
     half : Half
         One side of the match.
+    number : int
+        Of the answer, from 0 for the direct one; or that of the next one, after the last the first, if it is negative.
 
     Raises
     ------
     HierMatchError
-        If there is no other answer, or the meshes are not what they were.
+        If there is no such answer, or the meshes are not what they were.
     """
 
-    def __init__(self, context: bpy.types.Context, half: Half) -> None:
+    def __init__(self, context: bpy.types.Context, half: Half, number: int = -1) -> None:
         started = time.perf_counter()
         depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
         view_layer = view_layer_of(context)
@@ -60,41 +62,55 @@ class FlipJob(RewritingJob):
         for side in (source, target):
             _check_topology(side)
         stored = StoredMatch.from_plain(source.kept, target.kept)
-        if len(stored.answers) < 2:
+        count = len(stored.answers)
+        if count < 2:
             raise ObjectError(
-                f'The match of "{source.obj.name}" and "{target.obj.name}" has no mirrored answer: '
+                f'The match of "{source.obj.name}" and "{target.obj.name}" has no mirrored answer and no other: '
                 "the meshes are not symmetric enough for one."
+            )
+        if number >= count:
+            raise ObjectError(
+                f'The match of "{source.obj.name}" and "{target.obj.name}" has the alternatives 1 to {count - 1} only.'
             )
         use_modifiers = stored.written.use_modifiers
         self._meshes = (
             read_surface(source.obj, depsgraph, use_modifiers=use_modifiers),
             read_surface(target.obj, depsgraph, use_modifiers=use_modifiers),
         )
-        self._maps, self._other_maps = (
-            StoredMaps.read(source.obj, target.obj, map_name(half.prefix, other=other)) for other in (False, True)
-        )
-        super().__init__((source, target), replace(stored, mirrored=not stored.mirrored), started)
+        kept = read_all_maps(source.obj, target.obj, half.prefix, count)
+        self._maps, self._shown = dict(zip(stored.order, kept, strict=True)), stored.chosen
+        chosen = number if number >= 0 else (stored.chosen + 1) % count
+        super().__init__((source, target), replace(stored, chosen=chosen), started)
 
     def _check_half(self, half: Half) -> None:
         _check_topology(half)
 
     def _all_steps(self) -> Steps[None]:
-        """Find what the other answer says of every vertex, and prepare what is written."""
+        """Find what the answer says of every vertex, and prepare what is written."""
         steps = self._mapped_steps() if self._stored.written.dense else self._measured_steps()
         self._prepared = yield from steps
 
     def _mapped_steps(self) -> Steps[tuple[Content, Content]]:
         """Prepare the answer from its dense maps, which are made if the meshes do not keep them."""
-        stored, meshes, maps, start = self._stored, self._meshes, self._other_maps, 0.0
+        stored, meshes, start = self._stored, self._meshes, 0.0
+        maps, last = self._maps[stored.chosen], self._maps[self._shown]
         if maps is None:
             points = restored(stored, meshes)
-            shown = None if self._maps is None else self._maps.between(*meshes)
+            shown = None if last is None else last.between(*meshes)
             known = (None, None) if shown is None else (shown.source_to_target, shown.target_to_source)
-            steps = densify_steps(*meshes, points.source_points, points.target_points, maps=known)
+            steps = densify_steps(
+                *meshes,
+                points.source_points,
+                points.target_points,
+                maps=known,
+                margin=stored.margin,
+                alternatives=stored.turned,
+            )
             dense = yield from within(steps, 0.0, _MAPPED)
             maps, start = StoredMaps.of(dense.source_to_target, dense.target_to_source), _MAPPED
             self._stored = yield from following_steps(stored, meshes, dense, proven=stored.answer.proven)
-        writing = mapped_contents_steps(self._stored, meshes, self.prefix, maps, self._maps)
+        others = [self._maps[number] for number in stored.order[1:]]
+        writing = mapped_contents_steps(self._stored, meshes, self.prefix, maps, others)
         return (yield from within(writing, start, 1.0))
 
     def _measured_steps(self) -> Steps[tuple[Content, Content]]:

@@ -36,7 +36,7 @@ from .stepped_job import SteppedJob
 if TYPE_CHECKING:
     import bpy
 
-    from ...engine import DenseMatch, MatchResult, Steps
+    from ...engine import MatchResult, Steps
     from ..properties.properties import MatchOptions
     from ..scene.character import Side
     from ..storage.contents import Content
@@ -58,8 +58,9 @@ class JobOptions:
         The engine's settings.
     use_modifiers : bool
         Whether to match the meshes as shape keys and modifiers show them.
-    use_mirrored : bool
-        Whether to write the mirrored answer, if there is one.
+    alternative : int
+        Number of the alternative to write, from 1, or 0 for the direct answer, which is also written if there are not
+        as many.
     use_landmarks : bool
         Whether to keep to the landmarks that the two meshes have in common.
     exclude_source, exclude_target : str
@@ -72,7 +73,7 @@ class JobOptions:
 
     settings: MatchSettings
     use_modifiers: bool = False
-    use_mirrored: bool = False
+    alternative: int = 0
     use_landmarks: bool = True
     exclude_source: str = ""
     exclude_target: str = ""
@@ -98,7 +99,7 @@ def job_options(options: MatchOptions) -> JobOptions:
     return JobOptions(
         settings=match_settings(options),
         use_modifiers=options.use_modifiers,
-        use_mirrored=options.use_mirrored,
+        alternative=options.alternative,
         use_landmarks=options.use_landmarks,
         exclude_source=options.exclude_source,
         exclude_target=options.exclude_target,
@@ -123,7 +124,7 @@ class Outcome:
     maps : MapPair or None
         Its dense maps, if it has any, in the precision in which they are kept.
     stored : StoredMatch
-        What is kept of it in the file: both answers.
+        What is kept of it in the file: all answers.
     seconds : float
         How long it took, from reading to writing.
     """
@@ -144,17 +145,27 @@ class _Found:
     ----------
     result : MatchResult
         The result.
-    mirrored : DenseMatch or None
-        The dense maps of its mirrored answer, if they are wanted.
+    chosen : int
+        Number of the answer to write, from 0 for the result itself.
     """
 
     result: MatchResult
-    mirrored: DenseMatch | None
+    chosen: int
 
-    def maps(self, *, mirrored: bool) -> StoredMaps | None:
+    @property
+    def answers(self) -> tuple[MatchResult, ...]:
+        """The result and its alternatives, with dense maps as far as they were made."""
+        return (self.result, *self.result.alternatives)
+
+    @property
+    def answer(self) -> MatchResult:
+        """The answer to write."""
+        return self.answers[self.chosen]
+
+    def maps(self, number: int) -> StoredMaps | None:
         """Return what is kept of the dense maps of one answer; None if they were not made."""
-        found = self.mirrored if mirrored else self.result
-        if found is None or found.source_to_target is None or found.target_to_source is None:
+        found = self.answers[number]
+        if found.source_to_target is None or found.target_to_source is None:
             return None
         return StoredMaps.of(found.source_to_target, found.target_to_source)
 
@@ -232,9 +243,9 @@ class MatchJob(SteppedJob):
         self._prepared = yield from within(self._prepare_steps(self._found), _MATCHED, 1.0)
 
     def _match_steps(self) -> Steps[_Found]:
-        """Match, and make the dense maps of the mirrored answer if that is to be written."""
+        """Match, and make the dense maps of an alternative if that is to be written."""
         options, (source, target) = self._options, self._meshes
-        both = options.use_mirrored and options.settings.dense
+        both = options.alternative > 0 and options.settings.dense
         steps = match_steps(
             source,
             target,
@@ -244,53 +255,60 @@ class MatchJob(SteppedJob):
             known=self._known,
         )
         result = yield from within(steps, 0.0, 0.7 if both else 1.0)
-        mirrored = result.mirrored
-        if not both or mirrored is None:
-            return _Found(result, None)
-        points = mirrored.source_points
-        maps = result.source_to_target, result.target_to_source
-        mapping = densify_steps(source, target, points, mirrored.target_points, maps=maps)
+        others, chosen = list(result.alternatives), options.alternative
+        if chosen > len(others):
+            return _Found(result, 0)
+        quality = result.quality
+        if not both or quality is None:
+            return _Found(result, chosen)
+        other = others[chosen - 1]
+        points = other.source_points
+        mapping = densify_steps(
+            source,
+            target,
+            points,
+            other.target_points,
+            maps=(result.source_to_target, result.target_to_source),
+            margin=quality.margin,
+            alternatives=quality.alternatives,
+        )
         dense = yield from within(mapping, 0.7, 1.0)
         placing = called_steps(placed_by_map, source, target, points, dense.source_to_target)
         images, distortion = yield from within(placing, 1.0, 1.0)
-        moved = replace(
-            mirrored,
+        others[chosen - 1] = replace(
+            other,
             target_points=images,
             point_distortion=distortion,
-            distortion=distortion_after(mirrored.distortion, mirrored.point_distortion, distortion),
+            distortion=distortion_after(other.distortion, other.point_distortion, distortion),
+            source_to_target=dense.source_to_target,
+            target_to_source=dense.target_to_source,
+            quality=dense.quality,
         )
-        return _Found(replace(result, mirrored=moved), dense)
+        return _Found(replace(result, alternatives=tuple(others)), chosen)
 
     def _prepare_steps(self, found: _Found) -> Steps[_Prepared]:
-        """Prepare what is to be written of either answer."""
-        prefix, direct, mirrored = self._options.prefix, found.result, self._writes_mirrored(found)
-        result = direct.mirrored if mirrored and direct.mirrored is not None else direct
-        kept, maps = found.maps(mirrored=mirrored), None
+        """Prepare what is to be written of the answers."""
+        prefix, result = self._options.prefix, found.answer
+        kept, maps = found.maps(found.chosen), None
         if kept is not None:
             yield Progress(0.0, "Preparing what is written")
             maps = kept.between(*self._meshes)
         contents = yield from within(contents_steps(result, prefix, self._options, maps), 0.3, 1.0)
         if kept is not None:
-            add_maps(contents, prefix, kept, found.maps(mirrored=not mirrored))
+            others = (found.maps(number) for number in range(len(found.answers)) if number != found.chosen)
+            add_maps(contents, prefix, (kept, *others))
         return _Prepared(result, maps, contents)
-
-    def _writes_mirrored(self, found: _Found) -> bool:
-        return self._options.use_mirrored and found.result.mirrored is not None
 
     @property
     def maps(self) -> StoredMaps | None:
         """The dense maps of the answer that is to be written, as they are kept; None as long as there are none."""
-        if self._found is None:
-            return None
-        return self._found.maps(mirrored=self._writes_mirrored(self._found))
+        return None if self._found is None else self._found.maps(self._found.chosen)
 
     @property
     def quality(self) -> Quality | None:
         """How far these maps can be trusted; None as long as there are none."""
-        if self._found is None:
-            return None
-        found = self._found.mirrored if self._writes_mirrored(self._found) else self._found.result
-        return None if found is None or found.quality is None else Quality.of(found.quality)
+        found = None if self._found is None else self._found.answer.quality
+        return None if found is None else Quality.of(found)
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
         """Write the result on both objects.
@@ -317,11 +335,9 @@ class MatchJob(SteppedJob):
     def _stored(self, found: _Found, names: tuple[str, str]) -> StoredMatch:
         """Collect what is kept of the match in the file."""
         options, result, notes = self._options, found.result, list(found.result.notes)
-        if options.use_mirrored and result.mirrored is None:
-            notes.append("There is no mirrored match, so the only one was written.")
-        answers = [Answer.of(result, result.quality)]
-        if result.mirrored is not None:
-            answers.append(Answer.of(result.mirrored, found.mirrored.quality if found.mirrored else None))
+        if options.alternative > found.chosen:
+            missing, count = options.alternative, len(result.alternatives)
+            notes.append(f"There is no alternative {missing}, only {count}: the direct answer was written.")
         return StoredMatch(
             names=names,
             topologies=self._topologies,
@@ -335,8 +351,8 @@ class MatchJob(SteppedJob):
                 dense=result.source_to_target is not None,
             ),
             source_points=CornerPoints.of(result.source_points),
-            answers=tuple(answers),
-            mirrored=self._writes_mirrored(found),
+            answers=tuple(Answer.of(answer, answer.quality) for answer in found.answers),
+            chosen=found.chosen,
             notes=tuple(notes),
         )
 

@@ -17,7 +17,7 @@ from ..storage.answer_writing import following_steps, mapped_contents_steps
 from ..storage.excluded_regions import excluded_vertices
 from ..storage.landmarks import find_landmarks, landmark_array
 from ..storage.stored_match import StoredMatch
-from ..storage.vertex_maps import StoredMaps, map_name
+from ..storage.vertex_maps import StoredMaps, map_name, read_all_maps
 from .rewriting_job import RewritingJob
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class RefineJob(RewritingJob):
         at, to = self._landmarks.T
         apart = np.linalg.norm(self._meshes[1].vertices[to] - self._map.positions[at], axis=1)
         self.moved = float(apart.max() / np.sqrt(self._meshes[1].area))
-        self._other_maps = StoredMaps.read(first.obj, second.obj, map_name(prefix, other=True))
+        _, *self._other_maps = read_all_maps(first.obj, second.obj, prefix, len(stored.answers))
         super().__init__((first, second), stored, started)
 
     def _check_half(self, half: Half) -> None:

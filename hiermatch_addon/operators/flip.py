@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mypy: disable-error-code="valid-type"
-"""Write the other answer of a match."""
+"""Write another answer of a match."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ __all__ = ["HIERMATCH_OT_flip"]
 
 
 class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
-    """Exchange the two answers of a match."""
+    """Choose between the answers of a match."""
 
     bl_idname = "hiermatch.flip"
-    bl_label = "Use Mirrored Match"
+    bl_label = "Use Another Answer"
     bl_description = (
-        "Write the other of the two answers of the match, in which left and right are exchanged, without matching "
-        "again. Once more brings the first answer back"
+        "Write another answer of the match, such as the one in which left and right are exchanged, without matching "
+        "again. The first answer can be brought back"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -43,6 +43,14 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         "else that of the active object",
         options={"SKIP_SAVE"},
     )
+    alternative: bpy.props.IntProperty(
+        name="Alternative",
+        description="Number of the answer: 0 is the direct one, and -1 the one after that which is written; of two "
+        "answers, the other one",
+        default=-1,
+        min=-1,
+        options={"SKIP_SAVE"},
+    )
     prefix: bpy.props.StringProperty(
         name="Prefix",
         description="What the names that the match wrote start with; needed only for a named or active object that "
@@ -50,7 +58,7 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    doing = "Writing the other answer"
+    doing = "Writing another answer"
     cancelled = "It was cancelled. The match is as it was"
 
     @classmethod
@@ -60,7 +68,7 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
 
     def _start(self, context: bpy.types.Context) -> FlipJob:
         """Read both objects."""
-        return FlipJob(context, self._half(context))
+        return FlipJob(context, self._half(context), self.alternative)
 
     def _finish(self, context: bpy.types.Context, job: FlipJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
@@ -70,11 +78,7 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         remember(summary, stored, job.names, job.prefix, summary.seconds if same else 0.0)
         refresh(cast("bpy.types.Scene", context.scene))
         source, target = job.names
-        if stored.mirrored:
-            said = translated(f'Wrote the mirrored match of "{source}" and "{target}"')
-        else:
-            said = translated(f'Wrote the direct match of "{source}" and "{target}"')
-        self.report({"INFO"}, said)
+        self.report({"INFO"}, translated(f'Wrote the {stored.answer.name} match of "{source}" and "{target}"'))
         return {"FINISHED"}
 
     def _half(self, context: bpy.types.Context) -> Half:

@@ -14,9 +14,10 @@ from ..properties.panel_state import picked, state_of
 from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.setups import current_setup
+from .answer_menu import draw_answers
 from .panel_text import draw_notes, draw_text, wrap_text
 from .preset_menu import HIERMATCH_PT_presets
-from .progress_bar import draw_progress, draw_starter
+from .progress_bar import draw_progress
 
 if TYPE_CHECKING:
     from ..properties.properties import HIERMATCH_PG_scene, HIERMATCH_PG_summary
@@ -147,7 +148,7 @@ def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
         confidence = column.column()
         confidence.active = state.dense
         confidence.prop(state, "write_confidence")
-        body.prop(state, "use_mirrored")
+        body.prop(state, "alternative")
 
 
 def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
@@ -217,12 +218,11 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
         box,
         ("Confidence", _judged(summary.confidence, _CONFIDENCE) if summary.verdict else ""),
         ("Left and Right", _orientation_text(summary)),
-        ("Mirrored Match", "" if summary.has_mirrored else translated("none")),
+        ("Other Answers", "" if "\n" in summary.answers else translated("none")),
     )
     if doubtful:
         box.operator("hiermatch.guide_me", icon="EYEDROPPER")
-    if summary.has_mirrored:
-        draw_starter(box, context, "hiermatch.flip", "Use Mirrored Match", "MOD_MIRROR", depress=summary.mirrored)
+    draw_answers(box, context, summary)
     header, body = cast("Any", layout).panel("hiermatch_details", default_closed=True)
     header.label(text="Details")
     if body is not None:

@@ -98,10 +98,12 @@ _OPTIONS: dict[str, Any] = {
         description="Match the meshes as their shape keys and modifiers show them. "
         "Possible unless a modifier adds or removes vertices",
     ),
-    "use_mirrored": _props.BoolProperty(
-        name="Mirrored Match",
-        description="For a symmetric shape, let the match write the second answer, in which left and right are "
-        "exchanged",
+    "alternative": _props.IntProperty(
+        name="Alternative",
+        description="For a shape that looks the same from several sides, which of the other answers to write, if there "
+        "are as many: 1 is the one in which left and right are exchanged, if there is one. 0 writes the direct answer",
+        min=0,
+        soft_max=8,
     ),
     "use_landmarks": _props.BoolProperty(
         name="Use Landmarks",
@@ -171,7 +173,7 @@ class MatchOptions:
         points: int
         dense: bool
         use_modifiers: bool
-        use_mirrored: bool
+        alternative: int
         use_landmarks: bool
         exclude_source: str
         exclude_target: str
@@ -247,11 +249,12 @@ class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
     orientation: _props.FloatProperty(
         name="Orientation", description="From 1, left stays left, to -1, the match mirrors the shape"
     )
-    has_mirrored: _props.BoolProperty(
-        name="Has Mirrored", description="Whether there is a second answer with left and right exchanged"
+    answers: _props.StringProperty(
+        name="Answers", description="Names of all answers: the direct one and its alternatives, one per line"
     )
-    mirrored: _props.BoolProperty(
-        name="Mirrored", description="Whether the second answer is the one that is written on the meshes"
+    answer: _props.IntProperty(
+        name="Chosen Answer",
+        description="Number of the answer that is written on the meshes, from 0 for the direct one",
     )
     verdict: _props.StringProperty(
         name="Verdict", description="How far the dense map can be trusted, in a sentence; empty if there is none"

@@ -43,7 +43,7 @@ def remember(
     summary.worst_distortion = float(answer.point_distortion.max())
     summary.proven, summary.gap = answer.proven, answer.gap
     summary.orientation = answer.orientation
-    summary.has_mirrored, summary.mirrored = len(stored.answers) > 1, stored.mirrored
+    summary.answers, summary.answer = "\n".join(answer.name for answer in stored.answers), stored.chosen
     summary.stretch = answer.quality.distortion if answer.quality else 0.0
     summary.verdict = answer.quality.sentence if answer.quality else ""
     summary.confidence = answer.quality.confidence if answer.quality else 0.0

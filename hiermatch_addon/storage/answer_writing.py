@@ -13,6 +13,8 @@ from .stored_match import CornerPoints, Quality
 from .vertex_maps import add_maps, place_points
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -52,17 +54,17 @@ def following_steps(
     answer = stored.answer
     points = restored(stored, meshes).source_points
     images, distortion = yield from called_steps(placed_by_map, *meshes, points, dense.source_to_target)
-    answers = list(stored.answers)
-    answers[stored.mirrored] = replace(
-        answer,
-        target_points=CornerPoints.of(images),
-        point_distortion=distortion,
-        distortion=distortion_after(answer.distortion, answer.point_distortion, distortion),
-        proven=proven,
-        quality=Quality.of(dense.quality),
-        refined=False,
+    return stored.with_answer(
+        replace(
+            answer,
+            target_points=CornerPoints.of(images),
+            point_distortion=distortion,
+            distortion=distortion_after(answer.distortion, answer.point_distortion, distortion),
+            proven=proven,
+            quality=Quality.of(dense.quality),
+            refined=False,
+        )
     )
-    return replace(stored, answers=tuple(answers))
 
 
 def contents_with_maps(
@@ -70,10 +72,10 @@ def contents_with_maps(
     meshes: tuple[TriangleMesh, TriangleMesh],
     prefix: str,
     shown: StoredMaps,
-    other: StoredMaps | None,
+    others: Sequence[StoredMaps | None],
 ) -> tuple[Content, Content]:
-    """Prepare the chosen answer with its dense maps, and those of the other one."""
-    return run(mapped_contents_steps(stored, meshes, prefix, shown, other))
+    """Prepare the chosen answer with its dense maps, and those of the others as far as they were made, in order."""
+    return run(mapped_contents_steps(stored, meshes, prefix, shown, others))
 
 
 def mapped_contents_steps(
@@ -81,14 +83,14 @@ def mapped_contents_steps(
     meshes: tuple[TriangleMesh, TriangleMesh],
     prefix: str,
     shown: StoredMaps,
-    other: StoredMaps | None,
+    others: Sequence[StoredMaps | None],
 ) -> Steps[tuple[Content, Content]]:
     """Prepare them in steps; see `contents_with_maps`."""
     yield Progress(0.0, "Preparing what is written")
     maps = shown.between(*meshes)
     steps = contents_steps(restored(stored, meshes), prefix, stored.written, maps, left_out=stored.left_out)
     prepared = yield from within(steps, 0.3, 1.0)
-    add_maps(prepared, prefix, shown, other)
+    add_maps(prepared, prefix, (shown, *others))
     return prepared
 
 

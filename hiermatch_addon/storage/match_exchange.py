@@ -16,7 +16,7 @@ from .contents import contents
 from .halves import find_common
 from .match_file import MatchFile
 from .stored_match import StoredMatch
-from .vertex_maps import StoredMaps, map_name
+from .vertex_maps import read_all_maps
 
 if TYPE_CHECKING:
     import bpy
@@ -54,12 +54,9 @@ def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
     for half in (source, target):
         if stale := half.staleness():
             raise ObjectError(stale)
-    return MatchFile(
-        StoredMatch.from_plain(source.kept, target.kept),
-        (vertex_count(source.obj), vertex_count(target.obj)),
-        StoredMaps.read(source.obj, target.obj, map_name(source.prefix)),
-        StoredMaps.read(source.obj, target.obj, map_name(source.prefix, other=True)),
-    )
+    stored = StoredMatch.from_plain(source.kept, target.kept)
+    shown, *others = read_all_maps(source.obj, target.obj, source.prefix, len(stored.answers))
+    return MatchFile(stored, (vertex_count(source.obj), vertex_count(target.obj)), shown, tuple(others))
 
 
 def apply_match(context: bpy.types.Context, source: Side, target: Side, match: MatchFile, prefix: str) -> StoredMatch:
@@ -97,7 +94,7 @@ def apply_match(context: bpy.types.Context, source: Side, target: Side, match: M
     source_mesh, target_mesh = (read_surface(obj, depsgraph, use_modifiers=use_modifiers) for obj in objects)
     meshes = (source_mesh, target_mesh)
     if match.maps is not None:
-        prepared = contents_with_maps(stored, meshes, prefix, match.maps, match.other)
+        prepared = contents_with_maps(stored, meshes, prefix, match.maps, match.others)
     else:
         # Without maps, colors and distortion are made of distances that the file does not hold.
         written = replace(stored.written, match_colors=False, distortion=False, confidence=False)

@@ -13,11 +13,12 @@ import json
 import zipfile
 import zlib
 from dataclasses import dataclass, replace
+from itertools import chain, repeat, zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...engine import HierMatchError
+from ...engine import DIRECT, MIRRORED, HierMatchError
 from ..common.errors import ObjectError
 from ..common.file_writing import write_whole
 from .checked_arrays import MAPS, CheckedArrays
@@ -68,8 +69,10 @@ class MatchFile:
         know them.
     counts : tuple of int
         How many vertices source and target have.
-    maps, other : StoredMaps or None
-        The dense maps of the answer that is written, and of the other one, as far as they were made.
+    maps : StoredMaps or None
+        The dense maps of the answer that is written, if it has any.
+    others : tuple of StoredMaps or None
+        Those of the other answers, in their order, as far as they were made.
     kind : str
         "match", or "symmetry" for a mesh that was matched with itself; such a file has no points.
     """
@@ -77,7 +80,7 @@ class MatchFile:
     stored: StoredMatch
     counts: tuple[int, int]
     maps: StoredMaps | None
-    other: StoredMaps | None = None
+    others: tuple[StoredMaps | None, ...] = ()
     kind: str = "match"
 
 
@@ -155,7 +158,7 @@ def _header(match: MatchFile) -> dict[str, Any]:
     }
     answers = []
     for answer in stored.answers:
-        plain = answer.to_plain()
+        plain = {"name": answer.name} | answer.to_plain()
         plain.pop("point_distortion")
         answers.append(plain)
     return {
@@ -164,7 +167,7 @@ def _header(match: MatchFile) -> dict[str, Any]:
         "kind": match.kind,
         **sides,
         "answers": answers,
-        "mirrored": stored.mirrored,
+        "chosen": stored.chosen,
         "written": dict(vars(stored.written)),
         "notes": list(stored.notes),
         "left_out": list(stored.left_out),
@@ -172,15 +175,13 @@ def _header(match: MatchFile) -> dict[str, Any]:
 
 
 def _arrays(match: MatchFile) -> dict[str, NDArray[Any]]:
-    """Return the arrays by name; those of the answer that is not written start with "other_"."""
+    """Return the arrays by name; for those of answers that are not written see `_start`."""
     stored = match.stored
     arrays = _point_arrays("source_points", stored.source_points)
-    for number, answer in enumerate(stored.answers):
-        shown = number == stored.mirrored
-        start = "" if shown else "other_"
+    for place, (number, maps) in enumerate(zip_longest(stored.order, (match.maps, *match.others))):
+        start, answer = _start(place), stored.answers[number]
         arrays |= _point_arrays(f"{start}target_points", answer.target_points)
         arrays[f"{start}point_distortion"] = np.asarray(answer.point_distortion, np.float64)
-        maps = match.maps if shown else match.other
         if maps is not None:
             for name, vertex_map in zip(MAPS, (maps.of_source, maps.of_target), strict=True):
                 arrays[f"{start}{name}_corners"] = vertex_map.corners
@@ -189,6 +190,11 @@ def _arrays(match: MatchFile) -> dict[str, NDArray[Any]]:
                 if not vertex_map.has_partner.all():
                     arrays[f"{start}{name}_partner"] = vertex_map.has_partner.astype(np.int32)
     return arrays
+
+
+def _start(place: int) -> str:
+    """Return what names of arrays of an answer start with, by its place in `StoredMatch.order`."""
+    return "" if place == 0 else "other_" if place == 1 else f"other_{place}_"
 
 
 def _point_arrays(name: str, points: CornerPoints) -> dict[str, NDArray[Any]]:
@@ -203,21 +209,24 @@ def _match_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> 
     sides = (header["source"], header["target"])
     n, m = counts = (int(sides[0]["vertices"]), int(sides[1]["vertices"]))
     read = CheckedArrays(arrays)
-    mirrored, described = bool(header["mirrored"]), header["answers"]
-    if not len(described) > mirrored or len(described) > 2:
+    chosen, described = int(header.get("chosen", header.get("mirrored", 0))), header["answers"]
+    usual = chain((DIRECT, MIRRORED), repeat(""))  # what a file says nothing of
+    names = [str(plain.get("name", name)) for plain, name in zip(described, usual, strict=False)]
+    if not (0 <= chosen < len(names) == len(set(names)) and all(names)):
         raise ValueError("it has not the answers that it names")
+    order = (chosen, *(number for number in range(len(names)) if number != chosen))
     kind, source_points = str(header.get("kind", "match")), read.points("source_points", n)
     if kind == "match" and not len(source_points.corners):
         raise ValueError("it has no points")
-    answers = []
-    for number, plain in enumerate(described):
-        start = "" if number == mirrored else "other_"
+    answers: dict[int, Answer] = {}
+    for place, number in enumerate(order):
+        start = _start(place)
         points = read.points(f"{start}target_points", m)
         distortion = read.numbers(f"{start}point_distortion", (len(source_points.corners),))
         if len(points.corners) != len(distortion):
             raise ValueError("source and target have not as many points")
-        answers.append(_answer(plain, points, distortion))
-    maps = read.maps("", counts)
+        answers[number] = _answer(names[number], described[number], points, distortion)
+    maps, *others = (read.maps(_start(place), counts) for place in range(len(order)))
     stored = StoredMatch(
         names=(str(sides[0]["name"]), str(sides[1]["name"])),
         topologies=(str(sides[0].get("topology", "")), str(sides[1].get("topology", ""))),
@@ -226,20 +235,21 @@ def _match_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> 
             Written(**{name: bool(value) for name, value in header["written"].items()}), dense=maps is not None
         ),
         source_points=source_points,
-        answers=tuple(answers),
-        mirrored=mirrored,
+        answers=tuple(answers[number] for number in sorted(answers)),
+        chosen=chosen,
         notes=tuple(str(note) for note in header.get("notes", ())),
         left_out=tuple(int(number) for number in header.get("left_out", ())),
     )
-    return MatchFile(stored, counts, maps, read.maps("other_", counts), kind)
+    return MatchFile(stored, counts, maps, tuple(others), kind)
 
 
-def _answer(plain: Mapping[str, Any], points: CornerPoints, distortion: NDArray[np.float64]) -> Answer:
+def _answer(name: str, plain: Mapping[str, Any], points: CornerPoints, distortion: NDArray[np.float64]) -> Answer:
     quality = plain.get("quality")
     if quality is not None:
         known = {name: str(value) if name == "sentence" else float(value) for name, value in quality.items()}
         quality = Quality.from_plain(known)
     return Answer(
+        name,
         points,
         distortion,
         float(plain["distortion"]),

@@ -11,7 +11,7 @@ from ..scene.character import read_surface
 from .answer_writing import contents_with_maps, write_answer
 from .halves import find_common
 from .stored_match import StoredMatch
-from .vertex_maps import StoredMaps, map_name
+from .vertex_maps import StoredMaps, map_name, read_all_maps
 
 if TYPE_CHECKING:
     import bpy
@@ -129,8 +129,8 @@ def keep_refined(context: bpy.types.Context, source: Side, target: Side, prefix:
         read_surface(half.obj, depsgraph, use_modifiers=stored.written.use_modifiers) for half in (first, second)
     )
     shown = maps if first is sides[0] else maps.reverse
-    other = StoredMaps.read(first.obj, second.obj, map_name(first.prefix, other=True))
-    prepared = contents_with_maps(stored, (source_mesh, target_mesh), first.prefix, shown, other)
+    _, *others = read_all_maps(first.obj, second.obj, first.prefix, len(stored.answers))
+    prepared = contents_with_maps(stored, (source_mesh, target_mesh), first.prefix, shown, others)
     write_answer((first.obj, second.obj), stored, prepared, first.prefix)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A match as it is kept in the file: both answers, in plain numbers and texts.
+"""A match as it is kept in the file: all answers, in plain numbers and texts.
 
 Each of the two meshes keeps its own points, the source also what both have in common.  They name each other by a key
 that no renaming, saving or undoing changes.  The dense maps are kept beside it, in attributes: see `vertex_maps`.
@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...engine import DIRECT, MIRRORED
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -22,8 +24,6 @@ if TYPE_CHECKING:
     from .contents import Points
 
 __all__ = ["Answer", "CornerPoints", "Quality", "StoredMatch", "Written"]
-
-_ANSWERS = ("direct", "mirrored")
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,8 @@ class Quality:
         As the engine measured them; files of before do not know them.
     likeness : float or None
         How credible the map is as a whole, where that was measured.
+    alternatives : int
+        How many other answers are about as likely.
     """
 
     orientation: float
@@ -117,12 +119,13 @@ class Quality:
     source_coverage: float = 1.0
     likeness: float | None = None
     pieces_alone: float = 0.0
+    alternatives: int = 0
 
     @classmethod
     def of(cls, quality: MatchQuality) -> Quality:
         """Take the engine's verdict, with numbers that files can hold."""
         known = {field.name: getattr(quality, field.name) for field in fields(cls)}
-        plain: dict[str, Any] = {n: v if v is None or isinstance(v, str) else float(v) for n, v in known.items()}
+        plain: dict[str, Any] = {n: v if v is None or isinstance(v, (str, int)) else float(v) for n, v in known.items()}
         return cls(**plain)
 
     def to_plain(self) -> dict[str, Any]:
@@ -132,15 +135,17 @@ class Quality:
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> Quality:
         """Undo `to_plain`."""
-        return cls(**{"margin": None, **plain})
+        return cls(**{"margin": None, **plain, "alternatives": int(plain.get("alternatives", 0))})
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """One of the two answers.
+    """One of the answers.
 
     Attributes
     ----------
+    name : str
+        What it is called among them: "direct", "mirrored", "turned 1" and so on.
     target_points : CornerPoints
         Where the source's points are on the target.
     point_distortion : (k,) array of float
@@ -159,6 +164,7 @@ class Answer:
         Whether they were made better with a rig since: once is enough.
     """
 
+    name: str
     target_points: CornerPoints
     point_distortion: NDArray[np.float64]
     distortion: float
@@ -173,6 +179,7 @@ class Answer:
         """Take what is stored of a result, and of the quality of its maps."""
         coarse = result.coarse
         return cls(
+            result.name,
             CornerPoints.of(result.target_points),
             result.point_distortion,
             result.distortion,
@@ -183,7 +190,7 @@ class Answer:
         )
 
     def to_plain(self) -> dict[str, Any]:
-        """Return all but the points on the target."""
+        """Return all but the name and the points on the target."""
         return {
             "point_distortion": np.ascontiguousarray(self.point_distortion, np.float64),
             "distortion": float(self.distortion),
@@ -194,12 +201,13 @@ class Answer:
         } | ({} if self.quality is None else {"quality": self.quality.to_plain()})
 
     @classmethod
-    def from_plain(cls, plain: Mapping[str, Any], points: Mapping[str, Any]) -> Answer:
+    def from_plain(cls, name: str, plain: Mapping[str, Any], points: Mapping[str, Any]) -> Answer:
         """Undo `to_plain`."""
         numbers = dict(plain)
         distortion = np.array(numbers.pop("point_distortion"), np.float64)
         quality = numbers.pop("quality", None)
         return cls(
+            name,
             CornerPoints.from_plain(points),
             distortion,
             **numbers,
@@ -209,7 +217,7 @@ class Answer:
 
 @dataclass(frozen=True, eq=False)
 class StoredMatch:
-    """A match of two objects with all that is needed to write either answer.
+    """A match of two objects with all that is needed to write any of its answers.
 
     Attributes
     ----------
@@ -223,9 +231,9 @@ class StoredMatch:
     source_points : CornerPoints
         The matched points.
     answers : tuple of Answer
-        The answer, and the mirrored one if there is one.
-    mirrored : bool
-        Whether the mirrored one is written.
+        The direct one, and its alternatives.
+    chosen : int
+        Number of the one that is written, from 0.
     notes : tuple of str
         What the user should know.
     swapped : bool
@@ -240,7 +248,7 @@ class StoredMatch:
     written: Written
     source_points: CornerPoints
     answers: tuple[Answer, ...]
-    mirrored: bool
+    chosen: int
     notes: tuple[str, ...]
     swapped: bool = False
     left_out: tuple[int, ...] = ()
@@ -248,19 +256,39 @@ class StoredMatch:
     @property
     def answer(self) -> Answer:
         """The answer that is written."""
-        return self.answers[self.mirrored]
+        return self.answers[self.chosen]
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Numbers of the answers in the order in which their dense maps are kept: the one that is written first."""
+        return (self.chosen, *(number for number in range(len(self.answers)) if number != self.chosen))
+
+    @property
+    def turned(self) -> int:
+        """How many alternatives keep left and right, as the direct answer does: they are as likely."""
+        return sum(answer.name not in (DIRECT, MIRRORED) for answer in self.answers)
+
+    @property
+    def margin(self) -> float | None:
+        """By how much the direct answer is more credible than the others that keep left and right; None if by far."""
+        quality = self.answers[0].quality
+        return None if quality is None else quality.margin
+
+    def with_answer(self, answer: Answer) -> StoredMatch:
+        """Return the same with another answer in the place of the one that is written."""
+        answers = list(self.answers)
+        answers[self.chosen] = answer
+        return replace(self, answers=tuple(answers))
 
     def as_refined(self) -> StoredMatch:
         """Return the same with the maps of the answer that is written called refined."""
-        answers = list(self.answers)
-        answers[self.mirrored] = replace(self.answer, refined=True)
-        return replace(self, answers=tuple(answers))
+        return self.with_answer(replace(self.answer, refined=True))
 
     @property
     def key(self) -> str:
         """A text that both meshes carry, and that is the same for the same direct answer between the same objects only.
 
-        The points of the mirrored answer move when it is written for the first time.
+        The points of its alternatives move when they are written for the first time.
         """
         told = (*self.names, *self.topologies, str(len(self.answers)))
         digest = hashlib.blake2b("\0".join(told).encode(), digest_size=16)
@@ -272,14 +300,13 @@ class StoredMatch:
     def to_plain(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """Return what the source and what the target keep."""
         names = {"source": self.names[0], "target": self.names[1]}
-        common = {"key": self.key, "names": names, "mirrored": self.mirrored, "swapped": self.swapped}
-        answers = dict(zip(_ANSWERS, self.answers, strict=False))
+        common = {"key": self.key, "names": names, "chosen": self.chosen, "swapped": self.swapped}
         source = {
             "role": "source",
             "topology": self.topologies[0],
             "positions": self.positions[0],
             "points": self.source_points.to_plain(),
-            "answers": {which: answer.to_plain() for which, answer in answers.items()},
+            "answers": {answer.name: answer.to_plain() for answer in self.answers},
             "written": dict(vars(self.written)),
             "notes": "\n".join(self.notes),
             "left_out": " ".join(map(str, self.left_out)),  # Blender cannot keep an empty list of numbers
@@ -288,7 +315,7 @@ class StoredMatch:
             "role": "target",
             "topology": self.topologies[1],
             "positions": self.positions[1],
-            "points": {which: answer.target_points.to_plain() for which, answer in answers.items()},
+            "points": {answer.name: answer.target_points.to_plain() for answer in self.answers},
         }
         return common | source, common | target
 
@@ -302,11 +329,9 @@ class StoredMatch:
             written=Written(**source["written"]),
             source_points=CornerPoints.from_plain(source["points"]),
             answers=tuple(
-                Answer.from_plain(source["answers"][which], target["points"][which])
-                for which in _ANSWERS
-                if which in source["answers"]
+                Answer.from_plain(name, plain, target["points"][name]) for name, plain in source["answers"].items()
             ),
-            mirrored=source["mirrored"],
+            chosen=source.get("chosen", int(source.get("mirrored", False))),
             notes=tuple(source["notes"].splitlines()),
             swapped=source.get("swapped", False),
             left_out=tuple(int(number) for number in source.get("left_out", "").split()),

@@ -19,6 +19,8 @@ from ..scene.character import parts_of
 from ..scene.mesh_io import read_values
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import bpy
     from numpy.typing import NDArray
 
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .contents import Content
 
-__all__ = ["MapPair", "StoredMaps", "VertexMap", "add_maps", "map_name", "place_points"]
+__all__ = ["MapPair", "StoredMaps", "VertexMap", "add_maps", "map_name", "place_points", "read_all_maps"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,17 +175,22 @@ class StoredMaps:
         return MapPair(source, target, self.of_source.to(target), self.of_target.to(source))
 
 
-def map_name(prefix: str, *, other: bool = False) -> str:
-    """Return what the names of a map's attributes start with; `other` for the answer that is not shown."""
-    return f"{prefix} Other Map" if other else f"{prefix} Map"
+def map_name(prefix: str, place: int = 0) -> str:
+    """Return what the names of a map's attributes start with; the place is that among `StoredMatch.order`."""
+    return f"{prefix} Map" if place == 0 else f"{prefix} Other Map" if place == 1 else f"{prefix} Other Map {place}"
 
 
-def add_maps(prepared: tuple[Content, Content], prefix: str, shown: StoredMaps, other: StoredMaps | None) -> None:
-    """Add what both meshes keep of the maps to what is written on them; `other` are those of the other answer."""
-    for maps, name in ((shown, map_name(prefix)), (other, map_name(prefix, other=True))):
+def read_all_maps(source: Side, target: Side, prefix: str, count: int) -> tuple[StoredMaps | None, ...]:
+    """Read the maps of all answers, as far as they were made, in the order of `StoredMatch.order`."""
+    return tuple(StoredMaps.read(source, target, map_name(prefix, place)) for place in range(count))
+
+
+def add_maps(prepared: tuple[Content, Content], prefix: str, kept: Sequence[StoredMaps | None]) -> None:
+    """Add what both meshes keep of the maps of all answers to what is written on them, in the same order."""
+    for place, maps in enumerate(kept):
         if maps is not None:
             for content, vertex_map in zip(prepared, (maps.of_source, maps.of_target), strict=True):
-                content.values.update(vertex_map.attributes(name))
+                content.values.update(vertex_map.attributes(map_name(prefix, place)))
 
 
 def place_points(mesh: TriangleMesh, corners: NDArray[np.int64], barycentric: NDArray[np.float64]) -> SurfacePoints:

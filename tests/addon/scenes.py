@@ -96,7 +96,6 @@ def made_up_result(source_mesh, target_mesh, points=5, seed=1):
         orientation=0.8,
         levels=(),
         coarse=coarse,
-        mirrored=None,
         source_distances=source_distances,
         target_distances=target_distances,
         notes=(),
@@ -121,7 +120,7 @@ def without_mirrored(monkeypatch):
     real = job.match_steps
 
     def steps(*arguments, **names):
-        return replace((yield from real(*arguments, **names)), mirrored=None)
+        return replace((yield from real(*arguments, **names)), alternatives=())
 
     monkeypatch.setattr(job, "match_steps", steps)
 

@@ -68,9 +68,9 @@ def measure(path_x, path_y, options):
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.sqrt(np.linalg.norm(normals, axis=1).sum() / 2)
     rows = []
-    for mirrored in (False, True):
+    for alternative in (0, 1):
         start = time.perf_counter()
-        bpy.ops.hiermatch.match(source=thing_x.name, target=thing_y.name, use_mirrored=mirrored, **options)
+        bpy.ops.hiermatch.match(source=thing_x.name, target=thing_y.name, alternative=alternative, **options)
         seconds = time.perf_counter() - start
         _, places = nearest.query(vertices_x[matched_vertices(thing_x)])
         found = matched_vertices(thing_y)
@@ -85,9 +85,9 @@ def measure_demo(options):
     bpy.ops.hiermatch.add_demo_pair()
     state = bpy.context.scene.hiermatch
     rows = []
-    for mirrored in (False, True):
+    for alternative in (0, 1):
         start = time.perf_counter()
-        bpy.ops.hiermatch.match(source=state.source.name, target=state.target.name, use_mirrored=mirrored, **options)
+        bpy.ops.hiermatch.match(source=state.source.name, target=state.target.name, alternative=alternative, **options)
         seconds = time.perf_counter() - start
         depsgraph = bpy.context.evaluated_depsgraph_get()
         rows.append((*demo_truth.match_errors(state.source, state.target, depsgraph), seconds))

@@ -256,7 +256,6 @@ def _result(
         orientation=quality.orientation,
         levels=(Level(len(vertices), 0, distortion, images),),
         coarse=CoarseMatch(own[:first], images.nearest_vertices[:first], first, coarse, 0.0, proven=False, nodes=0),
-        mirrored=None,
         source_distances=None,
         target_distances=None,
         notes=tuple(note for shape in (x, y) for note in shape.surface.cleaned.notes),

@@ -33,6 +33,7 @@ _COLUMNS = (
     "confidence",
     "distortion",
     "sentence",
+    "alternatives",
     "error",
     "report",
 )
@@ -137,6 +138,7 @@ def summary_rows(ledger: Ledger, pairs: Sequence[Pair], *, any_options: bool = F
                 "confidence": quality.get("confidence"),
                 "distortion": match.get("distortion"),
                 "sentence": quality.get("sentence", ""),
+                "alternatives": len(match["alternatives"]) if "alternatives" in match else None,
                 "error": report.get("error", ""),
                 "report": str(ledger.report_path(pair)),
             }

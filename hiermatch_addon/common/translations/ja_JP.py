@@ -38,11 +38,13 @@ MESSAGES: Final[dict[str, str]] = {
     "From 1, left stays left, to -1, the match mirrors the shape": (
         "1では左が左のまま、-1ではマッチングが形状を左右反転します"
     ),
-    "Has Mirrored": "ミラー解あり",
-    "Whether there is a second answer with left and right exchanged": "左右を入れ替えた第二の解があるかどうか",
-    "Mirrored": "ミラー済み",
-    "Whether the second answer is the one that is written on the meshes": (
-        "メッシュに書き込まれているのが第二の解かどうか"
+    "Answers": "解",
+    "Names of all answers: the direct one and its alternatives, one per line": (
+        "すべての解の名前。直接の解とその代替解を1行に1つずつ"
+    ),
+    "Chosen Answer": "選ばれた解",
+    "Number of the answer that is written on the meshes, from 0 for the direct one": (
+        "メッシュに書き込まれている解の番号。直接の解が0"
     ),
     "Verdict": "判定",
     "How far the dense map can be trusted, in a sentence; empty if there is none": (
@@ -207,9 +209,13 @@ MESSAGES: Final[dict[str, str]] = {
         "シェイプキーとモディファイアーが示す形でメッシュをマッチングします。頂点を増減するモディファイアーがな"
         "ければ可能です"
     ),
-    "Mirrored Match": "ミラーマッチング",
-    "For a symmetric shape, let the match write the second answer, in which left and right are exchanged": (
-        "対称な形状について、左右を入れ替えた第二の解を書き込みます"
+    "Alternative": "代替解",
+    (
+        "For a shape that looks the same from several sides, which of the other answers to write, if there are as "
+        "many: 1 is the one in which left and right are exchanged, if there is one. 0 writes the direct answer"
+    ): (
+        "いくつかの側から同じに見える形状について、他のどの解を書き込むか(それだけの数がある場合)。1は左右を入れ替えた"
+        "解です(ある場合)。0では直接の解を書き込みます"
     ),
     "Use Landmarks": "ランドマークを使用",
     "Keep to the landmarks that the two meshes have in common and that are switched on": (
@@ -338,14 +344,17 @@ MESSAGES: Final[dict[str, str]] = {
     "Set Metric to Geodesic, Descriptor to Laplace-Beltrami Eigenfunctions, as in figure 2 (d) of the paper": (
         "論文の図2(d)のように、「距離」を「ジオデシック」、「記述子」を「ラプラス・ベルトラミ固有関数」にします"
     ),
+    (
+        "Number of the answer: 0 is the direct one, and -1 the one after that which is written; of two answers, the "
+        "other one"
+    ): "解の番号。0は直接の解、-1は書き込まれている解の次の解です。解が二つなら、もう一方の解です",
+    "Other Answers": "他の解",
+    "Use Another Answer": "別の解を使用",
     "Use Mirrored Match": "ミラーマッチングを使用",
     (
-        "Write the other of the two answers of the match, in which left and right are exchanged, without matching "
-        "again. Once more brings the first answer back"
-    ): (
-        "マッチングの二つの解のうち、左右を入れ替えたもう一方を、再マッチングせずに書き込みます。もう一度実行す"
-        "ると最初の解に戻ります"
-    ),
+        "Write another answer of the match, such as the one in which left and right are exchanged, without matching "
+        "again. The first answer can be brought back"
+    ): ("マッチングの別の解(左右を入れ替えたものなど)を、再マッチングせずに書き込みます。最初の解に戻すこともできます"),
     "Object": "オブジェクト",
     (
         "Name of one of the two matched objects; if empty, the match that the panel shows is meant, or else that "
@@ -1788,14 +1797,17 @@ MESSAGES: Final[dict[str, str]] = {
     "It was cancelled. Nothing was written": "キャンセルされました。何も書き込まれていません",
     "It was cancelled. The match is as it was": "キャンセルされました。マッチングは元のままです",
     "It was cancelled. No landmark was added": "キャンセルされました。ランドマークは追加されていません",
-    "There is no mirrored match, so the only one was written.": (
-        "ミラーマッチングがないため、唯一のマッチングを書き込みました。"
+    "There is no alternative {0}, only {1}: the direct answer was written.": (
+        "代替解{0}はありません({1}個だけです)。直接の解を書き込みました。"
     ),
     "The map turns large parts of the surface over: do not trust it; try landmarks.": (
         "マップが表面の大きな部分を裏返しています。信頼せず、ランドマークを試してください。"
     ),
     "The shapes have too little in common: leave out what only one of them has, or try landmarks.": (
         "形状の共通点が少なすぎます。片方にしかない部分を除外するか、ランドマークを試してください。"
+    ),
+    "{0} maps are about as likely: choose another answer if this one is wrong, or add a landmark.": (
+        "{0}個のマップが同じくらい有力です。これが誤っていれば別の解を選ぶか、ランドマークを追加してください。"
     ),
     "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong.": (
         "別のマップもほぼ同じくらい有力でした。左右と手足を確認し、誤っていればランドマークを追加してください。"
@@ -1832,7 +1844,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Symmetrising": "対称化中",
     "Carrying over": "引き継ぎ中",
     "Mirroring landmarks": "ランドマークを反転中",
-    "Writing the other answer": "もう一方の解を書き込み中",
+    "Writing another answer": "別の解を書き込み中",
     "Exact search, {0} nodes": "厳密探索、{0}ノード",
     "Matching {0} points": "{0}個のポイントをマッチング中",
     "Moving {0} points over the surface": "{0}個のポイントを表面上で移動中",
@@ -1860,8 +1872,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Matched {0} points of {1} in {2} s. {3}": "{1}の{0}個のポイントを{2}秒でマッチングしました。{3}",
     '"{0}" and "{1}"': "「{0}」と「{1}」",
     "Refined the match in {0} s. {1}": "マッチングを{0}秒で改良しました。{1}",
-    'Wrote the direct match of "{0}" and "{1}"': "「{0}」と「{1}」の直接のマッチングを書き込みました",
-    'Wrote the mirrored match of "{0}" and "{1}"': "「{0}」と「{1}」のミラーマッチングを書き込みました",
+    'Wrote the {0} match of "{1}" and "{2}"': "「{1}」と「{2}」の{0}マッチングを書き込みました",
+    "direct": "直接の",
+    "mirrored": "ミラー",
+    "turned {0}": "回転{0}の",
     "Wrote {0} regions on both meshes as vertex groups": "両メッシュに{0}個の領域を頂点グループとして書き込みました",
     'Exported the match of "{0}" and "{1}" to "{2}"': "「{0}」と「{1}」の対応を「{2}」に書き出しました",
     'Imported the match of "{0}" and "{1}" from "{2}"': "「{0}」と「{1}」の対応を「{2}」から読み込みました",
@@ -2005,8 +2019,11 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」の頂点か面がマッチング時と異なるため、保存されたマッチングは合いません。もう一度マッチングし"
         "てください。"
     ),
-    'The match of "{0}" and "{1}" has no mirrored answer: the meshes are not symmetric enough for one.': (
-        "「{0}」と「{1}」のマッチングにはミラー解がありません。メッシュが十分に対称ではないためです。"
+    'The match of "{0}" and "{1}" has no mirrored answer and no other: the meshes are not symmetric enough for one.': (
+        "「{0}」と「{1}」のマッチングにはミラー解も他の解もありません。メッシュが十分に対称ではないためです。"
+    ),
+    'The match of "{0}" and "{1}" has the alternatives 1 to {2} only.': (
+        "「{0}」と「{1}」のマッチングにある代替解は1から{2}までだけです。"
     ),
     "{0} have no landmarks that are on. Add some where the match is wrong, and lock points where it is right.": (
         "{0}にはオンのランドマークがありません。マッチングが誤っている所に追加し、正しい所のポイントをロック"

@@ -32,10 +32,12 @@ MESSAGES: Final[dict[str, str]] = {
     "By how much, at most, the coarse match can be worse than the best one": "粗匹配最多可能比最佳匹配差多少",
     "Orientation": "朝向",
     "From 1, left stays left, to -1, the match mirrors the shape": "1 表示左侧仍为左侧，-1 表示匹配使形状左右镜像",
-    "Has Mirrored": "有镜像解",
-    "Whether there is a second answer with left and right exchanged": "是否存在左右互换的第二个解",
-    "Mirrored": "已镜像",
-    "Whether the second answer is the one that is written on the meshes": "写入网格的是否为第二个解",
+    "Answers": "解",
+    "Names of all answers: the direct one and its alternatives, one per line": (
+        "所有解的名称：直接解及其替代解，每行一个"
+    ),
+    "Chosen Answer": "所选解",
+    "Number of the answer that is written on the meshes, from 0 for the direct one": ("写入网格的解的编号，直接解为 0"),
     "Verdict": "判定",
     "How far the dense map can be trusted, in a sentence; empty if there is none": (
         "用一句话说明稠密映射的可信程度；没有映射时为空"
@@ -174,9 +176,12 @@ MESSAGES: Final[dict[str, str]] = {
         "Match the meshes as their shape keys and modifiers show them. Possible unless a modifier adds or removes "
         "vertices"
     ): "按形态键和修改器所显示的样子匹配网格。只要没有修改器增减顶点即可",
-    "Mirrored Match": "镜像匹配",
-    "For a symmetric shape, let the match write the second answer, in which left and right are exchanged": (
-        "对于对称的形状，写入左右互换的第二个解"
+    "Alternative": "替代解",
+    (
+        "For a shape that looks the same from several sides, which of the other answers to write, if there are as "
+        "many: 1 is the one in which left and right are exchanged, if there is one. 0 writes the direct answer"
+    ): (
+        "对于从几个方向看都一样的形状，写入其他解中的哪一个（如果有那么多）：1 是左右互换的解（如果有）。0 则写入直接解"
     ),
     "Use Landmarks": "使用地标",
     "Keep to the landmarks that the two meshes have in common and that are switched on": (
@@ -287,11 +292,17 @@ MESSAGES: Final[dict[str, str]] = {
     "Set Metric to Geodesic, Descriptor to Laplace-Beltrami Eigenfunctions, as in figure 2 (d) of the paper": (
         "按论文图 2 (d)，将度量设为测地线，描述符设为拉普拉斯-贝尔特拉米特征函数"
     ),
+    (
+        "Number of the answer: 0 is the direct one, and -1 the one after that which is written; of two answers, the "
+        "other one"
+    ): "解的编号：0 是直接解，-1 是已写入的解之后的那个；若有两个解，则为另一个",
+    "Other Answers": "其他解",
+    "Use Another Answer": "使用另一个解",
     "Use Mirrored Match": "使用镜像匹配",
     (
-        "Write the other of the two answers of the match, in which left and right are exchanged, without matching "
-        "again. Once more brings the first answer back"
-    ): "写入匹配的两个解中左右互换的另一个，无需重新匹配。再执行一次则恢复第一个解",
+        "Write another answer of the match, such as the one in which left and right are exchanged, without matching "
+        "again. The first answer can be brought back"
+    ): ("写入匹配的另一个解，例如左右互换的解，无需重新匹配。可以恢复第一个解"),
     "Object": "物体",
     (
         "Name of one of the two matched objects; if empty, the match that the panel shows is meant, or else that "
@@ -1482,12 +1493,17 @@ MESSAGES: Final[dict[str, str]] = {
     "It was cancelled. Nothing was written": "已取消。未写入任何内容",
     "It was cancelled. The match is as it was": "已取消。匹配保持原样",
     "It was cancelled. No landmark was added": "已取消。未添加地标",
-    "There is no mirrored match, so the only one was written.": "没有镜像匹配，因此写入了唯一的匹配。",
+    "There is no alternative {0}, only {1}: the direct answer was written.": (
+        "没有替代解 {0}，只有 {1} 个：已写入直接解。"
+    ),
     "The map turns large parts of the surface over: do not trust it; try landmarks.": (
         "映射将表面的大片区域翻转：不可信，请尝试使用地标。"
     ),
     "The shapes have too little in common: leave out what only one of them has, or try landmarks.": (
         "两个形状的共同点太少：请排除只有其中一个才有的部分，或尝试使用地标。"
+    ),
+    "{0} maps are about as likely: choose another answer if this one is wrong, or add a landmark.": (
+        "{0} 个映射的可能性差不多：如果这个有误，请选择另一个解，或添加一个地标。"
     ),
     "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong.": (
         "另一个映射几乎同样可能：请检查左右和各个肢体，如果有误，请添加一个地标。"
@@ -1520,7 +1536,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Symmetrising": "正在对称化",
     "Carrying over": "正在传递",
     "Mirroring landmarks": "正在镜像地标",
-    "Writing the other answer": "正在写入另一个解",
+    "Writing another answer": "正在写入另一个解",
     "Exact search, {0} nodes": "精确搜索，{0} 个节点",
     "Matching {0} points": "正在匹配 {0} 个点",
     "Moving {0} points over the surface": "正在表面上移动 {0} 个点",
@@ -1546,8 +1562,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Matched {0} points of {1} in {2} s. {3}": "在 {2} 秒内匹配了 {1} 的 {0} 个点。{3}",
     '"{0}" and "{1}"': "“{0}”和“{1}”",
     "Refined the match in {0} s. {1}": "在 {0} 秒内改进了匹配。{1}",
-    'Wrote the direct match of "{0}" and "{1}"': "已写入“{0}”和“{1}”的直接匹配",
-    'Wrote the mirrored match of "{0}" and "{1}"': "已写入“{0}”和“{1}”的镜像匹配",
+    'Wrote the {0} match of "{1}" and "{2}"': "已写入“{1}”和“{2}”的{0}匹配",
+    "direct": "直接",
+    "mirrored": "镜像",
+    "turned {0}": "旋转 {0}",
     "Wrote {0} regions on both meshes as vertex groups": "已在两个网格上把 {0} 个区域写为顶点组",
     'Exported the match of "{0}" and "{1}" to "{2}"': "已将“{0}”和“{1}”的匹配导出到“{2}”",
     'Imported the match of "{0}" and "{1}" from "{2}"': "已从“{2}”导入“{0}”和“{1}”的匹配",
@@ -1649,9 +1667,10 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" has other vertices or faces than when it was matched, so the stored match does not fit it any '
         "more. Match again."
     ): "“{0}”的顶点或面与匹配时不同，保存的匹配不再适用。请重新匹配。",
-    'The match of "{0}" and "{1}" has no mirrored answer: the meshes are not symmetric enough for one.': (
-        "“{0}”和“{1}”的匹配没有镜像解：网格不够对称。"
+    'The match of "{0}" and "{1}" has no mirrored answer and no other: the meshes are not symmetric enough for one.': (
+        "“{0}”和“{1}”的匹配没有镜像解，也没有其他解：网格不够对称。"
     ),
+    'The match of "{0}" and "{1}" has the alternatives 1 to {2} only.': "“{0}”和“{1}”的匹配只有替代解 1 到 {2}。",
     "{0} have no landmarks that are on. Add some where the match is wrong, and lock points where it is right.": (
         "{0} 没有启用的地标。请在匹配错误处添加一些，并在正确处锁定点。"
     ),

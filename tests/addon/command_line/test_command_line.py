@@ -353,7 +353,7 @@ def test_table_values_become_arguments():
     assert options.to_arguments("match", "points", " 12 ") == ["--points=12"]
     assert options.to_arguments("match", "dense", "No") == ["--no-dense"]
     assert options.to_arguments("match", "dense", "1") == ["--dense"]
-    assert options.to_arguments("match", "use_mirrored", "TRUE") == ["--use-mirrored"]
+    assert options.to_arguments("match", "alternative", "2") == ["--alternative=2"]
     assert options.to_arguments("match", "exclude_source", "-eyes") == ["--exclude-source=-eyes"]
     assert options.to_arguments("match", "points", "") == []
 

@@ -23,6 +23,7 @@ from tests.addon.scenes import (
     weights_of,
     without_mirrored,
 )
+from tests.bodies import table
 
 
 @pytest.fixture
@@ -91,9 +92,9 @@ class TestAnswers:
     )
     def test_is_the_same_as_matching_for_the_other(self, pair, options, monkeypatch):
         bend(pair[0])
-        match(use_mirrored=True, **options)
+        match(alternative=1, **options)
         expected, told = written(), summary_values()
-        assert summary().mirrored
+        assert summary().answer == 1
         assert bool(summary().verdict) == options.get("dense", False)
         match(**options)
         assert written() != expected
@@ -105,10 +106,10 @@ class TestAnswers:
     @pytest.mark.parametrize("mirrored", [False, True])
     def test_twice_is_as_before(self, pair, mirrored):
         assert pair
-        match(use_mirrored=mirrored)
+        match(alternative=int(mirrored))
         before = snapshot()
         flip()
-        assert summary().mirrored != mirrored
+        assert (summary().answer > 0) != mirrored
         assert snapshot() != before
         flip()
         assert snapshot() == before
@@ -125,7 +126,7 @@ class TestAnswers:
 
     def test_several_parts(self, pair):
         merge_part(pair[1])
-        match(use_mirrored=True)
+        match(alternative=1)
         expected = written()
         assert (values_of(pair[1].data.attributes["HM Distortion Value"]) == -1).any()
         match()
@@ -133,7 +134,7 @@ class TestAnswers:
         assert written() == expected
 
     def test_moving_the_objects_changes_little(self, pair):
-        match(use_mirrored=True)
+        match(alternative=1)
         expected = [values_of(obj.data.attributes["HM Match"]) for obj in pair]
         match()
         for obj in pair:
@@ -160,7 +161,7 @@ class TestWhichMatch:
         first = snapshot()
         for obj in pair:
             flip(object=obj.name)
-            assert summary().mirrored
+            assert summary().answer == 1
             flip(object=obj.name)
             assert snapshot() == first
 
@@ -171,7 +172,7 @@ class TestWhichMatch:
             flip()
         bpy.context.view_layer.objects.active = pair[1]
         flip()
-        assert summary().mirrored
+        assert summary().answer == 1
         assert (summary().source, summary().target) == ("Source", "Target")
         assert summary().seconds == 0
 
@@ -197,10 +198,10 @@ class TestWhichMatch:
         match()
         pair[0].name, pair[1].name, pair[1].data.name = "One", "Two", "Mesh"
         flip()
-        assert summary().mirrored
+        assert summary().answer == 1
         assert (summary().source, summary().target) == ("One", "Two")
         flip(object="Two")
-        assert not summary().mirrored
+        assert summary().answer == 0
 
     def test_of_copies_the_ones_that_kept_their_names(self, pair):
         match()
@@ -344,14 +345,14 @@ class TestFile:
         bpy.ops.wm.read_homefile(use_empty=True)
         bpy.ops.wm.open_mainfile(filepath=path)
         assert snapshot() == flipped
-        assert summary().mirrored
+        assert summary().answer == 1
         bpy.ops.ed.undo_push(message="Before")
         bpy.ops.hiermatch.flip("EXEC_DEFAULT", True)  # noqa: FBT003
         assert snapshot() == first
-        assert not summary().mirrored
+        assert summary().answer == 0
         bpy.ops.ed.undo()
         assert snapshot() == flipped
-        assert summary().mirrored
+        assert summary().answer == 1
         bpy.ops.ed.redo()
         assert snapshot() == first
         for name in ("Source", "Target"):
@@ -360,7 +361,7 @@ class TestFile:
 
     def test_another_file_gets_the_match_with_both_objects(self, pair, tmp_path):
         assert pair
-        match(use_mirrored=True)
+        match(alternative=1)
         expected = written()
         flip()
         path = str(tmp_path / "pair.blend")
@@ -372,6 +373,88 @@ class TestFile:
             bpy.context.collection.objects.link(obj)
         flip(object="Source")
         assert written() == expected
+
+
+@pytest.fixture
+def tables():
+    """Two tables in different meshings, matched densely: the same if they are turned by half."""
+    for name, resolution, turn in (("Source", 6, 0.0), ("Target", 6, 0.4)):
+        vertices, triangles = table(resolution, turn)
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata(vertices, [], triangles)
+        bpy.context.collection.objects.link(bpy.data.objects.new(name, mesh))
+    bpy.context.view_layer.update()
+    match(**DENSE)
+    return bpy.data.objects["Source"], bpy.data.objects["Target"]
+
+
+def is_turned(source, target):
+    """Whether the map that is written turns the source by half, and how far it is from that or from leaving it."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    meshes = [read_mesh(obj, depsgraph, use_modifiers=False) for obj in (source, target)]
+    found = StoredMaps.read(source, target, map_name("HM")).between(*meshes).source_to_target.positions
+    places = meshes[0].vertices
+    away = [np.linalg.norm(places * (sign, sign, 1) - found, axis=1).mean() for sign in (1, -1)]
+    return away[1] < away[0], min(away)
+
+
+class TestSeveralAnswers:
+    """Of a body that looks the same from several sides."""
+
+    def test_each_is_written_right_and_the_first_comes_back(self, tables, monkeypatch):
+        names = summary().answers.splitlines()
+        assert names[0] == "direct"
+        assert names[-1] == "turned 1"
+        assert "maps are about as likely" in summary().verdict
+        first, before, told = is_turned(*tables), written(), summary_values()
+        no_matching(monkeypatch)
+        last = len(names) - 1
+        flip(alternative=last)
+        assert summary().answer == last
+        assert "maps are about as likely" in summary().verdict
+        turned, away = is_turned(*tables)
+        assert turned != first[0]
+        assert max(away, first[1]) < 0.2
+        assert "HM Other Map Weights" in tables[0].data.attributes
+        flip(alternative=0)
+        assert summary_values() == told
+        # What was made of the other answer is kept.
+        place = last  # among the others, as the direct one is written
+        assert f"HM Other Map{'' if place == 1 else f' {place}'} Weights" in tables[0].data.attributes
+        kept = written()
+        assert kept != before
+        flip(alternative=last)
+        flip(alternative=0)
+        assert written() == kept
+
+    def test_they_travel_in_files(self, tables, tmp_path):
+        last = len(summary().answers.splitlines()) - 1
+        flip(alternative=last)
+        names, expected = summary().answers, is_turned(*tables)
+        path = str(tmp_path / "match.json")
+        bpy.ops.hiermatch.export_match(filepath=path)
+        flip(alternative=0)
+        bpy.ops.hiermatch.import_match(filepath=path, source="Source", target="Target")
+        assert (summary().answers, summary().answer) == (names, last)
+        assert is_turned(*tables) == expected
+        flip(alternative=0)
+        assert is_turned(*tables)[0] != expected[0]
+
+    def test_a_match_can_write_one_at_once(self, tables):
+        last = len(summary().answers.splitlines()) - 1
+        flip(alternative=last)
+        expected = is_turned(*tables)
+        match(alternative=last, **DENSE)
+        assert summary().answer == last
+        assert is_turned(*tables) == expected
+
+    def test_one_that_does_not_exist_is_told_and_nothing_changes(self, tables):
+        assert tables
+        before = snapshot()
+        count = len(summary().answers.splitlines()) - 1
+        with pytest.raises(RuntimeError, match=f"has the alternatives 1 to {count} only"):
+            flip(alternative=9)
+        assert snapshot() == before
 
 
 @pytest.mark.computes_anew
@@ -393,14 +476,14 @@ class TestInSteps:
         assert fractions == sorted(fractions)
         assert len(fractions) > 20
         assert snapshot() == before
-        assert job.finish(bpy.context).mirrored
+        assert job.finish(bpy.context).chosen == 1
         assert snapshot() != before
 
     def test_the_points_lie_on_the_map(self, job, dense_pair):
         while not self.advance(job):
             pass
         stored = job.finish(bpy.context)
-        maps = StoredMaps.read(*dense_pair, map_name("HM", other=False))
+        maps = StoredMaps.read(*dense_pair, map_name("HM"))
         depsgraph = bpy.context.evaluated_depsgraph_get()
         source, target = (read_mesh(obj, depsgraph, use_modifiers=False) for obj in dense_pair)
         images = maps.between(source, target).source_to_target.positions[stored.source_points.nearest_vertices]

@@ -55,7 +55,7 @@ class TestResult:
         assert summary().distortion == pytest.approx(expected.distortion, abs=1e-6)
         assert summary().proven == expected.coarse.proven
         assert summary().orientation == pytest.approx(expected.orientation)
-        assert summary().has_mirrored == (expected.mirrored is not None)
+        assert summary().answers.splitlines() == ["direct", *(other.name for other in expected.alternatives)]
 
     def test_a_moved_and_scaled_copy_is_matched_to_itself(self, pair):
         source, target = pair
@@ -112,22 +112,22 @@ class TestResult:
         _, target = add_symmetric_pair()
         match(source="Source", target="Target")
         first = matched_vertices(target)
-        assert summary().has_mirrored
-        assert not summary().mirrored
+        assert summary().answers == "direct\nmirrored"
+        assert summary().answer == 0
         assert summary().orientation > 0.5
-        match(source="Source", target="Target", use_mirrored=True)
+        match(source="Source", target="Target", alternative=1)
         assert matched_vertices(target) != first
-        assert summary().mirrored
+        assert summary().answer == 1
         assert summary().orientation < -0.5
         assert not summary().notes
 
     def test_no_mirrored_answer_is_a_note(self, pair, monkeypatch):
         assert pair
         without_mirrored(monkeypatch)
-        match(source="Source", target="Target", use_mirrored=True)
-        assert not summary().has_mirrored
-        assert not summary().mirrored
-        assert "no mirrored match" in summary().notes
+        match(source="Source", target="Target", alternative=1)
+        assert summary().answers == "direct"
+        assert summary().answer == 0
+        assert "There is no alternative 1, only 0" in summary().notes
 
     def test_choices_reach_the_engine(self):
         add_symmetric_pair()

@@ -130,7 +130,7 @@ class TestRefine:
         assert not summary.proven
         assert summary.verdict
         assert len(groups(source)) == 24
-        assert summary.has_mirrored
+        assert summary.answers == "direct\nmirrored"
 
     def test_of_a_pair_that_was_swapped(self, dense_pair):
         add_landmarks(*dense_pair, [(100, 110)])

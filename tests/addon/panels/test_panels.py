@@ -8,8 +8,8 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
+from hiermatch.hiermatch_addon.panels import answer_menu, retarget_panels
 from hiermatch.hiermatch_addon.panels import match_panels as panels
-from hiermatch.hiermatch_addon.panels import retarget_panels
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, SETTING_NAMES
 from hiermatch.hiermatch_addon.properties.setting_groups import shown_groups
 
@@ -45,6 +45,10 @@ class Layout:
     def operator_menu_enum(self, name, prop, *, text):
         group, operator = name.split(".")
         assert prop in getattr(getattr(bpy.ops, group), operator).get_rna_type().properties
+        self.drawn.append(("menu", name, text))
+
+    def menu(self, name, *, text, **_names):
+        assert hasattr(bpy.types, name)
         self.drawn.append(("menu", name, text))
 
     def progress(self, *, text, factor):
@@ -125,9 +129,9 @@ def test_only_settings_that_matter_are_shown(context):
 
 def test_a_new_setting_is_shown_without_further_ado(context, monkeypatch):
     monkeypatch.setattr(
-        "hiermatch.hiermatch_addon.properties.setting_groups.SETTING_NAMES", (*SETTING_NAMES, "use_mirrored")
+        "hiermatch.hiermatch_addon.properties.setting_groups.SETTING_NAMES", (*SETTING_NAMES, "alternative")
     )
-    assert shown_groups(context.scene.hiermatch)[0][1][-1] == "use_mirrored"
+    assert shown_groups(context.scene.hiermatch)[0][1][-1] == "alternative"
 
 
 def test_the_groups_have_headings(context):
@@ -204,7 +208,7 @@ def test_while_something_else_runs_the_bar_is_where_it_was_started(context):
 
 def test_a_button_that_starts_a_job_is_its_name_while_one_runs(context):
     """Else Blender draws it as disabled afterwards, as long as the mouse stays on it."""
-    context.scene.hiermatch.summary.points, context.scene.hiermatch.summary.has_mirrored = 5, True
+    context.scene.hiermatch.summary.points, context.scene.hiermatch.summary.answers = 5, "direct\nmirrored"
 
     def starters():
         drawn = draw(context)
@@ -259,14 +263,25 @@ def test_what_is_not_proven_and_what_is_mirrored(context):
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_the_switch_between_two_answers(context, mirrored):
     summary = context.scene.hiermatch.summary
-    summary.points, summary.has_mirrored, summary.mirrored = 5, True, mirrored
+    summary.points, summary.answers, summary.answer = 5, "direct\nmirrored", int(mirrored)
     drawn = draw(context)
     assert ("switch", "hiermatch.flip", mirrored) in drawn
-    assert "Mirrored Match" not in texts(drawn)
-    summary.has_mirrored = False
+    assert "Other Answers" not in texts(drawn)
+    summary.answers, summary.answer = "direct", 0
     drawn = draw(context)
     assert not [entry for entry in drawn if entry[0] == "switch"]
-    assert "Mirrored Match none" in texts(drawn)
+    assert "Other Answers none" in texts(drawn)
+
+
+def test_the_menu_of_several_answers(context):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.answers, summary.answer = 5, "direct\nmirrored\nturned 1", 2
+    drawn = draw(context)
+    assert ("menu", "HIERMATCH_MT_answers", "Turned 1") in drawn
+    assert not [entry for entry in drawn if entry[0] == "switch"]
+    rows = []
+    answer_menu.HIERMATCH_MT_answers.draw(SimpleNamespace(layout=Layout(rows)), context)
+    assert [entry for entry in rows if entry[0] == "operator"] == 3 * [("operator", "hiermatch.flip")]
 
 
 def test_how_far_the_dense_map_can_be_trusted(context):

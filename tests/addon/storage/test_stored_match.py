@@ -21,6 +21,9 @@ def points(random, count):
     return CornerPoints(random.integers(0, 500, (count, 3)), random.dirichlet([1, 1, 1], count))
 
 
+NAMES = ("direct", "mirrored", "turned 1", "turned 2")
+
+
 def stored(count=5, answers=2, seed=4, **changes):
     random = np.random.default_rng(seed)
     made = StoredMatch(
@@ -30,10 +33,19 @@ def stored(count=5, answers=2, seed=4, **changes):
         written=Written(use_modifiers=False, vertex_groups=True, match_colors=False, distortion=True, dense=True),
         source_points=points(random, count),
         answers=tuple(
-            Answer(points(random, count), random.uniform(size=count), 0.5 + k, 0.8 - k, k == 0, 0.25 * k, QUALITIES[k])
-            for k in range(answers)
+            Answer(
+                name,
+                points(random, count),
+                random.uniform(size=count),
+                0.5 + k,
+                0.8 - k,
+                k == 0,
+                0.25 * k,
+                QUALITIES[k % 2],
+            )
+            for k, name in enumerate(NAMES[:answers])
         ),
-        mirrored=answers == 2,
+        chosen=answers // 2,
         notes=("One thing.", "Another thing."),
     )
     return replace(made, **changes)
@@ -50,7 +62,7 @@ def same(one, other):
     return type(one) is type(other) and one == other
 
 
-@pytest.mark.parametrize("answers", [1, 2])
+@pytest.mark.parametrize("answers", [1, 2, 4])
 @pytest.mark.parametrize("count", [1, 1024])
 def test_comes_back_from_blender_as_it_was(count, answers):
     before = stored(count, answers)
@@ -89,7 +101,7 @@ def test_without_notes():
 def test_the_key_is_of_the_answers_and_the_objects():
     key = stored().key
     assert stored().key == key
-    assert stored(mirrored=False, swapped=True).key == key  # else a flipped or swapped match would not find itself
+    assert stored(chosen=0, swapped=True).key == key  # else a flipped or swapped match would not find itself
     others = [
         stored(seed=5),
         stored(answers=1),

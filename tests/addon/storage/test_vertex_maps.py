@@ -118,11 +118,12 @@ def test_other_meshes_are_an_error(meshes, kept):
 
 def test_the_answer_that_is_not_shown_has_names_of_its_own(kept):
     prepared = (Content(), Content())
-    add_maps(prepared, "HM", kept, kept)
+    add_maps(prepared, "HM", (kept, kept, None, kept))
     assert map_name("HM") == "HM Map"
-    assert [*prepared[0].values] == MAP_ATTRIBUTES + [name.replace("Map", "Other Map") for name in MAP_ATTRIBUTES]
+    names = ["Map", "Other Map", "Other Map 3"]
+    assert [*prepared[0].values] == [name.replace("Map", kind) for kind in names for name in MAP_ATTRIBUTES]
     alone = (Content(), Content())
-    add_maps(alone, "HM", kept, None)
+    add_maps(alone, "HM", (kept, None))
     assert [*alone[1].values] == MAP_ATTRIBUTES
 
 
