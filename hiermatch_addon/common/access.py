@@ -24,7 +24,7 @@ def window_manager_of(context: bpy.types.Context) -> bpy.types.WindowManager:
     return cast("bpy.types.WindowManager", context.window_manager)
 
 
-def layout_of(owner: bpy.types.Panel | bpy.types.Operator) -> bpy.types.UILayout:
+def layout_of(owner: bpy.types.Panel | bpy.types.Menu | bpy.types.Operator) -> bpy.types.UILayout:
     """Return the layout of something that is being drawn."""
     return cast("bpy.types.UILayout", owner.layout)
 
