@@ -74,6 +74,8 @@ class Selection:
         Difference of scores up to which a registered map is registered closely, too, before one is chosen.
     most : int
         How many are registered, and how many closely, at most.
+    least : float
+        Likeness of the best that has been registered softly up to which no other is looked for: all are of no use.
     """
 
     apart: float = 0.07
@@ -83,6 +85,7 @@ class Selection:
     ambiguous: float = 2.0
     contested: float = 3.0
     most: int = 3
+    least: float = -np.inf
 
 
 USUAL = Selection()

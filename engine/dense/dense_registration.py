@@ -152,12 +152,13 @@ def registered_pair_steps(
     candidates.sort(key=lambda candidate: candidate.score)
     yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
     # Where no map is looked for, the one that is given is followed as it is.
-    proposers = PROPOSERS if search else ()
+    hopeful = landmarks is not None or candidates[0].likeness > selection.least
+    proposers = PROPOSERS if search and hopeful else ()
     contest = Contest(follow, landmarks, selection)
     for number, propose in enumerate(proposers):
         begin, end = (0.6 + 0.1 * (number + i) / len(proposers) for i in (0, 1))
         candidates = yield from within(propose(contest, candidates), begin, end)
-    fits = yield from within(_contest_steps(contest, candidates), 0.7, 0.9)
+    fits = yield from within(_contest_steps(contest, candidates if hopeful else candidates[:1]), 0.7, 0.9)
     closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
     best = closest.candidate
     others = [candidate for candidate in candidates if candidate is not best]

@@ -52,6 +52,10 @@ _MISSED = 15.0
 _MOST = 2
 """Pieces of the surfaces that the match is done with at most, to choose between them."""
 
+_RISE = 6.0
+"""By how much the likeness of a piece may yet rise once it has been registered softly: of fuzzed shapes it rose by 3.7
+at most, of long bodies that were turned back."""
+
 _ROUNDS = 2
 """How often: a piece that turns out too small grows."""
 
@@ -151,7 +155,7 @@ def piece_matched_steps(
     MatchResult
         The most credible match, the given one among them.
     """
-    way = _Way(x, y, of_source, task)
+    way = _Way(x, y, of_source, replace(task, least=least - _RISE))
     for again in range(_ROUNDS):
         other = yield from within(way.matched_steps(piece), again / _ROUNDS, (again + 1) / _ROUNDS)
         if other is None or not is_better_part(other, result, least, of_source=of_source):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..dense.dense_hypotheses import LandmarkStart, map_domains
+from ..dense.dense_hypotheses import USUAL, LandmarkStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
 from ..dense.densify import MEASURED, DenseMatch, dense_match_steps
 from ..dense.initial_maps import RoughSearch
@@ -73,11 +73,14 @@ class MatchTask:
         Vertices of the original meshes that are known to correspond.
     clock : Clock
         Takes the time of each stage.
+    least : float
+        Likeness of the surfaces below which a dense match is of no use.
     """
 
     settings: MatchSettings
     landmarks: ArrayLike | None
     clock: Clock = field(default_factory=Clock)
+    least: float = -np.inf
 
 
 def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
@@ -137,7 +140,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
             rows = yield from _distance_rows_steps(answer)
             results.append(_result(answer, known, notes, clock.laps, rows))
         return replace(results[0], alternatives=tuple(replace(other, name=MIRRORED) for other in results[1:2]))
-    direct, others, dense = yield from within(_dense_steps(answers, finer, known, searched, clock), sparse_end, 1.0)
+    direct, others, dense = yield from within(_dense_steps(answers, finer, known, searched, task), sparse_end, 1.0)
     return replace(
         _result(direct, known, notes, clock.laps),
         alternatives=tuple(replace(_result(other, known, notes, clock.laps), name=name) for name, other in others),
@@ -152,7 +155,7 @@ def _dense_steps(
     finer: tuple[Shape, Shape],
     landmarks: Landmarks | None,
     searched: RoughSearch | None,
-    clock: Clock,
+    task: MatchTask,
 ) -> Steps[tuple[Answer, list[tuple[str, Answer]], DenseMatch]]:
     """Find the dense map, the sparse answer that agrees with it, and its alternatives by their names.
 
@@ -167,9 +170,9 @@ def _dense_steps(
         places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
         rows = finer[0].sample_rows[: len(places)], finer[1].sample_rows[places]
         starts.append(LandmarkStart(*rows, "hierarchy"))
-    registered = yield from within(
-        registered_pair_steps(*finer, starts, landmarks=landmarks, searched=searched), 0.0, 0.75
-    )
+    selection, clock = replace(USUAL, least=task.least), task.clock
+    registering = registered_pair_steps(*finer, starts, landmarks=landmarks, searched=searched, selection=selection)
+    registered = yield from within(registering, 0.0, 0.75)
     clock.lap("registration")
     dense = yield from within(dense_match_steps(registered), 0.75, 0.9)
     clock.lap("lift")

@@ -473,3 +473,16 @@ def test_meshes_with_fewer_vertices_than_eigenpairs_are_registered_too():
 
 def test_a_pair_that_nothing_was_compared_for_has_no_likeness():
     assert RegisteredPair(*[None] * 6, candidates=(), margin=None).likeness is None
+
+
+def test_where_all_maps_are_of_no_use_the_best_alone_is_followed(bodies, both_starts, monkeypatch):
+    """With the true map made to seem worse at first, the wrong one is kept: no close registration decides."""
+    x, y = bodies[:2]
+    asked = []
+    monkeypatch.setattr(dense_map, "PROPOSERS", (lambda *_: asked.append(1),))
+    with_soft_score(monkeypatch, "true", 100.0)
+    selection = replace(BOTH, contested=1000.0, least=np.inf)
+    pair = run(registered_pair_steps(x, y, both_starts, selection=selection))
+    assert not asked
+    assert pair.candidates[0].hypothesis.origin != "true"
+    assert pair.margin is not None
