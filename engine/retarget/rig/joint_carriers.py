@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .fitted_rig import FittedRig
     from .skeleton import Skeleton
 
-__all__ = ["JointCarriers", "carriers_of", "moved_areas", "nearest_on_bones"]
+__all__ = ["JointCarriers", "carriers_of", "moved_areas", "nearest_on_bones", "sums_below"]
 
 _SAME_PLACE = 1e-4
 """Joints closer than this, in units of the skeleton's extent, are at one place."""
@@ -53,8 +53,10 @@ class JointCarriers:
         For each bone the bones that it turns with, in parts that sum to one: itself, if it moves vertices.
     moving : (b,) array of bool
         Which bones move vertices.
+    free : (b,) array of bool
+        Which bones end where no other bone begins or ends.
     loose : (b,) array of bool
-        Which bones move no vertices and end where no other bone begins or ends: they stay as long as they are.
+        Which of these move no vertices: they stay as long as they are.
     anchors : (b,) array of int
         For a bone above most of the body that itself moves no vertices and shares no joint with one that does: the
         heaviest of those below that do; -1 for all others.
@@ -66,6 +68,7 @@ class JointCarriers:
     of_places: NDArray[np.float64]
     of_turns: NDArray[np.float64]
     moving: NDArray[np.bool_]
+    free: NDArray[np.bool_]
     loose: NDArray[np.bool_]
     anchors: NDArray[np.int64]
     above: NDArray[np.int64]
@@ -86,7 +89,7 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
     above = _moving_above(skeleton, moving)
     of_turns = np.zeros((count, count))
     anchors = np.full(count, -1)
-    below = _sums_below(skeleton, masses)
+    below = sums_below(skeleton, masses)
     for bone in range(count):
         if moving[bone]:
             of_turns[bone, bone] = 1
@@ -108,10 +111,9 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
     for ends in (heads, tails):
         free = ~of_places.any(axis=1)[ends] & ~moving
         np.add.at(of_places, ends[free], of_turns[free])
-    loose = ~moving & (np.bincount(places)[tails] == 1)
-    return JointCarriers(
-        places, of_places / of_places.sum(axis=1, keepdims=True), of_turns, moving, loose, anchors, above
-    )
+    free = np.bincount(places)[tails] == 1
+    shares = of_places / of_places.sum(axis=1, keepdims=True)
+    return JointCarriers(places, shares, of_turns, moving, free, free & ~moving, anchors, above)
 
 
 def moved_areas(rig: FittedRig, source: TriangleMesh) -> NDArray[np.float64]:
@@ -154,7 +156,7 @@ def _moving_above(skeleton: Skeleton, moving: NDArray[np.bool_]) -> NDArray[np.i
     return found
 
 
-def _sums_below(skeleton: Skeleton, masses: NDArray[np.float64]) -> NDArray[np.float64]:
+def sums_below(skeleton: Skeleton, masses: NDArray[np.float64]) -> NDArray[np.float64]:
     """Sum the masses of each bone and all that hang on it, (b,)."""
     sums = masses.copy()
     for bone in skeleton.order[::-1]:

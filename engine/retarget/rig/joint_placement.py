@@ -11,7 +11,7 @@ import numpy as np
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.unit_vectors import unit_vectors
 from ...runtime.errors import RigError
-from .joint_carriers import carriers_of, moved_areas, nearest_on_bones
+from .joint_carriers import carriers_of, moved_areas, nearest_on_bones, sums_below
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,6 +30,9 @@ _NEAR_FRAME = np.radians(45.0)
 
 _LEAST_REACH = 0.05
 """Least part of the body's extent by which a root is away from its middle, and with which it reaches towards it."""
+
+_LEAST_AIM = 1e-4
+"""Joints nearer to a bone's head than this, in units of the longest such way, do not turn it."""
 
 _MEDIAN_ROUNDS, _MEDIAN_SHARPNESS = 20, 0.01
 """Rounds of weighting by the inverse difference, and the least difference of two rotations that counts there."""
@@ -105,10 +108,15 @@ def place_joints(
         placed[carriers.places[bone]] = _rooted(rig, source, upright, bone, carriers.anchors[bone])
     heads, tails = np.split(placed[carriers.places], 2)
     scales = np.exp(carriers.of_turns @ np.log(np.maximum(rig.scales, np.finfo(float).tiny)))
-    rigid = np.einsum("bij,bj->bi", turns, skeleton.tails - skeleton.heads) * scales[:, None]
+    axes = skeleton.tails - skeleton.heads
+    free = np.flatnonzero(carriers.free & carriers.moving)
+    turns[free] = _aimed(skeleton, heads, turns, moved_areas(rig, source))[free]
+    rigid = np.einsum("bij,bj->bi", turns, axes) * scales[:, None]
     tails = np.where(carriers.loose[:, None], heads + rigid, tails)
+    lengths = np.linalg.norm(np.einsum("bij,bj->bi", rig.linear, axes), axis=1)
+    tails[free] = heads[free] + unit_vectors(rigid[free]) * lengths[free, None]
     heads, tails = _with_lengths(skeleton, heads, tails, rigid, carriers.places)
-    rotations = _swung(turns, skeleton.tails - skeleton.heads, tails - heads)
+    rotations = _swung(turns, axes, tails - heads)
     across = np.einsum("bij,bj->bi", rotations, _across(normals, skeleton.tails - skeleton.heads))
     return PlacedJoints(heads, tails, across, rotations)
 
@@ -136,6 +144,26 @@ def standing(rig: FittedRig, source: TriangleMesh, frames: NDArray[np.float64] |
         return middle
     cosines = (np.einsum("kij,ij->k", frames, middle) - 1) / 2
     return frames[cosines.argmax()] if cosines.max() > np.cos(_NEAR_FRAME) else middle
+
+
+def _aimed(
+    skeleton: Skeleton, heads: NDArray[np.float64], turns: NDArray[np.float64], masses: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Turn bones (b, 3, 3) so that they point to the joints of those that hang on them, as they did, however they end.
+
+    Where a bone ends alone says nothing: importers set that, often a hair's breadth from its head and across the limb.
+    """
+    below = sums_below(skeleton, masses)
+    before, after = np.zeros((2, len(skeleton), 3))
+    for bone in np.flatnonzero(skeleton.parents >= 0):
+        parent = skeleton.parents[bone]
+        before[parent] += below[bone] * (skeleton.heads[bone] - skeleton.heads[parent])
+        after[parent] += below[bone] * (heads[bone] - heads[parent])
+    lengths = np.linalg.norm(before, axis=1)
+    far = np.minimum(lengths, np.linalg.norm(after, axis=1)) > _LEAST_AIM * lengths.max(initial=0.0)
+    aimed = turns.copy()
+    aimed[far] = _swung(turns[far], before[far], after[far])
+    return aimed
 
 
 def _means(points: NDArray[np.float64], groups: NDArray[np.int64], count: int) -> NDArray[np.float64]:

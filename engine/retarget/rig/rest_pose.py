@@ -112,8 +112,9 @@ def rest_pose(
     carriers, upright = carriers_of(rig, source), standing(rig, source, frames)
     turns = upright @ placed.rotations.transpose(0, 2, 1)
     heads = placed.heads.copy()
-    for bone in rig.skeleton.order:
-        above = carriers.above[bone]
+    leaders = _leaders(rig, carriers.above, moved_areas(rig, source))
+    for bone in _after_leaders(leaders):
+        above = leaders[bone]
         if carriers.moving[bone] and above >= 0:
             heads[bone] = heads[above] + turns[above] @ (placed.heads[bone] - placed.heads[above])
     rooted = carriers.anchors >= 0
@@ -126,6 +127,43 @@ def rest_pose(
         lying = unposed(rig.registered, rig.weights, RestPose(placed.heads, heads, turns))
         heads[~rooted] += ((rig.registered @ down).max() - (lying @ down).max()) * down
     return RestPose(placed.heads, heads, turns)
+
+
+def _leaders(rig: FittedRig, above: NDArray[np.int64], masses: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Find for each bone the one that it goes with, (b,): the moving one above it, -1 for none.
+
+    A foot that hangs on nothing, because inverse kinematics move it, goes with the bone of the body that moves most of
+    the same vertices: the shin.  Else they would be torn apart.
+    """
+    leaders = above.copy()
+    tops = np.arange(len(above))
+    for bone in rig.skeleton.order:
+        if above[bone] >= 0:
+            tops[bone] = tops[above[bone]]
+    sums = np.bincount(tops, weights=masses, minlength=len(above))
+    shared = (rig.weights.T @ rig.weights).toarray()
+    joined = tops == sums.argmax()
+    waiting = {int(top) for top in tops[masses > 0]} - {int(sums.argmax())}
+    while waiting:
+        common = {top: shared[np.ix_([top], joined)][0] for top in waiting}
+        top = max(sorted(waiting), key=lambda one: common[one].max(initial=0.0))
+        if not common[top].max(initial=0.0) > 0:
+            break
+        leaders[top] = np.flatnonzero(joined)[common[top].argmax()]
+        joined |= tops == top
+        waiting.remove(top)
+    return leaders
+
+
+def _after_leaders(leaders: NDArray[np.int64]) -> list[int]:
+    """Put all bones in an order in which each comes after its leader."""
+    depths = np.zeros(len(leaders), np.int64)
+    for bone in range(len(leaders)):
+        above = leaders[bone]
+        while above >= 0:
+            depths[bone] += 1
+            above = leaders[above]
+    return np.argsort(depths, kind="stable").tolist()
 
 
 def at_rest(placed: PlacedJoints, rest: RestPose) -> PlacedJoints:

@@ -203,3 +203,21 @@ def test_arrays_that_do_not_fit_are_refused(body):
     nothing = fitted(body, *everywhere(np.eye(3), np.zeros(3)), weights=0 * creature_weights(body.vertices))
     with pytest.raises(RigError, match="No bone"):
         place_joints(nothing, body, normals())
+
+
+@pytest.mark.parametrize("length", [1e-3, 0.05])
+def test_where_an_importer_ends_a_bone_turns_nothing(body, length):
+    random = np.random.default_rng(3)
+    linear, translations = bent({"neck": 0.5, "lower front.L": -0.9, "tail": 0.7})
+    translations += random.normal(0, 0.01, translations.shape)  # as fitted bones do, they disagree at their joints
+    true = place_joints(fitted(body, linear, translations), body, normals())
+    ends = random.normal(size=(len(NAMES), 3))  # as glTF files say nothing of where bones end
+    ends *= length / np.linalg.norm(ends, axis=1, keepdims=True)
+    skeleton = Skeleton(PARENTS, HEADS, HEADS + ends)
+    placed = place_joints(fitted(body, linear, translations, skeleton=skeleton), body, ends[:, [1, 2, 0]])
+    moving = [bone for bone, name in enumerate(NAMES) if name not in CONTROLS]
+    apart = np.einsum("bji,bjk->bik", true.rotations[moving], placed.rotations[moving])
+    angles = np.degrees(np.arccos(((np.trace(apart, axis1=1, axis2=2) - 1) / 2).clip(-1, 1)))
+    assert angles.max() < 8
+    np.testing.assert_allclose(placed.heads[moving], true.heads[moving], atol=0.02)
+    np.testing.assert_allclose(np.linalg.norm(placed.tails - placed.heads, axis=1)[moving], length, rtol=1e-6)

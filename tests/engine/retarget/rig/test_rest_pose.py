@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -135,3 +137,14 @@ def test_weights_of_another_body_are_refused(body):
     rest = rest_pose(rig, body, placed_joints(body, rig), np.eye(3)[None])
     with pytest.raises(RigError, match="Weights of"):
         unposed(rig.posed[1:], rig.weights, rest)
+
+
+def test_a_foot_that_hangs_on_nothing_goes_with_the_leg(body):
+    apart = PARENTS.copy()
+    apart[[NUMBER["lower front.L"], NUMBER["lower hind.R"]]] = -1  # as where inverse kinematics move them
+    rig = posed_rig(body, POSE)
+    rig = replace(rig, skeleton=Skeleton(apart, HEADS, TAILS))
+    rest = rest_pose(rig, body, placed_joints(body, rig), np.eye(3)[None])
+    lower = [NUMBER["lower front.L"], NUMBER["lower hind.R"]]
+    np.testing.assert_allclose(rest.heads[lower], HEADS[lower], atol=0.02)
+    np.testing.assert_allclose(unposed(rig.posed, rig.weights, rest), body.vertices, atol=0.03)

@@ -1,0 +1,351 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Retarget one character to another in a real Blender window, from a built zip and two glTF files, with pictures.
+
+    make package-no-wheels
+    BLENDER_USER_RESOURCES=EMPTY_FOLDER blender --factory-startup --enable-event-simulate \
+        --window-geometry 0 0 1600 1000 --python tools/character_story.py -- \
+        FOLDER build/package-no-wheels/hiermatch-VERSION.zip SOURCE.glb TARGET.glb [COMMAND ...]
+
+Any Blender from 4.3 on with NumPy and SciPy will do; the zip is installed as by hand.  Either character may have any
+number of meshes, both need a rig; a source without an action gets one that swings its arms and legs.  Everything is
+done as a person does it: import both, pick their armatures, press Retarget, answer if asked, press Test Poses, give the
+new armature the source's action and play it.  After each step it is checked what became of it; the first that failed
+ends Blender with an error.  Saves into FOLDER
+
+    1-imported.jpg      both characters, as they are imported
+    2-picked.jpg        their armatures are picked
+    3-matching.jpg      while they are matched
+    4-retargeted.jpg    what the panel says to it
+    5-test-poses.jpg    some of the joints bent
+    6-action.jpg        both playing the source's action, at four times
+
+Blender cannot read its own pixels on some screens, virtual ones above all: see `screenshots.py` for COMMAND.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Quaternion, Vector
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from camera import Camera, seen
+from screen import choose_tab, large_view, look_at_selected, view
+from window_events import press, running, until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_PAUSE = 1.0
+"""Seconds between two steps: enough for a window to be drawn, in software too."""
+
+_DRAWINGS = 2
+"""How often the window is drawn between two steps: new sections of panels are measured at first, and seen at last."""
+
+_APART = 0.25
+"""Room between the two characters, in units of the wider one."""
+
+_FAR_ENOUGH = 0.3
+"""How far the work is when its progress is shown."""
+
+_BENDS, _TIMES = 3, 4
+"""How many test poses, and moments of the action, are put on one sheet."""
+
+_WISHED = ("walk", "run", "swim", "gallop")
+"""What the name of an action to play should contain, the best first."""
+
+_SWINGS = {"upperarm": -0.6, "upperleg": 0.6, "thigh": 0.6}
+"""How far the bones with these words in their names swing, in radians, where the source has no action."""
+
+_SIDES = (((".l", "_l", "left"), 1), ((".r", "_r", "right"), -1))
+"""How names of bones end on the left and on the right."""
+
+
+class StoryError(Exception):
+    """A step did not do what it should; the message says which."""
+
+
+def check(condition: object, message: str) -> None:
+    """Make sure that a step did what it should."""
+    if not condition:
+        raise StoryError(message)
+
+
+def state() -> Any:  # noqa: ANN401 - a property group
+    """Return the panel's state."""
+    return cast("Any", bpy.context.scene).hiermatch
+
+
+def report() -> Any:  # noqa: ANN401 - a property group
+    """Return what is said of the last retarget."""
+    return cast("Any", bpy.context.scene).hiermatch_retarget.report
+
+
+def tell(story: Story, camera: Camera) -> Iterator[float | None]:
+    """Go through all steps; wherever it yields, the window is drawn."""
+    yield from story.bring(camera)
+    yield from story.retarget(camera)
+    yield from story.bend(camera)
+    yield from story.play(camera)
+
+
+class Story:
+    """Two characters, and what is done with them.
+
+    Parameters
+    ----------
+    source, target : Path
+        Files to import.
+    """
+
+    def __init__(self, source: Path, target: Path) -> None:
+        self._paths = source, target
+        self._rigs: list[bpy.types.Object] = []
+        self._meshes: list[list[bpy.types.Object]] = []
+        self._made: bpy.types.Object | None = None
+
+    def bring(self, camera: Camera) -> Iterator[float | None]:
+        """Import both, one beside the other, and pick their armatures."""
+        for thing in list(bpy.data.objects):
+            bpy.data.objects.remove(thing)
+        large_view()
+        yield None
+        choose_tab()
+        for path in self._paths:
+            self._import(path)
+        if _action_of(self._rigs[0]) is None:
+            _swing(self._rigs[0])
+        self._stand_apart()
+        self._look()
+        yield None
+        camera.take_with_panel("1-imported", self._all())
+        state().source, state().target = self._rigs
+        yield None
+        camera.take_with_panel("2-picked", self._all())
+
+    def retarget(self, camera: Camera) -> Iterator[float | None]:
+        """Press the button, and answer if asked."""
+        before = {obj: _shape(obj) for obj in self._meshes[0]}
+        press(cast("Any", bpy.ops).hiermatch.retarget)
+        progress = cast("Any", bpy.context.window_manager).hiermatch
+        yield from until(lambda: progress.fraction > _FAR_ENOUGH or not running(), "The first third")
+        camera.take_with_panel("3-matching", self._all())
+        yield from until(lambda: bool(progress.question) or not running(), "The match")
+        if progress.question:
+            print(f"asked: {progress.question}", flush=True)
+            press(cast("Any", bpy.ops).hiermatch.answer, answer="WRITE")
+        yield from until(lambda: not running(), "Retargeting")
+        yield None
+        camera.take_with_panel("4-retargeted", self._all())
+        print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
+        check(report().done, "Nothing was carried")
+        check(all(_shape(obj) == shape for obj, shape in before.items()), "The source was changed")
+        rigs = {rig for obj in self._meshes[1] for rig in _moving(obj)}
+        check(len(rigs) == 1, f"The target is moved by {len(rigs)} armatures instead of one")
+        (self._made,) = rigs
+        check(self._made not in self._rigs, "The target is still moved by its own armature")
+
+    def bend(self, camera: Camera) -> Iterator[float | None]:
+        """Press Test Poses, look at some of them, and press it again."""
+        scene, made = cast("Any", bpy.context.scene), cast("Any", self._made)
+        frames = scene.frame_start, scene.frame_end
+        press(cast("Any", bpy.ops).hiermatch.test_poses)
+        yield None
+        markers = sorted(scene.timeline_markers, key=lambda marker: marker.frame)
+        check(markers, "There are no test poses")
+        looks = []
+        for marker in _spread(_limbs(markers), _BENDS):
+            scene.frame_set(marker.frame)
+            yield None
+            print("bent:", marker.name, flush=True)
+            looks.append(camera.look(seen(self._meshes[1])))
+        camera.save("5-test-poses", [looks])
+        press(cast("Any", bpy.ops).hiermatch.test_poses)
+        yield None
+        check(not scene.timeline_markers, "Test poses were left behind")
+        check((scene.frame_start, scene.frame_end) == frames, "The frame range was not brought back")
+        check(made.animation_data.action is None, "An action was left behind")
+
+    def play(self, camera: Camera) -> Iterator[float | None]:
+        """Give both rigs one action of the source, and look at some moments of it."""
+        scene = cast("Any", bpy.context.scene)
+        action = _action_of(self._rigs[0])
+        check(action is not None, "The source has no action")
+        for rig in (self._rigs[0], cast("Any", self._made)):
+            _assign(rig, action)
+        first, last = (int(frame) for frame in action.frame_range)
+        print(f"playing: {action.name}, frames {first} to {last}", flush=True)
+        looks, shapes = [], set()
+        for number in range(_TIMES):
+            scene.frame_set(first + round(number * (last - first) / _TIMES))
+            yield None
+            looks.append(camera.look(seen(self._all())))
+            shapes.add(_shape(self._meshes[1][0], shown=True))
+        check(len(shapes) > 1, "The target does not move")
+        half = (len(looks) + 1) // 2
+        camera.save("6-action", [looks[:half], looks[half:]])
+
+    def _all(self) -> list[bpy.types.Object]:
+        return [obj for meshes in self._meshes for obj in meshes]
+
+    def _import(self, path: Path) -> None:
+        """Import a file as by the menu."""
+        before = set(bpy.data.objects)
+        with bpy.context.temp_override(**view()):
+            bpy.ops.import_scene.gltf(filepath=str(path))
+        new = [obj for obj in bpy.data.objects if obj not in before]
+        rigs = [obj for obj in new if obj.type == "ARMATURE"]
+        check(rigs, f"{path.name} has no armature")
+        self._rigs.append(rigs[0])
+        self._meshes.append(
+            [obj for obj in new if obj.type == "MESH" and _hangs_on(obj, rigs[0]) and obj.data.polygons]
+        )
+        print(f"{path.name}: {len(self._meshes[-1])} meshes, {len(rigs[0].data.bones)} bones", flush=True)
+
+    def _stand_apart(self) -> None:
+        """Move the target beside the source, as a person would to see both."""
+        bpy.context.view_layer.update()
+        (low, high), (its_low, its_high) = (_extent(meshes) for meshes in self._meshes)
+        room = _APART * max(high - low, its_high - its_low)
+        root = self._rigs[1]
+        while root.parent is not None:
+            root = root.parent
+        root.matrix_world = Matrix.Translation((high - its_low + room, 0.0, 0.0)) @ root.matrix_world
+        bpy.context.view_layer.update()
+
+    def _look(self) -> None:
+        """Turn the view to both, from before, with their materials and without a grid."""
+        with bpy.context.temp_override(**view()):
+            bpy.ops.object.select_all(action="DESELECT")
+            for obj in self._all():
+                obj.select_set(state=True)
+            bpy.ops.view3d.view_axis(type="FRONT")
+            bpy.ops.view3d.view_orbit(angle=0.35, type="ORBITLEFT")
+        look_at_selected()
+        for obj in self._all():
+            obj.select_set(state=False)
+        space = view()["space_data"]
+        space.shading.color_type = "MATERIAL"
+        overlay = space.overlay
+        overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_cursor = False
+        overlay.show_extras = overlay.show_relationship_lines = overlay.show_object_origins = False
+        overlay.show_bones = False
+
+
+def _hangs_on(obj: bpy.types.Object, rig: bpy.types.Object) -> bool:
+    return rig in _moving(obj) or rig == obj.parent
+
+
+def _moving(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return what moves a mesh: the armatures of its modifiers that are switched on."""
+    return [cast("Any", one).object for one in obj.modifiers if one.type == "ARMATURE" and one.show_viewport]
+
+
+def _extent(meshes: list[bpy.types.Object]) -> tuple[float, float]:
+    """Return from where to where meshes reach along X."""
+    along = [(obj.matrix_world @ Vector(corner)).x for obj in meshes for corner in obj.bound_box]
+    return min(along), max(along)
+
+
+def _shape(obj: bpy.types.Object, *, shown: bool = False) -> bytes:
+    """Return the vertices of a mesh, its own or as they are shown."""
+    mesh = cast("Any", obj.evaluated_get(bpy.context.evaluated_depsgraph_get()) if shown else obj).data
+    positions = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", positions)
+    return positions.tobytes()
+
+
+def _limbs(markers: list[Any]) -> list[Any]:
+    """Leave out the bones at the ends, such as fingers and toes, of which little is seen."""
+    small = ("finger", "thumb", "index", "middle", "ring", "pinky", "toe", "ik", "eye", "leaf", "end")
+    return [one for one in markers if not any(word in one.name.lower() for word in small)] or markers
+
+
+def _spread(things: list[Any], count: int) -> list[Any]:
+    """Choose some of a list, evenly."""
+    return [things[round((number + 0.5) * (len(things) - 1) / count)] for number in range(count)]
+
+
+def _action_of(rig: bpy.types.Object) -> Any:  # noqa: ANN401 - an action, or None
+    """Choose an action that a rig has, or that was imported for it: a walk if there is one."""
+    animation: Any = rig.animation_data
+    if animation is None:
+        return None
+    strips = [strip.action for track in animation.nla_tracks for strip in track.strips]
+    actions = [one for one in [animation.action, *strips] if one is not None]
+    for word in _WISHED:
+        for action in actions:
+            if word in action.name.lower():
+                return action
+    return actions[0] if actions else None
+
+
+def _swing(rig: bpy.types.Object) -> None:
+    """Give a rig that has no action one that swings its arms and legs, as in a walk."""
+    bones = cast("Any", rig.pose).bones
+    for bone in bones:
+        word = next((word for word in _SWINGS if word in bone.name.lower().replace("_", "").replace(" ", "")), None)
+        side = next((side for ends, side in _SIDES if bone.name.lower().endswith(ends)), None)
+        if word is None or side is None:
+            continue
+        axis = (rig.matrix_world @ bone.bone.matrix_local).to_3x3().inverted() @ Vector((1.0, 0.0, 0.0))
+        bone.rotation_mode = "QUATERNION"
+        for number, way in enumerate((1, 0, -1, 0, 1)):
+            bone.rotation_quaternion = Quaternion(axis.normalized(), way * side * _SWINGS[word])
+            bone.keyframe_insert("rotation_quaternion", frame=1 + 6 * number)
+    check(rig.animation_data is not None, "The source has no action, and no bones called as arms or legs")
+    cast("Any", rig.animation_data).action.name = "Swing Walk"
+
+
+def _assign(rig: bpy.types.Object, action: Any) -> None:  # noqa: ANN401 - an action
+    """Let a rig play an action, as the menu of the Action Editor does."""
+    animation: Any = rig.animation_data or rig.animation_data_create()
+    animation.action = action
+    if getattr(animation, "action_slot", True) is None:
+        animation.action_slot = animation.action_suitable_slots[0]
+
+
+def main(arguments: list[str]) -> None:
+    """Install the zip, and let Blender's own timer do one step after the other."""
+    if len(arguments) < 4:
+        sys.exit("Name a folder for the pictures, the extension's zip, and the files of the source and the target.")
+    folder, package, source, target = (Path(argument).resolve() for argument in arguments[:4])
+    folder.mkdir(parents=True, exist_ok=True)
+    bpy.context.preferences.view.show_splash = bpy.context.preferences.view.show_tooltips = False
+    steps = tell(Story(source, target), Camera(folder, arguments[4:]))
+    to_draw, installed = 0, False
+
+    def advance() -> float | None:
+        nonlocal to_draw, installed
+        if to_draw:
+            to_draw -= 1
+            bpy.context.window_manager.windows[0].screen.areas[0].tag_redraw()
+            return _PAUSE
+        try:
+            if not installed:
+                install: Any = cast("Any", bpy.ops).extensions.package_install_files
+                install(filepath=str(package), repo="user_default", enable_on_install=True)
+                installed = True
+                return _PAUSE
+            pause = next(steps)
+        except StopIteration:
+            bpy.ops.wm.quit_blender()
+            return None
+        except Exception:  # noqa: BLE001 - whatever it is, nobody sits before this window
+            traceback.print_exc()
+            sys.stderr.flush()
+            sys.exit(1)
+        if pause is None:
+            to_draw, pause = _DRAWINGS, _PAUSE
+        return pause
+
+    bpy.app.timers.register(advance, first_interval=_PAUSE, persistent=True)
+
+
+main(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
