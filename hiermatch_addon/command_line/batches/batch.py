@@ -121,7 +121,7 @@ def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namesp
             console.error(f"{pair.name}: {error}.")
             continue
         told = [f"--report={ledger.report_path(pair)}", f"--report-key={pair.key}"]
-        if pair.command == "retarget" and "accept_doubtful" not in dict(pair.options):
+        if pair.command != "match" and "accept_doubtful" not in dict(pair.options):
             told.append("--accept-doubtful")  # one bad pair of many is looked at later: the summary names it
         if parsed.least_confidence is not None:
             told.append(f"--least-confidence={parsed.least_confidence}")
