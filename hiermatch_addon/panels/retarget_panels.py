@@ -9,6 +9,7 @@ import bpy
 
 from ..common.access import layout_of
 from ..scene.armatures import find_armature
+from ..scene.character import successor
 from ..scene.posing.before_after import is_before
 from ..scene.posing.exercise import is_exercising
 from ..transfers.options.retarget import KINDS, option_names
@@ -128,7 +129,10 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
         draw_text(box, context, line, "ERROR")
     box.label(text=f"{report.seconds:.1f} s", icon="TIME")
     target = bpy.data.objects.get(report.target)
-    armature = target if target is None or target.type == "ARMATURE" else find_armature(target)
+    if target is not None and target.type == "ARMATURE":
+        armature: bpy.types.Object | None = successor(target)
+    else:
+        armature = target if target is None else find_armature(target)
     row = layout.row(align=True)
     pressed = armature is not None and is_exercising(armature)
     poses = row.operator("hiermatch.test_poses", icon="ARMATURE_DATA", depress=pressed)

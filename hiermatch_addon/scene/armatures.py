@@ -101,8 +101,13 @@ def _armature_of_part(obj: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def moving_armatures(side: Side) -> list[bpy.types.Object]:
-    """Return the armatures of all Armature modifiers of a side, each once."""
-    modifiers = [modifier for obj in parts_of(side) for modifier in obj.modifiers if modifier.type == "ARMATURE"]
+    """Return the armatures of all Armature modifiers of a side that are not switched off altogether, each once."""
+    modifiers = [
+        modifier
+        for obj in parts_of(side)
+        for modifier in obj.modifiers
+        if modifier.type == "ARMATURE" and (modifier.show_viewport or modifier.show_render)
+    ]
     armatures = [cast("bpy.types.ArmatureModifier", modifier).object for modifier in modifiers]
     return list(dict.fromkeys(armature for armature in armatures if armature is not None))
 

@@ -9,12 +9,15 @@ import bpy
 
 from ..common.phrases import listed
 from .armatures import armature_modifier, find_armature, moving_armatures
-from .character import parts_of
+from .character import parts_of, take_place
+from .mesh_io import rest_matrix
 
 if TYPE_CHECKING:
+    from collections.abc import Container
+
     from .character import Side
 
-__all__ = ["bind", "is_made", "made_rig", "mark_made"]
+__all__ = ["bind", "is_made", "made_rig", "mark_made", "unbind"]
 
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
@@ -46,10 +49,23 @@ def made_rig(target: Side, source: bpy.types.Object) -> bpy.types.Object | None:
     return None
 
 
-def bind(target: Side, armature: bpy.types.Object, source: Side) -> list[str]:
+def bind(
+    target: Side, armature: bpy.types.Object, source: Side, kept: Container[bpy.types.Object] | None = None
+) -> list[str]:
     """Let an armature move all of a side with modifiers set as the source's, and be the parent if the source's is.
 
     The target stays where it is.  Other modifiers and another parent stay.
+
+    Parameters
+    ----------
+    target : bpy.types.Object or Character
+        What is bound.
+    armature : bpy.types.Object
+        What is to move it.
+    source : bpy.types.Object or Character
+        What is bound as the target shall be.
+    kept : container of bpy.types.Object or None
+        Armatures that go on moving the target as well; all others are unbound, see `unbind`.  None for all.
 
     Returns
     -------
@@ -68,9 +84,9 @@ def bind(target: Side, armature: bpy.types.Object, source: Side) -> list[str]:
             modifier.object = armature
             part.modifiers.move(len(part.modifiers) - 1, 0)
         for other in moving_armatures(part)[:2]:
-            if other != armature:
+            if other != armature and (kept is None or other in kept):
                 others.setdefault(other.name, []).append(part.name)
-        if not parented or part.parent in (armature, *parts_of(target)):
+        if not parented or part.parent in (armature, *parts_of(target)) or _is_replaced(part.parent, armature, kept):
             continue
         if part.parent is not None:
             parents.setdefault(part.parent.name, []).append(part.name)
@@ -83,9 +99,51 @@ def bind(target: Side, armature: bpy.types.Object, source: Side) -> list[str]:
             f'{listed(names)} is moved by the armature "{rig}" as well. Remove that Armature modifier unless both '
             "are meant to move it."
         )
-    for kept, names in parents.items():
-        notes.append(f'{listed(names)} keeps its parent "{kept}".')
+    for name, names in parents.items():
+        notes.append(f'{listed(names)} keeps its parent "{name}".')
     return notes
+
+
+def unbind(target: Side, armature: bpy.types.Object, kept: Container[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Let no other armatures move a side than one and those to keep.
+
+    Their modifiers are switched off, and what hangs on them, hangs on the new one, where it stands while they are at
+    rest: that is how the vertices of a mesh belong to its armature.  What then moves nothing any more is hidden.
+
+    Returns
+    -------
+    list of bpy.types.Object
+        The armatures that moved it.
+    """
+    found: list[bpy.types.Object] = []
+    for part in parts_of(target):
+        for modifier in part.modifiers:
+            other = getattr(modifier, "object", None) if modifier.type == "ARMATURE" else None
+            if _is_replaced(other, armature, kept) and (modifier.show_viewport or modifier.show_render):
+                modifier.show_viewport = modifier.show_render = False
+                found.append(cast("bpy.types.Object", other))
+        if _is_replaced(part.parent, armature, kept):
+            found.append(cast("bpy.types.Object", part.parent))
+            stands = rest_matrix(part) or part.matrix_world.copy()
+            part.parent, part.parent_type = armature, "OBJECT"
+            part.matrix_parent_inverse = armature.matrix_world.inverted_safe()
+            part.matrix_basis = stands
+    unique = list(dict.fromkeys(found))
+    for other in unique:
+        if not any(other in (one.parent, *moving_armatures(one)) for one in bpy.data.objects if one.type == "MESH"):
+            take_place(other, armature)
+            if other.visible_get():
+                other.hide_set(state=True)
+    return unique
+
+
+def _is_replaced(
+    other: bpy.types.Object | None, armature: bpy.types.Object, kept: Container[bpy.types.Object] | None
+) -> bool:
+    """Tell whether something is an armature in whose place another one comes."""
+    return (
+        other is not None and other.type == "ARMATURE" and other != armature and kept is not None and other not in kept
+    )
 
 
 def _take_settings(modifier: Any, model: Any, target: bpy.types.Object) -> None:  # noqa: ANN401 - Armature modifiers

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import bpy
 import numpy as np
@@ -42,10 +42,15 @@ __all__ = [
     "read_faces",
     "read_surface",
     "side_of",
+    "successor",
+    "take_place",
     "topology_of",
     "vertex_count",
     "vertex_ranges",
 ]
+
+_SUCCESSOR: Final = "hiermatch_successor"
+"""Custom property of an armature: the one that has taken its place, as a pointer that follows renaming."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +118,16 @@ def armatures_above(obj: bpy.types.Object) -> set[bpy.types.Object]:
     return found
 
 
+def take_place(other: bpy.types.Object, armature: bpy.types.Object) -> None:
+    """Record that an armature moves a character in the place of another one, so that either means this character."""
+    cast("Any", other)[_SUCCESSOR] = armature
+
+
+def successor(armature: bpy.types.Object) -> bpy.types.Object:
+    """Return the armature that has taken the place of another one, or that one itself."""
+    return cast("Any", armature).get(_SUCCESSOR) or armature
+
+
 def character_of(side: Side) -> Character:
     """Return a side as a character; a mesh object is one of a single part."""
     return side if isinstance(side, Character) else Character(side.name, (side,))
@@ -153,7 +168,8 @@ def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -
         return joined(chosen.name, parts)
     obj: Any = chosen
     if obj.type == "ARMATURE":
-        parts = [part for part in shown if obj in armatures_above(part)]
+        rigs = {obj, successor(obj)}
+        parts = [part for part in shown if not rigs.isdisjoint(armatures_above(part))]
         if not parts:
             raise ObjectError(
                 f'The armature "{obj.name}" moves no mesh with faces that is shown in this view layer. Show its '

@@ -32,6 +32,7 @@ __all__ = [
     "position_digest",
     "read_mesh",
     "read_values",
+    "rest_matrix",
     "topology",
     "vertex_positions",
 ]
@@ -102,7 +103,7 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
         corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
         mesh.loop_triangles.foreach_get("vertices", corners)
     shown = obj.evaluated_get(depsgraph).matrix_world
-    matrix = np.array(shown if use_modifiers else _rest_matrix(obj) or shown, dtype=np.float64)
+    matrix = np.array(shown if use_modifiers else rest_matrix(obj) or shown, dtype=np.float64)
     with np.errstate(invalid="ignore"):  # positions that are no numbers are told below
         vertices = positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     triangles = corners.reshape(-1, 3).astype(np.int64)
@@ -120,7 +121,7 @@ def read_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, use_modi
         raise ObjectError(f'"{obj.name}": {error}') from error
 
 
-def _rest_matrix(obj: bpy.types.Object) -> Matrix | None:
+def rest_matrix(obj: bpy.types.Object) -> Matrix | None:
     """Return where an object that hangs on a bone stands while its armature is at rest; None if it hangs on none."""
     armature, bones = obj.parent, getattr(obj.parent and obj.parent.data, "bones", None)
     if armature is None or bones is None or obj.parent_type != "BONE" or obj.parent_bone not in bones:

@@ -15,7 +15,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armature_copy import copy_armature, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
-from ..scene.binding import bind, made_rig, mark_made
+from ..scene.binding import bind, made_rig, mark_made, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
 from ..scene.character import parts_of
 from ..scene.key_drivers import counterparts
@@ -140,8 +140,11 @@ class RigTransfer:
         elif missing:
             self._notes.append(f'"{armature.name}", which was made before, lacks {listed(missing)}.')
         adapt_constraints(model, armature)
+        replaced: list[bpy.types.Object] = []
         if self._settings.bind:
-            self._notes += bind(target, armature, source)
+            kept = self._kept_beside(target, model)
+            self._notes += bind(target, armature, source, kept)
+            replaced = [] if kept is None else unbind(target, armature, kept)
         view_layer_of(context).update()
         displaced = displaced_bones(armature) if made is None else []
         if displaced:
@@ -160,7 +163,19 @@ class RigTransfer:
             done = [f'the rig "{armature.name}" with {bones} and the rest pose "{action}"']
         if made:
             done.append("updated")
-        return TransferReport(", ".join(done), tuple(self._notes))
+        remarks = (
+            f'"{target.name}" is no longer moved by its own armature "{other.name}", whose Armature modifiers are '
+            "switched off."
+            for other in replaced
+        )
+        return TransferReport(", ".join(done), tuple(self._notes), tuple(remarks))
+
+    def _kept_beside(self, target: Side, model: bpy.types.Object) -> list[bpy.types.Object] | None:
+        """Return the armatures that are to move the target beside the new one; None for all."""
+        if not self._settings.replace:
+            return None
+        made = made_rig(target, model) if self._settings.existing == "KEEP" else None
+        return [] if made is None else [made]
 
     def _keep_rest(self, armature: bpy.types.Object) -> str:
         """Keep the rest pose as an action."""

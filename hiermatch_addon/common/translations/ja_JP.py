@@ -689,6 +689,17 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Keep": "維持",
     "Leave it as it is, and make another one": "そのままにして、別のものを作ります",
+    "Replace Own Rig": "自身のリグを置き換え",
+    (
+        "If the target has a rig of its own already, switch its Armature modifiers off, and hide it if it moves "
+        "nothing else; it is not deleted. Otherwise both move the target"
+    ): (
+        "ターゲットに自身のリグがすでにある場合、そのアーマチュアモディファイアーをオフにし、ほかに動かすものがなけ"
+        "れば隠します。削除はしません。オフにすると、両方がターゲットを動かします"
+    ),
+    '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
+        "「{0}」は自身のアーマチュア「{1}」ではもう動きません。そのアーマチュアモディファイアーはオフになっています。"
+    ),
     "Bind": "バインド",
     "Rest Pose like the Source's": "ソースと同じレストポーズ",
     (

@@ -576,6 +576,14 @@ MESSAGES: Final[dict[str, str]] = {
     "Move its joints; all else that was changed on it since stays": "移动其关节；此后所做的其他更改保留",
     "Keep": "维持",
     "Leave it as it is, and make another one": "保持原样，另做一个",
+    "Replace Own Rig": "替换自身的绑定",
+    (
+        "If the target has a rig of its own already, switch its Armature modifiers off, and hide it if it moves "
+        "nothing else; it is not deleted. Otherwise both move the target"
+    ): ("如果目标已有自己的绑定，则关闭其骨架修改器，若它不再驱动别的物体则将其隐藏，但不会删除。否则两者都会驱动目标"),
+    '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
+        "“{0}”不再受自身的骨架“{1}”驱动，其骨架修改器已关闭。"
+    ),
     "Bind": "绑定",
     "Rest Pose like the Source's": "与源相同的静置姿态",
     (

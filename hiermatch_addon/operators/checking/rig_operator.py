@@ -11,7 +11,7 @@ from ...common.access import view_layer_of
 from ...common.errors import ObjectError
 from ...properties.panel_state import picked, state_of
 from ...scene.armatures import find_armature
-from ...scene.character import side_of
+from ...scene.character import side_of, successor
 from ...scene.pair import active_side, named_side
 from ...transfers.retarget_properties import retarget_of
 
@@ -54,7 +54,7 @@ def meant_armature(context: bpy.types.Context, name: str) -> bpy.types.Object:
     """
     named = bpy.data.objects.get(name)
     if named is not None and named.type == "ARMATURE":
-        armature: bpy.types.Object | None = named
+        armature: bpy.types.Object | None = successor(named)
     else:
         side = meant_target(context, name)
         armature = find_armature(side)

@@ -21,6 +21,8 @@ class RigSettings:
     ----------
     existing : str
         What becomes of an armature that was made for the target before: "UPDATE" or "KEEP".
+    replace : bool
+        Whether the target's own rig moves it no more.
     bind : bool
         Whether the target gets an Armature modifier and a parent.
     rest : bool
@@ -34,6 +36,7 @@ class RigSettings:
     """
 
     existing: str = "UPDATE"
+    replace: bool = True
     bind: bool = True
     rest: bool = False
     rest_shown: bool = False
@@ -53,6 +56,12 @@ class RigOptions:
                 ("KEEP", "Keep", "Leave it as it is, and make another one"),
             ],
             default="UPDATE",
+        ),
+        "rig_replace": _props.BoolProperty(
+            name="Replace Own Rig",
+            description="If the target has a rig of its own already, switch its Armature modifiers off, and hide it if "
+            "it moves nothing else; it is not deleted. Otherwise both move the target",
+            default=True,
         ),
         "rig_bind": _props.BoolProperty(
             name="Bind",
@@ -94,6 +103,7 @@ class RigOptions:
 
     if TYPE_CHECKING:
         rig_existing: str
+        rig_replace: bool
         rig_bind: bool
         rest_pose_like_source: str
         rig_rest: bool
@@ -105,6 +115,7 @@ def rig_settings(options: RigOptions) -> RigSettings:
     """Make the settings of the options."""
     return RigSettings(
         options.rig_existing,
+        options.rig_replace,
         options.rig_bind,
         options.rig_rest,
         options.rig_rest_shown,

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from hiermatch.engine import HierMatchError
 from hiermatch.engine.runtime.progress import run
-from hiermatch.hiermatch_addon.scene.armatures import find_armature, read_skeleton
+from hiermatch.hiermatch_addon.operators.checking.rig_operator import meant_armature
+from hiermatch.hiermatch_addon.scene.armatures import find_armature, moving_armatures, read_skeleton
+from hiermatch.hiermatch_addon.scene.character import side_of
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.transfers.options.rig import RigSettings
 from hiermatch.hiermatch_addon.transfers.rig import RigTransfer
 from mathutils import Matrix
 
-from tests.addon.rigs import CONTROLS, POSE, add_rigged, add_target, pose, true_passage
+from tests.addon.rigs import CONTROLS, POSE, add_mesh, add_rigged, add_target, pose, true_passage
 from tests.addon.scene.test_armatures import IMPORTED
 from tests.addon.scenes import add_blob
 
@@ -303,18 +305,76 @@ def test_one_step_back_undoes_it_all():
     assert bpy.data.objects["Target"].modifiers[0].object == bpy.data.objects["Source Rig Target"]
 
 
+def own_rig(target):
+    """Give a target a rig of its own that stands in a pose."""
+    body, other = add_rigged("Other")
+    bpy.data.objects.remove(body)
+    target.modifiers.new("Mine", "ARMATURE").object = other
+    target.parent = other
+    pose(other)
+    return other
+
+
 def test_another_armature_of_the_target_is_left_alone():
     source, _ = add_rigged()
     target, _ = add_target(source)
-    _, other = add_rigged("Other")
-    target.modifiers.new("Mine", "ARMATURE").object = other
-    target.parent = other
+    other = own_rig(target)
     place = own(target)
-    _, report = fit(source, target)
+    _, report = fit(source, target, replace=False)
     assert target.parent == other
     assert [modifier.name for modifier in target.modifiers] == ["Armature", "Mine"]
     assert any("Other Rig" in note and "as well" in note for note in report.notes)
+    assert moving_armatures(target)[1:] == [other]
+    assert other.visible_get()
     np.testing.assert_allclose(own(target), place, atol=1e-6)
+
+
+def test_the_new_rig_takes_the_place_of_the_target_s_own():
+    source, _ = add_rigged()
+    target, joints = add_target(source)
+    add_weights(source, target)
+    other = own_rig(target)
+    place = own(target)
+    made, report = fit(source, target)
+    assert missed(made, joints) < 0.02
+    assert moving_armatures(target) == [made]
+    assert target.parent == made
+    np.testing.assert_allclose(shown(target), place, atol=1e-4)  # its own rig's pose moves it no more
+    assert not report.notes
+    assert any("no longer moved" in remark and "Other Rig" in remark for remark in report.remarks)
+    assert not other.visible_get()
+    assert meant_armature(bpy.context, "Other Rig") == made  # what is picked in the panel still means the target
+    assert side_of(other, bpy.context.view_layer) == target
+
+
+def test_an_own_rig_that_moves_more_than_the_target_stays_in_view():
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    other = own_rig(target)
+    hair = add_mesh("Hair", np.eye(3), np.array([[0, 1, 2]]))
+    hair.modifiers.new("Armature", "ARMATURE").object = other
+    fit(source, target)
+    assert other not in moving_armatures(target)
+    assert other.visible_get()
+    assert meant_armature(bpy.context, "Other Rig") == other
+
+
+def test_a_part_that_hangs_on_a_bone_of_its_own_rig_stays_where_it_stands_at_rest():
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    _, other = add_rigged("Other")
+    stands = target.matrix_world.copy()
+    target.parent, target.parent_type, target.parent_bone = other, "BONE", "neck"
+    bpy.context.view_layer.update()
+    target.matrix_world = stands
+    bpy.context.view_layer.update()
+    place = own(target)
+    pose(other)
+    fit(source, target)
+    assert target.parent_type == "OBJECT"
+    np.testing.assert_allclose(own(target), place, atol=1e-5)
+    pose(other, part=0.3)
+    np.testing.assert_allclose(own(target), place, atol=1e-5)
 
 
 def test_without_binding_the_target_stays_as_it_is():
