@@ -48,7 +48,7 @@ _PAUSE = 1.0
 _DRAWINGS = 2
 """How often the window is drawn between two steps: new sections of panels are measured at first, and seen at last."""
 
-_APART = 0.25
+_APART = 0.6
 """Room between the two characters, in units of the wider one."""
 
 _FAR_ENOUGH = 0.3

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import bpy
 from mathutils import Matrix
 
-from ..armatures import armature_of, moving_armatures
+from ..armatures import armature_of, bone_of, moving_armatures
+from ..deform_layer import read_weights
 from .pose_state import bring_back, is_aside, put_aside
 
 if TYPE_CHECKING:
@@ -38,10 +39,10 @@ _ROTATIONS: Final = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotatio
 def bending_bones(armature: bpy.types.Object) -> list[str]:
     """Return the deforming bones of an armature that move a mesh in the file, parents before their children."""
     groups = {
-        group.name
+        name
         for obj in bpy.data.objects
         if obj.type == "MESH" and armature in (*moving_armatures(obj), obj.parent)
-        for group in obj.vertex_groups
+        for name in (*_weighted_groups(obj), bone_of(obj))
     }
     found: list[str] = []
     waiting = [bone for bone in armature_of(armature).bones if bone.parent is None][::-1]
@@ -51,6 +52,14 @@ def bending_bones(armature: bpy.types.Object) -> list[str]:
             found.append(bone.name)
         waiting += sorted(bone.children, key=lambda child: child.name, reverse=True)
     return found
+
+
+def _weighted_groups(obj: bpy.types.Object) -> list[str]:
+    """Return the names of the vertex groups in which a vertex has weight: importers make them for all bones."""
+    if not obj.vertex_groups:
+        return []
+    weights = read_weights(obj)
+    return [group.name for group in obj.vertex_groups if weights[:, [group.index]].count_nonzero()]
 
 
 def is_exercising(armature: bpy.types.Object) -> bool:

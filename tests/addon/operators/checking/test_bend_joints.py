@@ -100,3 +100,11 @@ def test_without_a_rig_it_says_what_to_do():
     bpy.data.objects.remove(bpy.data.objects["Source"])
     with pytest.raises(RuntimeError, match="moves a mesh"):
         bpy.ops.hiermatch.test_poses(target=armature.name)
+
+
+def test_bones_whose_groups_are_empty_are_not_bent(rigged):
+    obj, armature = rigged
+    armature.data.bones["pole front.L"].use_deform = True
+    obj.vertex_groups.new(name="pole front.L").add([0], 0.0, "REPLACE")  # as importers make them for all bones
+    assert bpy.ops.hiermatch.test_poses(target=obj.name) == {"FINISHED"}
+    assert "pole front.L" not in bpy.context.scene.timeline_markers
