@@ -142,9 +142,9 @@ class RigTransfer:
         adapt_constraints(model, armature)
         replaced: list[bpy.types.Object] = []
         if self._settings.bind:
-            kept = self._kept_beside(target, model)
-            self._notes += bind(target, armature, source, kept)
-            replaced = [] if kept is None else unbind(target, armature, kept)
+            beside = self._kept_beside(target, model)
+            self._notes += bind(target, armature, source, beside)
+            replaced = [] if beside is None else unbind(target, armature, beside)
         view_layer_of(context).update()
         displaced = displaced_bones(armature) if made is None else []
         if displaced:
