@@ -14,6 +14,7 @@ from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.progress import Progress, Steps, within
+from .attached_sheets import mapped_sheets
 from .component_alignment import laid_onto_steps
 from .component_pairs import contact_with, paired_parts
 from .similarity_field import Surroundings
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...repair.clean_surface import CleanSurface, SurfacePart
+    from .attached_sheets import MappedSheets
     from .component_pairs import Contact
 
 __all__ = ["FollowedMap", "follow_steps"]
@@ -100,7 +102,7 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
     and shape, that part is the partner: the two are laid over each other, and each vertex is mapped to the closest
     point.  What touches such parts only, as a hand does a sleeve, follows them in turn.  What finds no partner goes to
     the closest point of what it follows, searched from the image of the nearest vertex along the surface, so that it
-    does not jump to another limb.
+    does not jump to another limb.  Sheets that touch each other, as those of an eye do, are mapped before, one by one.
     """
     n = x.original.vertex_count
     triangles, barycentric, confidence = np.empty(n, np.int64), np.empty((n, 3)), np.ones(n)
@@ -113,7 +115,9 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
     if len(others):
         body = _Mapped(x.pieces, y.pieces, {0: _Image(0, main_map)})
         distances, surroundings[others] = body.around.nearest(x.original.vertices[others])
-        maps = _PartMaps(x, y, body)
+        sheets = mapped_sheets(x, y, body.around)
+        yield Progress(0.0, "Mapping every vertex")
+        maps = _PartMaps(x, y, body, sheets)
         yield from maps.find_steps()
         parts = maps.mapped
         for number, image in parts.items():
@@ -124,6 +128,8 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
             )
             partners[number] = image.partner
             known[vertices] = True
+        triangles[sheets.vertices], barycentric[sheets.vertices] = sheets.triangles, sheets.barycentric
+        partners[x.vertex_parts[sheets.vertices]], known[sheets.vertices] = sheets.partners, True
         alone, distances = others[~known[others]], distances[~known[others]]
         followed = [body] if not parts else [body, _Mapped(x.pieces, y.pieces, parts)]
         for vertices, away, mapped in _by_what_they_follow(x.original.vertices, alone, distances, followed):
@@ -192,9 +198,10 @@ class _Mapped:
 class _PartMaps:
     """Maps parts beside the main one onto their partners, those next to the main one first."""
 
-    def __init__(self, x: CleanSurface, y: CleanSurface, body: _Mapped) -> None:
+    def __init__(self, x: CleanSurface, y: CleanSurface, body: _Mapped, sheets: MappedSheets) -> None:
         self._x, self._y, self._body = x, y, body
-        self._free = set(range(1, len(y.pieces)))
+        self._free = set(range(1, len(y.pieces))) - set(sheets.partners)
+        self._done = set(x.vertex_parts[sheets.vertices])
         areas = np.array([piece.mesh.area for piece in x.pieces])
         counts = np.array([piece.mesh.vertex_count for piece in x.pieces])
         counts[0] = 0
@@ -204,7 +211,8 @@ class _PartMaps:
 
     def find_steps(self) -> Steps[None]:
         """Fill `mapped`."""
-        meshes = {number: piece.mesh for number, piece in enumerate(self._x.pieces) if number}
+        pieces = enumerate(self._x.pieces)
+        meshes = {number: piece.mesh for number, piece in pieces if number and number not in self._done}
         waiting = {number: self._body.contact(mesh) for number, mesh in meshes.items()}
         parts: _Mapped | None = None
         for wave in range(_MOST_WAVES):

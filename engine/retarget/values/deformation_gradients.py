@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import diags_array
+from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.connectivity.welded_parts import WeldedParts
 from ...runtime.errors import MeshError
 
 if TYPE_CHECKING:
@@ -26,6 +28,10 @@ _RADIUS = 0.1
 
 _LARGEST_STRETCH = 4.0
 """By what factor the scale may differ from the mean: more is a place where the map has collapsed or is torn."""
+
+_SMALL, _NEAR = 0.02, 0.02
+"""Pieces up to this part of the area, of which on the mean no place is so far from the rest, in sqrt(area), turn as
+what they lie on does: they have no surroundings of their own to average over."""
 
 _MOST_AREA = 3.0
 """How much more than at the median the area of a mapped triangle may count, per area of its own."""
@@ -112,6 +118,7 @@ def surface_frames(
     columns = np.concatenate([jacobians.reshape(-1, 9), stretches[:, None]], axis=1) * areas[:, None]
     sums = np.stack([mesh.sum_at_vertices(column) for column in (columns / 3).T], axis=1)
     spread = _spread(mesh, sums, radius)
+    spread = spread[_bearers(mesh)]
     rotations = _orthogonal(spread[:, :9].reshape(-1, 3, 3), -1.0 if mirrored else 1.0)
     return LocalFrames(rotations, _bounded(spread[:, 9]), overall)
 
@@ -145,6 +152,26 @@ def bone_frames(rig: FittedRig, otherwise: LocalFrames) -> LocalFrames:
     scales = np.divide(weights @ rig.scales, total, out=otherwise.scales.copy(), where=moved)
     rotations = np.where(moved[:, None, None], _orthogonal(blended, 1.0), otherwise.rotations)
     return LocalFrames(rotations, scales, otherwise.overall)
+
+
+def _bearers(mesh: TriangleMesh) -> NDArray[np.int64]:
+    """For each vertex of a small piece, such as a lash, the nearest of what it lies on; for others themselves, (n,)."""
+    bearers = np.arange(mesh.vertex_count)
+    parts = WeldedParts.of(mesh)
+    if parts.part_count == 1:
+        return bearers
+    labels = parts.vertex_labels
+    small = np.bincount(labels, mesh.vertex_areas, parts.part_count) <= _SMALL * mesh.area
+    on_small = small[labels]
+    if on_small.all():
+        return bearers
+    chosen, rest = np.flatnonzero(on_small), np.flatnonzero(~on_small)
+    distances, nearest = cKDTree(mesh.vertices[rest]).query(mesh.vertices[chosen])
+    counts = np.bincount(labels[chosen], minlength=parts.part_count)
+    away = np.bincount(labels[chosen], distances, parts.part_count) / np.maximum(counts, 1)
+    lying = away[labels[chosen]] <= _NEAR * np.sqrt(mesh.area)
+    bearers[chosen[lying]] = rest[nearest[lying]]
+    return bearers
 
 
 def _sides(points: NDArray[np.float64], triangles: NDArray[np.int64], side: float) -> NDArray[np.float64]:

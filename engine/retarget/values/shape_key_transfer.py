@@ -27,11 +27,13 @@ if TYPE_CHECKING:
 __all__ = ["Scaling", "carry_offsets_steps"]
 
 Scaling = Literal["auto", "none", "overall", "local"]
-"""How lengths of offsets change: as the whole surface has grown if the two are of clearly different sizes; not at all;
-as the whole has grown in any case; or as the surface has around each vertex."""
+"""How lengths of offsets change: as the whole surface has grown if the two are of clearly different sizes, and as the
+unit of length does if they are not, but one is in metres and the other in centimetres; not at all; as the whole has
+grown in any case; or as the surface has around each vertex."""
 
 _SAME_SIZE = 1.25
-"""Up to this factor two surfaces count as bodies of one size, on which a smile is as wide: for `auto`."""
+"""Up to this factor two surfaces count as bodies of one size, on which a smile is as wide, in units that are the same
+or a power of ten apart: for `auto`."""
 
 _LEAST_CONFIDENCE = 0.02
 """Below it, a place is taken from its neighbours: only what is surely wrong, because that blurs the offsets."""
@@ -129,8 +131,11 @@ def _factors(frames: LocalFrames, scaling: Scaling) -> NDArray[np.float64]:
     """By what to multiply the offset of each vertex, (n_x,)."""
     if scaling == "local":
         return frames.scales
-    same = scaling == "auto" and 1 / _SAME_SIZE <= frames.overall <= _SAME_SIZE
-    return np.full(len(frames), 1.0 if same or scaling == "none" else frames.overall)
+    if scaling == "none":
+        return np.ones(len(frames))
+    unit = 10.0 ** np.round(np.log10(np.maximum(frames.overall, _TINY)))
+    same = scaling == "auto" and 1 / _SAME_SIZE <= frames.overall / unit <= _SAME_SIZE
+    return np.full(len(frames), unit if same else frames.overall)
 
 
 class _Filling:

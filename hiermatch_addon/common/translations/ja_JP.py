@@ -847,8 +847,8 @@ MESSAGES: Final[dict[str, str]] = {
     "Leave them as they are": "そのまま残します",
     "Scale": "スケール",
     "What becomes of the size of the movements": "動きの大きさの扱い",
-    "With Size if the target is clearly larger or smaller than the source, else None": (
-        "ターゲットがソースより明らかに大きいか小さければ「サイズに合わせる」、そうでなければ「なし」"
+    "With Size if the target is clearly larger or smaller than the source, else only to its units": (
+        "ターゲットがソースより明らかに大きいか小さければ「サイズに合わせる」、そうでなければ単位だけを合わせる"
     ),
     "None": "なし",
     "As long as on the source": "ソースと同じ長さ",

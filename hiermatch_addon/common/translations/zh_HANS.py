@@ -704,8 +704,8 @@ MESSAGES: Final[dict[str, str]] = {
     "Leave them as they are": "保持原样",
     "Scale": "缩放",
     "What becomes of the size of the movements": "移动幅度如何处理",
-    "With Size if the target is clearly larger or smaller than the source, else None": (
-        "如果目标明显大于或小于源，则为“随大小”，否则为“无”"
+    "With Size if the target is clearly larger or smaller than the source, else only to its units": (
+        "如果目标明显大于或小于源，则为“随大小”，否则只换算单位"
     ),
     "None": "无",
     "As long as on the source": "与源上一样长",

@@ -84,7 +84,7 @@ class ShapeKeyOptions:
                 (
                     "AUTO",
                     "Automatic",
-                    "With Size if the target is clearly larger or smaller than the source, else None",
+                    "With Size if the target is clearly larger or smaller than the source, else only to its units",
                 ),
                 ("NONE", "None", "As long as on the source"),
                 ("OVERALL", "With Size", "Longer or shorter as the whole target is larger or smaller"),

@@ -69,6 +69,25 @@ def test_needles_collapsed_triangles_and_loose_vertices_are_bounded(mesh):
     assert (frames.scales > 0.2).all()
 
 
+def test_a_small_piece_turns_as_what_it_lies_on(mesh):
+    near = mesh.triangles[np.linalg.norm(mesh.vertices[mesh.triangles].mean(axis=1) - mesh.vertices[0], axis=1) < 0.25]
+    used, numbers = np.unique(near, return_inverse=True)
+    lash = 1.02 * mesh.vertices[used]
+    both = TriangleMesh(
+        np.concatenate([mesh.vertices, lash]),
+        np.concatenate([mesh.triangles, numbers.reshape(-1, 3) + mesh.vertex_count]),
+    )
+    images = both.vertices @ TURN.T
+    images[mesh.vertex_count :] = lash @ rotation([0, 1, 0], 1.5).T  # mapped anyhow
+    frames = surface_frames(both, images)
+    np.testing.assert_allclose(frames.rotations, np.broadcast_to(TURN, (len(both.vertices), 3, 3)), atol=1e-6)
+    away = both.vertices.copy()
+    away[mesh.vertex_count :] += mesh.vertices[0]  # a hand beside its arm turns by itself
+    images[mesh.vertex_count :] = away[mesh.vertex_count :] @ rotation([0, 1, 0], 1.5).T
+    alone = surface_frames(TriangleMesh(away, both.triangles), images)
+    assert np.abs(alone.rotations[mesh.vertex_count :] - rotation([0, 1, 0], 1.5)).max() < 1e-6
+
+
 def test_bad_images_are_refused(mesh):
     with pytest.raises(MeshError, match="one finite position"):
         surface_frames(mesh, mesh.vertices[1:])

@@ -51,7 +51,9 @@ def test_what_was_cut_open_at_seams_moves_alike(mesh, offsets):
     [
         ("auto", 1.1, 1),
         ("auto", 3.0, 3),
-        ("auto", 0.1, 0.1),
+        ("auto", 0.3, 0.3),
+        ("auto", 0.0088, 0.01),
+        ("auto", 110.0, 100),
         ("none", 3.0, 1),
         ("overall", 1.1, 1.1),
         ("local", 3.0, 3),
