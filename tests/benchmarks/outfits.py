@@ -69,11 +69,11 @@ def fit(path):
     return result
 
 
-def means(rows):
-    """The row of the means of rows of the scorer."""
+def means(rows, name):
+    """The row of the means of rows of the scorer, under the name of who made them."""
     numbers = np.array([[float(cell) if cell != "-" else np.nan for cell in row.split()[1:]] for row in rows])
     cells = (f"{value:8.3f}" if np.isfinite(value) else f"{'-':>8s}" for value in numbers.mean(axis=0))
-    return f"{'mean/' + OURS:34s}" + "".join(cells)
+    return f"{'mean/' + name:34s}" + "".join(cells)
 
 
 def main():
@@ -87,7 +87,7 @@ def main():
     table = options.scorer.parent / "PEERS-outfits.md"
     peers = table.read_text().splitlines() if table.exists() else []
     chosen = options.only.split(",") if options.only else None
-    rows = []
+    rows = {name: [] for name in (OURS, *PEERS)}
     with tempfile.TemporaryDirectory() as folder:
         for path in sorted(options.scenes.glob("*.blend")):
             if chosen is not None and path.stem not in chosen:
@@ -99,13 +99,14 @@ def main():
             heading, row, *garments = subprocess.run(
                 command, check=True, capture_output=True, text=True
             ).stdout.splitlines()
-            rows.append(row)
-            names = [f"{path.stem}/{peer}" for peer in PEERS]
-            print("\n".join([heading, row, *garments, *(line for line in peers if line.split(" ")[0] in names)]))
+            rows[OURS].append(row)
+            theirs = {name: [line for line in peers if line.startswith(f"{path.stem}/{name} ")] for name in PEERS}
+            for name, lines in theirs.items():
+                rows[name] += lines[:1]
+            print("\n".join([heading, row, *garments, *(line for lines in theirs.values() for line in lines[:1])]))
             sys.stdout.flush()
-    if rows:
-        names = [f"mean/{peer}" for peer in PEERS]
-        print("\n".join(["", means(rows), *(line for line in peers if line.split(" ")[0] in names)]))
+    # Of the scenes that were run, and of who has figures for all of them.
+    print("\n".join(["", *(means(all_, name) for name, all_ in rows.items() if all_ and len(all_) == len(rows[OURS]))]))
 
 
 if __name__ == "__main__":

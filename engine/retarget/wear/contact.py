@@ -4,18 +4,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Clearance", "Surface", "surface_samples"]
 
@@ -72,9 +72,24 @@ class Surface:
     def __init__(self, mesh: TriangleMesh, search: ClosestPoints | None = None) -> None:
         self.mesh = mesh
         self.search = search or ClosestPoints(mesh)
-        self.rim = np.zeros(mesh.vertex_count, bool)
-        self.rim[mesh.boundary_edges] = True
-        self.normals = _angle_normals(mesh)
+
+    @cached_property
+    def rim(self) -> NDArray[np.bool_]:
+        """Which vertices lie on the rim of a hole, (n,)."""
+        rim = np.zeros(self.mesh.vertex_count, bool)
+        rim[self.mesh.boundary_edges] = True
+        return rim
+
+    @cached_property
+    def normals(self) -> NDArray[np.float64]:
+        """Unit normals of the vertices, weighted by angles, (n, 3)."""
+        return _angle_normals(self.mesh)
+
+    def moved(self, vertices: NDArray[np.float64]) -> Surface:
+        """Return the surface with its vertices elsewhere, (n, 3); what depends on the triangles alone is shared."""
+        other = Surface(TriangleMesh(vertices, self.mesh.triangles), self.search.moved(vertices))
+        other.rim = self.rim
+        return other
 
     def clearance(self, points: NDArray[np.float64], starts: NDArray[np.int64] | None = None) -> Clearance:
         """Measure how far points (k, 3) are from the surface.
@@ -130,9 +145,10 @@ def surface_samples(mesh: TriangleMesh, spacing: float) -> csr_array:
 def _angle_normals(mesh: TriangleMesh) -> NDArray[np.float64]:
     """Find the normals of the vertices, weighted by the angles of the triangles, (n, 3)."""
     sums = np.zeros((mesh.vertex_count, 3))
+    corners = [mesh.vertices[corner] for corner in mesh.triangles.T]
+    sides = [unit_vectors(corners[(corner + 1) % 3] - corners[corner]) for corner in range(3)]
     for corner in range(3):
-        a, b, c = (mesh.vertices[mesh.triangles[:, (corner + turn) % 3]] for turn in range(3))
-        angle = np.arccos(np.einsum("mi,mi->m", unit_vectors(b - a), unit_vectors(c - a)).clip(-1, 1))
+        angle = np.arccos((-np.einsum("mi,mi->m", sides[corner], sides[corner - 1])).clip(-1, 1))
         weighted = angle[:, None] * mesh.triangle_normals
         for axis in range(3):
             sums[:, axis] += np.bincount(mesh.triangles[:, corner], weighted[:, axis], mesh.vertex_count)

@@ -120,7 +120,8 @@ def mend_weights_steps(
     of_skin = csr_array(below @ skin_weights)
     moving = np.asarray(weights.sum(axis=1)).ravel() > 0
     starts = found.nearest_vertices(body.triangles)
-    rest = Surface(body).clearance(positions, starts)
+    skin = Surface(body)
+    rest = skin.clearance(positions, starts)
     lying = moving & (rest.distances > _OUTSIDE * unit) & (rest.distances < _NEAR * unit) & rest.known
     subtrees = _subtrees(skeleton.parents)
     share = np.zeros(len(positions))
@@ -137,8 +138,7 @@ def mend_weights_steps(
                 continue
             for rotation in _bends(skeleton.tails[bone] - skeleton.heads[bone]):
                 head = skeleton.heads[bone]
-                posed = _bent(body.vertices, on_skin, head, rotation)
-                surface = Surface(TriangleMesh(posed, body.triangles))
+                surface = skin.moved(_bent(body.vertices, on_skin, head, rotation))
                 points = _bent(positions[chosen], on_item[chosen], head, rotation)
                 depth = -surface.clearance(points, starts[chosen]).distances
                 poking = depth > _DEEPER * unit

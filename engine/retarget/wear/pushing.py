@@ -181,10 +181,10 @@ def pushed_out(
     sample_mass = samples @ (mass / np.maximum(shares, 1))
     tolerance = 1e-4 * unit
     through = 0.0
+    surface = Surface(mesh)
     for number in range(_ROUNDS):
-        rows, moves, counts = _needed(
-            (mesh, positions), samples, sample_mass, layers, free=free, unit=unit, all_places=number < _WITH_SAMPLES
-        )
+        item, all_places = surface.moved(positions), number < _WITH_SAMPLES
+        rows, moves, counts = _needed(item, samples, sample_mass, layers, free=free, unit=unit, all_places=all_places)
         if rows is None:
             through = 0.0
             break
@@ -203,7 +203,7 @@ def pushed_out(
 
 
 def _needed(
-    item: tuple[TriangleMesh, NDArray[np.float64]],
+    item: Surface,
     samples: csr_array,
     sample_mass: NDArray[np.float64],
     layers: Sequence[Layer],
@@ -213,8 +213,7 @@ def _needed(
     all_places: bool,
 ) -> tuple[csr_array | None, NDArray[np.float64], NDArray[np.float64]]:
     """Places of the item that have to move: shares of the vertices (k, n), the moves (k, 3), and weights (k,)."""
-    mesh, positions = item
-    points = samples @ positions
+    points = samples @ item.mesh.vertices
     rows: list[csr_array] = []
     moves: list[NDArray[np.float64]] = []
     weights: list[NDArray[np.float64]] = []
@@ -228,7 +227,7 @@ def _needed(
             rows.append(csr_array(samples[at]))
             moves.append(needed[chosen])
             weights.append(sample_mass[at])
-        poked = _poking(mesh, positions, layer, free, unit)
+        poked = _poking(item, layer, free, unit)
         if poked is not None:
             rows.append(poked[0])
             moves.append(poked[1])
@@ -255,10 +254,11 @@ def _inside(layer: Layer, points: NDArray[np.float64], numbers: NDArray[np.int64
 
 
 def _poking(
-    mesh: TriangleMesh, positions: NDArray[np.float64], layer: Layer, free: NDArray[np.bool_], unit: float
+    item: Surface, layer: Layer, free: NDArray[np.bool_], unit: float
 ) -> tuple[csr_array, NDArray[np.float64]] | None:
     """Find places of the surface below that are above the item, and the moves of the item over them."""
     surface, reach = layer.surface, _POKING * unit
+    mesh, positions = item.mesh, item.mesh.vertices
     centres = surface.mesh.vertices[surface.mesh.triangles].mean(axis=1)
     vertices = np.concatenate([surface.mesh.vertices, centres])
     normals = np.concatenate([surface.normals, surface.mesh.triangle_normals])
@@ -266,7 +266,6 @@ def _poking(
     near = np.flatnonzero(((vertices > low) & (vertices < high)).all(axis=1))
     if not len(near):
         return None
-    item = Surface(type(mesh)(positions, mesh.triangles))
     found = item.search.nearest(vertices[near])
     corners = mesh.triangles[found.triangles]
     feet = np.einsum("kc,kci->ki", found.barycentric, positions[corners])
