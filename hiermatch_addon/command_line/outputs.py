@@ -80,7 +80,7 @@ def _select(side: Side) -> None:
     layer, parts = view_layer_of(bpy.context), parts_of(side)
     movers = [obj.parent for obj in parts]
     movers += [getattr(modifier, "object", None) for obj in parts for modifier in obj.modifiers]
-    fitted = [item for obj in parts for item in fitted_to(obj)]
+    fitted = list(dict.fromkeys(item for body in (side, *parts) for item in fitted_to(body)))
     wanted = [*parts, *fitted, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
     for other in layer.objects:
         other.select_set(other in wanted)

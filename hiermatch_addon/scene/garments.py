@@ -11,6 +11,7 @@ from mathutils import Matrix
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from .armatures import find_armature, moving_armatures
+from .character import parts_of
 from .garment_shape_io import mirror_axes
 from .key_drivers import counterparts
 from .pair import check_object
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
+
+    from .character import Side
 
 __all__ = [
     "BODY",
@@ -42,21 +45,21 @@ _SIZES = {"SOLIDIFY": ("thickness",), "BEVEL": ("width",), "DISPLACE": ("strengt
 """For each type of modifier the members that are lengths."""
 
 
-def bound_items(context: bpy.types.Context, body: bpy.types.Object) -> list[bpy.types.Object]:
+def bound_items(context: bpy.types.Context, body: Side) -> list[bpy.types.Object]:
     """Return all visible meshes that the armature of a body moves, but the body, by name; none if it has none."""
     armature = find_armature(body)
     if armature is None:
         return []
-    layer = view_layer_of(context)
+    layer, parts = view_layer_of(context), parts_of(body)
     return [
         obj
         for obj in sorted(layer.objects, key=lambda one: one.name)
         if obj.type == "MESH"
-        and obj != body
+        and obj not in parts
         and BODY not in cast("Any", obj)
         and obj.visible_get(view_layer=layer)
         and len(mesh_of(obj).polygons)
-        and (armature in moving_armatures(obj) or obj.parent in (armature, body))
+        and (armature in moving_armatures(obj) or obj.parent in (armature, *parts))
     ]
 
 
@@ -78,14 +81,12 @@ def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
     return tuple(found)
 
 
-def fitted_to(body: bpy.types.Object) -> list[bpy.types.Object]:
+def fitted_to(body: Side) -> list[bpy.types.Object]:
     """Return all that was fitted to a body."""
     return [obj for obj in bpy.data.objects if obj.type == "MESH" and cast("Any", obj).get(BODY) == body.name]
 
 
-def check_item(
-    context: bpy.types.Context, item: bpy.types.Object, source: bpy.types.Object, target: bpy.types.Object
-) -> None:
+def check_item(context: bpy.types.Context, item: bpy.types.Object, source: Side, target: Side) -> None:
     """Make sure that an object can be fitted from one body to another.
 
     Raises
@@ -93,8 +94,8 @@ def check_item(
     ObjectError
         If it cannot.
     """
-    if item in (source, target):
-        role = "Source" if item == source else "Target"
+    if item in (*parts_of(source), *parts_of(target)):
+        role = "Source" if item in parts_of(source) else "Target"
         raise ObjectError(
             f'"{item.name}" is the body itself, picked as the {role}. Take it out of the items, or pick another body.'
         )
@@ -106,7 +107,7 @@ def check_item(
     check_object(view_layer_of(context), item)
 
 
-def dressed_at_rest(item: bpy.types.Object, source: bpy.types.Object) -> bool:
+def dressed_at_rest(item: bpy.types.Object, source: Side) -> bool:
     """Tell whether the item's own vertices belong to the body's own: both are moved by the same armature, or none is.
 
     Else it lies on the body as this is posed.
@@ -120,7 +121,7 @@ def fitted_name(item: str, body: str) -> str:
     return f"{item} on {body}"
 
 
-def made_copy(item: bpy.types.Object, body: bpy.types.Object) -> bpy.types.Object | None:
+def made_copy(item: bpy.types.Object, body: Side) -> bpy.types.Object | None:
     """Find the copy of an item that was fitted to a body before."""
     return next((obj for obj in fitted_to(body) if cast("Any", obj).get(ITEM) == item.name), None)
 
@@ -128,8 +129,8 @@ def made_copy(item: bpy.types.Object, body: bpy.types.Object) -> bpy.types.Objec
 def fitted_copy(
     context: bpy.types.Context,
     item: bpy.types.Object,
-    source: bpy.types.Object,
-    target: bpy.types.Object,
+    source: Side,
+    target: Side,
     *,
     motion: NDArray[np.float64],
     growth: float,
@@ -143,8 +144,10 @@ def fitted_copy(
     ----------
     context : bpy.types.Context
         Where it is added, to a collection that is named after the body.
-    item, source, target : bpy.types.Object
-        The item and the two bodies.
+    item : bpy.types.Object
+        The item.
+    source, target : bpy.types.Object or Character
+        The two bodies.
     motion : (4, 4) array of float
         How the source turns and moves on the whole to become the target, in world space.
     growth : float
@@ -171,8 +174,11 @@ def fitted_copy(
     copy.name = mesh.name = name
     copy.hide_set(state=False)
     copy.select_set(state=False)
-    places = counterparts(source, target, find_armature(source), find_armature(target))
-    places[item] = copy
+    # Of a body of several objects the largest stands for all that something may point to.
+    largest = max(parts_of(target), key=lambda part: len(mesh_of(part).vertices))
+    places: dict[bpy.types.ID, bpy.types.ID] = {item: copy}
+    for part in parts_of(source):
+        places |= counterparts(part, largest, find_armature(source), find_armature(target))
     _point_to(copy, places, growth)
     return copy
 
@@ -187,7 +193,7 @@ def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:
     return matrix
 
 
-def _collection_of(context: bpy.types.Context, body: bpy.types.Object) -> bpy.types.Collection:
+def _collection_of(context: bpy.types.Context, body: Side) -> bpy.types.Collection:
     """Find the collection of what was fitted to a body, or add it to the scene."""
     for collection in bpy.data.collections:
         if cast("Any", collection).get(BODY) == body.name:

@@ -10,8 +10,8 @@ from scipy.sparse import csr_array
 
 from ...engine import ClosestPoints, TriangleMesh
 from ..common.access import mesh_of
+from ..scene.character import parts_of, read_surface, vertex_ranges
 from ..scene.deform_layer import write_weights
-from ..scene.mesh_io import read_mesh
 from ..scene.shape_key_io import KeySettings, add_keys
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     import bpy
     from numpy.typing import NDArray
+
+    from ..scene.character import Side
 
 __all__ = ["COVERED", "cover_body", "covered_vertices"]
 
@@ -73,19 +75,22 @@ def covered_vertices(
 
 def cover_body(
     context: bpy.types.Context,
-    body: bpy.types.Object,
+    body: Side,
     items: Sequence[tuple[NDArray[np.float64], NDArray[np.int64]]],
     how: str,
 ) -> None:
     """Draw the body in below clothes by a shape key ("KEY"), or hide it there by a Mask modifier ("MASK")."""
-    mesh = read_mesh(body, context.evaluated_depsgraph_get(), use_modifiers=False)
+    mesh = read_surface(body, context.evaluated_depsgraph_get(), use_modifiers=False)
     covered = covered_vertices(mesh, items)
-    if how == "KEY":
-        into = np.linalg.inv(np.array(body.matrix_world, np.float64))[:3, :3]
-        inwards = -_DEPTH * float(np.sqrt(mesh.area)) * mesh.vertex_normals * covered[:, None]
-        add_keys(body, [KeySettings(COVERED, value=1.0)], (inwards @ into.T)[None])
-        return
-    write_weights(body, [COVERED], csr_array(covered[:, None].astype(float)))
-    modifier: Any = body.modifiers.get(COVERED) or body.modifiers.new(COVERED, "MASK")
-    modifier.vertex_group, modifier.invert_vertex_group = COVERED, True
-    mesh_of(body).update()
+    inwards = -_DEPTH * float(np.sqrt(mesh.area)) * mesh.vertex_normals * covered[:, None]
+    for part, own in zip(parts_of(body), vertex_ranges(body), strict=True):
+        if not covered[own].any():
+            continue
+        if how == "KEY":
+            into = np.linalg.inv(np.array(part.matrix_world, np.float64))[:3, :3]
+            add_keys(part, [KeySettings(COVERED, value=1.0)], (inwards[own] @ into.T)[None])
+            continue
+        write_weights(part, [COVERED], csr_array(covered[own, None].astype(float)))
+        modifier: Any = part.modifiers.get(COVERED) or part.modifiers.new(COVERED, "MASK")
+        modifier.vertex_group, modifier.invert_vertex_group = COVERED, True
+        mesh_of(part).update()

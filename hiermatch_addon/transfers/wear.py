@@ -29,7 +29,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armatures import SourceRig, armature_of, find_armature, read_rig
 from ..scene.binding import bind
-from ..scene.character import Character
+from ..scene.character import parts_of, read_surface
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
 from ..scene.garment_shape_io import write_shape
 from ..scene.garments import (
@@ -121,15 +121,7 @@ class WearTransfer:
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read all items, and make sure that they can be fitted."""
         settings = self._settings
-        source, target = _body(source), _body(target)
-        chosen = [named_object(name) for name in dict.fromkeys(settings.items)]
-        if not chosen:
-            chosen = [obj for obj in bound_items(context, source) if obj != target]
-        if not chosen:
-            raise NothingToCarryError(
-                f'No clothes of "{source.name}" were found: no other mesh is bound to its armature. Select the items '
-                "together with both bodies, or name them."
-            )
+        chosen = self._chosen(context, source, target)
         depsgraph = context.evaluated_depsgraph_get()
         for item in chosen:
             check_item(context, item, source, target)
@@ -137,19 +129,20 @@ class WearTransfer:
                 check_keys_writable(item, [_KEY + target.name])
                 check_writable(item)
         if settings.hide != "NONE":
-            check_weights_writable(target)
-            check_keys_writable(target, [])
+            for part in parts_of(target):
+                check_weights_writable(part)
+                check_keys_writable(part, [])
         rig = read_rig(source)
         names = () if rig is None else rig.names
         self._bones = None if rig is None else rig.weights
         if any(not dressed_at_rest(item, source) for item in chosen):
-            self._posed = read_mesh(source, depsgraph, use_modifiers=True).vertices
+            self._posed = read_surface(source, depsgraph, use_modifiers=True).vertices
         self._other = read_rig(target)
         mover = find_armature(source)
         self._old_bones = (
             set() if mover is None else {bone.name for bone in armature_of(mover).bones if bone.use_deform}
         )
-        body, other = (read_mesh(obj, depsgraph, use_modifiers=False) for obj in (source, target))
+        body, other = (read_surface(side, depsgraph, use_modifiers=False) for side in (source, target))
         for item in chosen:
             self._items.append(self._read_item(depsgraph, item, source, names))
             around = body.vertices if self._items[-1].at_rest or self._posed is None else self._posed
@@ -158,6 +151,24 @@ class WearTransfer:
             self._first = [WeightTransfer(WeightSettings()), RigTransfer(RigSettings())]
             for transfer in self._first:
                 transfer.read(context, source, target)
+
+    def _chosen(self, context: bpy.types.Context, source: Side, target: Side) -> list[bpy.types.Object]:
+        """Return the items: those that are named, or else all that the source's armature moves.
+
+        Raises
+        ------
+        ObjectError
+            If there is none, or none of a name.
+        """
+        chosen = [named_object(name) for name in dict.fromkeys(self._settings.items)]
+        if not chosen:
+            chosen = [obj for obj in bound_items(context, source) if obj not in parts_of(target)]
+        if not chosen:
+            raise NothingToCarryError(
+                f'No clothes of "{source.name}" were found: no other mesh is bound to its armature. Select the items '
+                "together with both bodies, or name them."
+            )
+        return chosen
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Fit the items."""
@@ -225,7 +236,6 @@ class WearTransfer:
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the fitted items."""
-        source, target = _body(source), _body(target)
         items = [self._still_there(item) for item in self._items]
         reports = [transfer.write(context, source, target) for transfer in self._first]
         notes = [*self._notes, *(note for report in reports for note in report.notes)]
@@ -266,7 +276,7 @@ class WearTransfer:
         self,
         depsgraph: bpy.types.Depsgraph,
         item: bpy.types.Object,
-        source: bpy.types.Object,
+        source: Side,
         names: tuple[str, ...],
     ) -> _Item:
         """Read an item with what steers it."""
@@ -329,7 +339,7 @@ class WearTransfer:
         self._motion[:3, :3] = left @ right
         self._motion[:3, 3] = centre - self._motion[:3, :3] @ (weights @ source.vertices)
 
-    def _write_key(self, obj: bpy.types.Object, target: bpy.types.Object, fitted: FittedItem) -> None:
+    def _write_key(self, obj: bpy.types.Object, target: Side, fitted: FittedItem) -> None:
         """Write a shape key that moves the item itself to the other body."""
         matrix = np.linalg.inv(np.array(obj.matrix_world, np.float64))
         local = fitted.positions @ matrix[:3, :3].T + matrix[:3, 3]
@@ -347,7 +357,7 @@ class WearTransfer:
         self,
         context: bpy.types.Context,
         item: bpy.types.Object,
-        bodies: tuple[bpy.types.Object, bpy.types.Object],
+        bodies: tuple[Side, Side],
         fitted: FittedItem,
         weights: ItemWeights | None,
     ) -> tuple[bpy.types.Object, list[str]]:
@@ -381,22 +391,6 @@ class WearTransfer:
         return copy, notes
 
 
-def _body(side: Side) -> bpy.types.Object:
-    """Return the only object of a side.
-
-    Raises
-    ------
-    ObjectError
-        If it is a character of several.
-    """
-    if isinstance(side, Character):
-        raise ObjectError(
-            f'"{side.name}" is a character of several objects, but clothes are fitted from one body to another. Pick '
-            "the body alone, or join its parts."
-        )
-    return side
-
-
 def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:
     """Write weights where they are not locked, and drop the groups of bones that are not there."""
     for name in weights.lost:
@@ -415,9 +409,7 @@ def _or_none(values: NDArray[np.float64] | None, mesh: TriangleMesh) -> NDArray[
     return np.zeros(mesh.vertex_count) if values is None else values
 
 
-def _check_place(
-    item: _Item, body: TriangleMesh, other: TriangleMesh, source: bpy.types.Object, target: bpy.types.Object
-) -> None:
+def _check_place(item: _Item, body: TriangleMesh, other: TriangleMesh, source: Side, target: Side) -> None:
     """Make sure that an item lies on the body.
 
     Raises

@@ -1597,11 +1597,6 @@ MESSAGES: Final[dict[str, str]] = {
     'The rig of "{0}" has other bones, so the weights were taken from its skin.': (
         '"{0}"のリグにはほかのボーンがあるため、ウェイトは肌から取りました。'
     ),
-    '"{0}" is a character of several objects, but clothes are fitted from one body to another. Pick the body '
-    "alone, or join its parts.": (
-        '"{0}"は複数のオブジェクトからなるキャラクターですが、服は一つのボディから別のボディへ合わせます。ボディ'
-        "だけを選ぶか、パーツを統合してください。"
-    ),
     "Wrap and Morph": "ラップとモーフ",
     "Switch to Object Mode first": "先にオブジェクトモードに切り替えてください",
     "Mirror": "ミラー",

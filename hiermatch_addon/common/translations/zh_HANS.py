@@ -1322,10 +1322,6 @@ MESSAGES: Final[dict[str, str]] = {
     'The rig of "{0}" has other bones, so the weights were taken from its skin.': (
         '"{0}"的绑定使用其他骨骼，因此权重取自其皮肤。'
     ),
-    '"{0}" is a character of several objects, but clothes are fitted from one body to another. Pick the body '
-    "alone, or join its parts.": (
-        '"{0}"是由多个物体组成的角色，而服装只能从一个身体适配到另一个身体。请只选择身体，或合并其各部分。'
-    ),
     "Wrap and Morph": "包裹与变形",
     "Switch to Object Mode first": "请先切换到物体模式",
     "Mirror": "镜像",

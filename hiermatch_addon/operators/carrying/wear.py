@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...common.access import view_layer_of
-from ...scene.character import parts_of
+from ...properties.panel_state import picked, state_of
+from ...scene.character import joined, parts_of
 from ...scene.garments import BODY, meshes_of
 from ...transfers.options.wear import WearOptions, wear_settings
 from ...transfers.wear import WearTransfer
 from .transfer_operator import TransferOperator
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from ...jobs.transfer import Transfer
     from ...jobs.transfer_job import TransferJob
     from ...scene.character import Side
@@ -72,18 +75,27 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
 
     def _pick(self, context: bpy.types.Context) -> tuple[Side, list[Side]]:
         """Find the bodies; what else is selected are items."""
-        if self._chosen:
-            return super()._pick(context)
         source, targets = super()._pick(context)
-        self._left_out = ""
-        bodies = [part for side in (source, *targets) for part in parts_of(side)]
-        chosen = [obj for obj in view_layer_of(context).objects.selected if obj not in bodies]
-        self._chosen = tuple(sorted(obj.name for obj in chosen if _can_be_worn(obj)))
-        return source, targets
+        if not self._chosen:
+            self._left_out = ""
+            selected = set(view_layer_of(context).objects.selected)
+            own, theirs = set(parts_of(source)), {part for target in targets for part in parts_of(target)}
+            # Of a character that is named or picked, the parts that are selected are its clothes, unless all are.
+            named = bool(self.source) or picked(state_of(context))[0] is not None
+            bodies = theirs if named and len(own) > 1 and not own <= selected else own | theirs
+            chosen = (obj.name for obj in selected - bodies if _can_be_worn(obj))
+            self._chosen = tuple(sorted(chosen))
+        return _undressed(source, self._chosen), targets
 
     def _transfers(self) -> list[Transfer]:
         options: Any = self
         return [WearTransfer(wear_settings(options, self._chosen))]
+
+
+def _undressed(body: Side, items: Collection[str]) -> Side:
+    """Leave items out of a character that they are parts of, as all that its armature moves is; not all of it."""
+    parts = [part for part in parts_of(body) if part.name not in items]
+    return joined(body.name, parts) if parts else body
 
 
 def _can_be_worn(obj: bpy.types.Object) -> bool:

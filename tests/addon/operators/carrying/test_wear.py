@@ -189,7 +189,26 @@ def test_what_cannot_be_worn_changes_nothing(pair, items, change, message):
     assert snapshot() == before
 
 
-def test_a_character_of_several_objects_is_no_body(pair):
-    assert pair
-    with pytest.raises(RuntimeError, match="character of several"):
-        wear("Coat", source="Source + Shirt")
+def test_bodies_of_several_objects(pair):
+    """Each has eyes that are objects of their own, and all of it is covered."""
+    source, target, _, _ = pair
+    for body, name in ((source, "Eyes"), (target, "Other Eyes")):
+        mesh = bpy.data.meshes.new(name)
+        corners = in_world(body)[[polygon.vertices[0] for polygon in body.data.polygons[:3]]]
+        mesh.from_pydata((corners.mean(axis=0) + 0.01 * np.vstack([np.eye(3), np.zeros(3)])).tolist(), [], [(0, 1, 2)])
+        bpy.context.scene.collection.objects.link(bpy.data.objects.new(name, mesh))
+    bpy.context.view_layer.update()
+    done = wear("Shirt", source="Source + Eyes", target="Target + Other Eyes", wear_hide="KEY")
+    assert done == {"FINISHED"}
+    copy = fitted("Shirt")
+    assert depths(copy, target).max() < 1e-4
+    assert "Below Clothes" in target.data.shape_keys.key_blocks
+
+
+def test_items_that_are_parts_of_the_source_are_worn_by_the_others(pair):
+    _, target, _, _ = pair
+    assert wear("Coat", source="Source + Coat") == {"FINISHED"}
+    assert depths(fitted("Coat"), target).max() < 1e-4
+    bpy.data.objects["Shirt"].select_set(state=True)
+    assert wear(source="Source + Shirt") == {"FINISHED"}
+    assert fitted("Shirt")
