@@ -74,8 +74,8 @@ from .panels.steering_panels import (
     HIERMATCH_UL_pairs,
 )
 from .panels.wear_panel import HIERMATCH_PT_wear
+from .properties.bone_pairs import HIERMATCH_PG_bone_pair
 from .properties.freshness import start_watching, stop_watching
-from .properties.motion_properties import HIERMATCH_PG_bone_pair, HIERMATCH_PG_motion
 from .properties.preferences import HIERMATCH_AP_preferences
 from .properties.properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 from .properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
@@ -135,7 +135,6 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_test_poses,
     HIERMATCH_OT_before_after,
     HIERMATCH_PG_bone_pair,
-    HIERMATCH_PG_motion,
     HIERMATCH_OT_pair_bones,
     HIERMATCH_OT_retarget_action,
     HIERMATCH_OT_retarget_pose,
@@ -166,7 +165,6 @@ CLASSES: Final[tuple[type[Any], ...]] = (
 _ATTACHMENTS: Final[tuple[tuple[type[Any], str, type[Any]], ...]] = (
     (bpy.types.Scene, "hiermatch", HIERMATCH_PG_scene),
     (bpy.types.Scene, "hiermatch_retarget", HIERMATCH_PG_retarget),
-    (bpy.types.Scene, "hiermatch_motion", HIERMATCH_PG_motion),
     (bpy.types.Scene, "hiermatch_steering", HIERMATCH_PG_steering),
     (bpy.types.Object, "hiermatch_wear", HIERMATCH_PG_worn),
     (bpy.types.WindowManager, "hiermatch", HIERMATCH_PG_progress),

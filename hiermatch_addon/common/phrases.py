@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 __all__ = ["counted", "listed"]
 
 _THINGS: Final = {
+    "action": ("1 action", "{0} actions"),
     "attribute": ("1 attribute", "{0} attributes"),
     "bone": ("1 bone", "{0} bones"),
     "color attribute": ("1 color attribute", "{0} color attributes"),
@@ -19,6 +20,7 @@ _THINGS: Final = {
     "line": ("1 line", "{0} lines"),
     "material": ("1 material", "{0} materials"),
     "note": ("1 note", "{0} notes"),
+    "paired bone": ("1 paired bone", "{0} paired bones"),
     "rigid part": ("1 rigid part", "{0} rigid parts"),
     "shape key": ("1 shape key", "{0} shape keys"),
     "UV map": ("1 UV map", "{0} UV maps"),

@@ -48,12 +48,15 @@ def start_soon(context: bpy.types.Context, operator: str, **options: Any) -> Non
     bpy.app.timers.register(start, first_interval=0.0)
 
 
-def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Tell, and say on the disabled button, whether an operator that writes on objects may start."""
+def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context, *, posing: bool = False) -> bool:
+    """Tell, and say on the disabled button, whether an operator that writes on objects may start.
+
+    One that is about armatures may do so while they are posed, too.
+    """
     if is_running(window_manager_of(context)):
         cls.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
         return False
-    if context.mode != "OBJECT":
+    if context.mode not in (("OBJECT", "POSE") if posing else ("OBJECT",)):
         cls.poll_message_set(translated("Switch to Object Mode first"))
         return False
     return True

@@ -8,13 +8,17 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..common.access import layout_of
-from ..properties.motion_properties import MotionOptions, bone_pairs_of, motion_of
-from ..transfers.retarget_properties import copy_named
-from .panel_text import draw_text
+from ..properties.bone_pairs import bone_pairs_of
+from ..properties.panel_state import picked, state_of
+from ..scene.character import armatures_above
+from ..transfers.options.motion import MotionOptions
+from ..transfers.options.retarget import option_names
+from ..transfers.retarget_properties import copy_named, retarget_of
 from .progress_bar import draw_progress, draw_starter
+from .retarget_panels import draw_report
 
 if TYPE_CHECKING:
-    from ..properties.motion_properties import HIERMATCH_PG_bone_pair
+    from ..properties.bone_pairs import HIERMATCH_PG_bone_pair
 
 __all__ = ["HIERMATCH_PT_motion", "HIERMATCH_UL_bone_pairs"]
 
@@ -54,12 +58,10 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
     ) -> tuple[list[int], list[int]]:
         """Show the pairs of the armatures that are picked, and of these what was searched for."""
         rows = getattr(data, name)
-        state = motion_of(context)
+        rigs = _rigs_picked(context)
         wanted = self.filter_name.lower()
         flags = [
-            self.bitflag_filter_item
-            if _is_shown(row, state.source, state.target) and wanted in f"{row.source} {row.target}".lower()
-            else 0
+            self.bitflag_filter_item if _is_shown(row, rigs) and wanted in f"{row.source} {row.target}".lower() else 0
             for row in rows
         ]
         return flags, []
@@ -76,45 +78,40 @@ class HIERMATCH_PT_motion(bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the two rigs, the table of their bones, and what is carried over."""
+        """Draw the table of bones, and what is carried over."""
         layout: Any = layout_of(self)
-        state: Any = motion_of(context)
-        column = layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
-        column.prop(state, "source")
-        column.prop(state, "target")
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        options: Any = retarget_of(context)
         if draw_progress(layout, context, self.bl_idname):
             return
-        draw_starter(layout, context, "hiermatch.pair_bones", "Pair Bones", "LINKED")
-        _draw_table(layout, context, state)
-        column = layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
-        column.prop(state, "actions")
-        names = list(MotionOptions.__annotations__)
+        button = draw_starter(layout, context, "hiermatch.pair_bones", "Pair Bones", "LINKED")
+        if button is not None:
+            button.refine = options.refine
+        _draw_table(layout, context, options)
+        layout.prop_search(options, "action", bpy.data, "actions", results_are_suggestions=True)
+        names = option_names(MotionOptions)
         for name in names:
-            if name != "tolerance" or state.keying in {"AUTO", "REDUCED"}:
-                column.prop(state, name)
+            hidden = (name == "tolerance" and options.keying not in {"AUTO", "REDUCED"}) or name == "action"
+            if not hidden and not (name == "actions" and options.action):
+                layout.prop(options, name)
         row = layout.row()
         row.scale_y = 1.5
         button = draw_starter(row, context, "hiermatch.retarget_action", "Retarget Action", "ACTION")
         if button is not None:
-            copy_named(state, button, [*names, "actions"])
-        row = layout.row(align=True)
-        button = draw_starter(row, context, "hiermatch.retarget_pose", "Retarget Pose", "POSE_HLT")
+            copy_named(options, button, [*names, "refine"])
+        button = draw_starter(layout, context, "hiermatch.retarget_pose", "Retarget Pose", "POSE_HLT")
         if button is not None:
-            button.keep_hands = state.keep_hands
-        for line in state.report.splitlines():
-            draw_text(layout, context, line, "INFO")
+            copy_named(options, button, ["keep_hands", "refine"])
+        draw_report(layout, context, options.report)
 
 
-def _draw_table(layout: Any, context: bpy.types.Context, state: Any) -> None:  # noqa: ANN401 - Blender's own
+def _draw_table(layout: Any, context: bpy.types.Context, options: Any) -> None:  # noqa: ANN401 - Blender's own
     """Draw the pairs, and what can be done with all of them."""
-    scene = cast("bpy.types.Scene", context.scene)
-    if any(_is_shown(row, state.source, state.target) for row in bone_pairs_of(scene)):
+    scene, rigs = cast("bpy.types.Scene", context.scene), _rigs_picked(context)
+    if any(_is_shown(row, rigs) for row in bone_pairs_of(scene)):
         layout.template_list(
-            "HIERMATCH_UL_bone_pairs", "", scene, "hiermatch_bone_pairs", state, "index", rows=5, maxrows=14
+            "HIERMATCH_UL_bone_pairs", "", scene, "hiermatch_bone_pairs", options, "bone_pair", rows=5, maxrows=14
         )
     row = layout.row(align=True)
     row.operator("hiermatch.add_bone_pair", text="", icon="ADD")
@@ -123,9 +120,21 @@ def _draw_table(layout: Any, context: bpy.types.Context, state: Any) -> None:  #
     row.operator("hiermatch.clear_bone_pairs", text="", icon="TRASH")
 
 
-def _is_shown(row: Any, source: Any, target: Any) -> bool:  # noqa: ANN401 - a row, and objects or none
-    """Tell whether a row is one of the armatures that are picked; all are if none is."""
+def _rigs_picked(context: bpy.types.Context) -> list[set[Any] | None]:
+    """Return the armatures of what is picked as source and as target; None for all if nothing is."""
+    found: list[set[Any] | None] = []
+    for chosen in cast("tuple[Any, Any]", picked(state_of(context))):
+        if chosen is None:
+            found.append(None)
+            continue
+        objects = chosen.all_objects if chosen.id_type == "COLLECTION" else [chosen, *chosen.children_recursive]
+        own = armatures_above(chosen) if chosen.id_type == "OBJECT" else set()
+        found.append(own or {rig for obj in objects for rig in armatures_above(obj)})
+    return found
+
+
+def _is_shown(row: Any, rigs: list[set[Any] | None]) -> bool:  # noqa: ANN401 - a row of the table
+    """Tell whether a row is one of certain armatures."""
     return all(
-        picked is None or rig in {picked, picked.find_armature() if picked.type == "MESH" else picked}
-        for rig, picked in ((row.source_rig, source), (row.target_rig, target))
+        wanted is None or rig in wanted for rig, wanted in zip((row.source_rig, row.target_rig), rigs, strict=True)
     )

@@ -17,6 +17,7 @@ from bl_ui.utils import PresetPanel
 
 from ..properties.panel_state import state_of
 from ..properties.properties import OPTION_NAMES
+from ..transfers.options.motion import MotionOptions
 from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wear import WearOptions
@@ -40,15 +41,17 @@ _FOLDER: Final = str(Path(__file__).parents[1])
 
 _SUBFOLDER: Final = "hiermatch"
 
-_OF_A_PAIR: Final = ("prefix", "exclude_source", "exclude_target")
+_OF_A_PAIR: Final = ("prefix", "exclude_source", "exclude_target", "action")
 """Options that belong to two meshes, and not to a way of working."""
 
 MATCH_NAMES: Final = tuple(name for name in OPTION_NAMES if name not in _OF_A_PAIR)
 """The options of a match that a preset holds."""
 
+_OPTIONS: Final = (*KINDS.values(), WrapOptions, WearOptions, SymmetriseOptions, MotionOptions)
+
 RETARGET_NAMES: Final = (
     *KINDS,
-    *(name for kind in (*KINDS.values(), WrapOptions, WearOptions, SymmetriseOptions) for name in option_names(kind)),
+    *(name for kind in _OPTIONS for name in option_names(kind) if name not in _OF_A_PAIR),
     "refine",
 )
 """The options of retargeting that a preset holds."""

@@ -1,28 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """The table of pairs of bones on a scene: read and written as pairs of numbers, and as text."""
 
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
+import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
 from ...engine import BonePairing
 from ..common.errors import ObjectError
 from ..scene.armatures import armature_of
-from ..scene.motion.rigged_body import object_rotation, own_skeleton
-from .motion_properties import bone_pairs_of
+from ..scene.motion.rigs import object_rotation, own_skeleton
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import bpy
     from numpy.typing import NDArray
 
 __all__ = [
+    "HIERMATCH_PG_bone_pair",
     "add_row",
+    "bone_pairs_of",
     "clear_rows",
     "held_pairs",
     "pairing_of",
@@ -32,9 +34,66 @@ __all__ = [
     "write_pairing",
 ]
 
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
 _FORMAT, _VERSION = "HierMatch bone pairs", 1
 
 _VALUES = ("turn", "place", "upright")
+
+
+def _is_armature(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
+    return obj.type == "ARMATURE"
+
+
+def _unsee(row: Any, _context: bpy.types.Context) -> None:  # noqa: ANN401 - a row of the table
+    """Forget what was seen on the surface of other bones than the row names now."""
+    row.is_seen = False
+
+
+class HIERMATCH_PG_bone_pair(bpy.types.PropertyGroup):
+    """A pair of bones: a row of the table of two armatures."""
+
+    source: _props.StringProperty(name="Source Bone", description="Bone of the source; empty for none", update=_unsee)
+    target: _props.StringProperty(
+        name="Target Bone", description="Bone of the target that stands for it", update=_unsee
+    )
+    score: _props.FloatProperty(
+        name="Score", description="How well the two agree, from 0 to 1", min=0, max=1, default=1
+    )
+    locked: _props.BoolProperty(
+        name="Lock", description="Keep this row when bones are paired again; without a source, the bone stays alone"
+    )
+    source_rig: _props.PointerProperty(
+        name="Source Rig", description="Armature of the source", type=bpy.types.Object, poll=_is_armature
+    )
+    target_rig: _props.PointerProperty(
+        name="Target Rig", description="Armature of the target", type=bpy.types.Object, poll=_is_armature
+    )
+    turn: _props.FloatVectorProperty(
+        name="Turn",
+        description="How the target's surface is turned against the source's at rest, in the spaces of the armatures",
+        size=4,
+        subtype="QUATERNION",
+        default=(1, 0, 0, 0),
+    )
+    place: _props.FloatVectorProperty(
+        name="Place", description="Where the head of the source bone lies in the target, in the target armature's space"
+    )
+    upright: _props.FloatVectorProperty(
+        name="Standing",
+        description="How the target stands, turned against the source, in the spaces of the armatures",
+        size=4,
+        subtype="QUATERNION",
+        default=(1, 0, 0, 0),
+    )
+    is_seen: _props.BoolProperty(
+        name="Seen", description="Whether turn and place were seen on the surface; a row made by hand has none"
+    )
+
+
+def bone_pairs_of(scene: bpy.types.Scene) -> Any:  # noqa: ANN401 - a collection of Blender's
+    """Return the table of pairs of bones on a scene, of all armatures."""
+    return cast("Any", scene).hiermatch_bone_pairs
 
 
 def rows_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> list[Any]:

@@ -6,18 +6,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+import bpy
 import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
 
 from ...engine import Skeleton
 from ..common.access import mesh_of
-from .character import parts_of
+from .character import Character, armatures_above, parts_of
 from .deform_layer import read_weights
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import bpy
     import mathutils
     from numpy.typing import NDArray
 
@@ -88,7 +88,10 @@ def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | Non
 
 
 def find_armature(side: Side) -> bpy.types.Object | None:
-    """Find the armature that moves a side: of its parts, the first that has one tells."""
+    """Find the armature that moves a side: the one that it is called after, else that of the first part with one."""
+    called = bpy.data.objects.get(side.name) if isinstance(side, Character) else None
+    if called is not None and any(called in armatures_above(part) for part in parts_of(side)):
+        return called
     return next((found for found in map(_armature_of_part, parts_of(side)) if found is not None), None)
 
 

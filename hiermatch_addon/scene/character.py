@@ -146,14 +146,15 @@ def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -
     ----------
     chosen : bpy.types.ID or Character
         A mesh object, which is meant alone; an armature, with all meshes that it moves; an empty, with all meshes
-        that hang on it; or a collection, with all meshes in it.  Other objects are returned as they are.
+        that hang on it; or a collection, with all meshes in it.  Other objects, and armatures and empties without
+        such meshes, are returned as they are.
     view_layer : bpy.types.ViewLayer
         Where the parts are.  Those that are hidden, or have no faces, are left out.
 
     Raises
     ------
     ObjectError
-        If an armature, empty or collection has no such meshes.
+        If a collection has no such meshes.
     """
     if isinstance(chosen, Character):
         return chosen
@@ -170,12 +171,7 @@ def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -
     if obj.type == "ARMATURE":
         rigs = {obj, successor(obj)}
         parts = [part for part in shown if not rigs.isdisjoint(armatures_above(part))]
-        if not parts:
-            raise ObjectError(
-                f'The armature "{obj.name}" moves no mesh with faces that is shown in this view layer. Show its '
-                "meshes, or choose another one."
-            )
-        return joined(obj.name, parts)
+        return joined(obj.name, parts) if parts else obj
     if obj.type == "EMPTY":
         below = set(obj.children_recursive)
         parts = [part for part in shown if part in below]

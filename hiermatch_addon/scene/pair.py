@@ -286,6 +286,11 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
     ObjectError
         If it cannot.
     """
+    if obj.type == "ARMATURE":
+        raise ObjectError(
+            f'The armature "{obj.name}" moves no mesh with faces that is shown in this view layer. Show its meshes, or '
+            "choose another one."
+        )
     if obj.type != "MESH":
         raise ObjectError(
             f'"{obj.name}" is not a mesh but of type {obj.type.title()}. Choose a mesh object, or convert it '

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
+from .options.motion import MotionOptions
 from .options.retarget import RetargetOptions
 from .options.symmetrise import SymmetriseOptions
 from .options.wear import WearOptions
@@ -44,7 +45,9 @@ class HIERMATCH_PG_report(bpy.types.PropertyGroup):
     seconds: _props.FloatProperty(name="Seconds", description="How long it took")
 
 
-class HIERMATCH_PG_retarget(RetargetOptions, WrapOptions, WearOptions, SymmetriseOptions, bpy.types.PropertyGroup):
+class HIERMATCH_PG_retarget(
+    RetargetOptions, WrapOptions, WearOptions, SymmetriseOptions, MotionOptions, bpy.types.PropertyGroup
+):
     """The state of the retargeting panels on a scene."""
 
     refine: _props.BoolProperty(
@@ -53,6 +56,7 @@ class HIERMATCH_PG_retarget(RetargetOptions, WrapOptions, WearOptions, Symmetris
         "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
         default=True,
     )
+    bone_pair: _props.IntProperty(name="Pair", description="The row of the table of bones that is active", min=0)
     report: _props.PointerProperty(
         name="Report", description="What became of the last transfer", type=HIERMATCH_PG_report
     )

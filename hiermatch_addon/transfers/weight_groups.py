@@ -5,17 +5,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+from scipy.sparse import csr_array, vstack
+
+from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..scene.armatures import armature_of, bone_of, find_armature
 from ..scene.character import parts_of
+from ..scene.deform_layer import read_weights, write_weights
 from ..storage.written_names import written_names
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import bpy
+    from numpy.typing import NDArray
 
     from ..scene.character import Side
 
-__all__ = ["chosen_groups", "deforming_bones", "group_names", "locked_groups"]
+__all__ = ["chosen_groups", "deforming_bones", "group_columns", "group_names", "locked_groups", "write_groups"]
 
 
 def chosen_groups(source: Side, choice: str) -> list[str]:
@@ -92,6 +100,32 @@ def deforming_bones(*objects: Side) -> set[str]:
 def locked_groups(side: Side) -> set[str]:
     """Return the names of the groups that are locked, on one part at least."""
     return {group.name for part in parts_of(side) for group in part.vertex_groups if group.lock_weight}
+
+
+def write_groups(obj: bpy.types.Object, names: Sequence[str], weights: csr_array, *, every: bool) -> None:
+    """Write groups (n, g) on one part: unless `every` is wanted, those only that have weight there, or are there."""
+    held = np.bincount(weights.tocoo().coords[1], minlength=len(names)) > 0
+    kept = [number for number, name in enumerate(names) if every or held[number] or name in obj.vertex_groups]
+    write_weights(obj, [names[number] for number in kept], csr_array(weights[:, kept]))
+
+
+def group_columns(side: Side, names: Sequence[str], chosen: NDArray[np.bool_] | None = None) -> csr_array:
+    """Read the weights (n, g) of named groups; those that a part lacks, or that are not chosen, are empty there."""
+    return csr_array(vstack([_part_columns(part, names, chosen) for part in parts_of(side)], format="csr"))
+
+
+def _part_columns(obj: bpy.types.Object, names: Sequence[str], chosen: NDArray[np.bool_] | None) -> csr_array:
+    if chosen is not None and bone_of(obj):  # a part of the source that is moved by that bone alone
+        whole = np.array([name == bone_of(obj) for name in names]) & chosen
+        return csr_array(np.tile(whole.astype(float), (len(mesh_of(obj).vertices), 1)))
+    weights = read_weights(obj)
+    places = np.array([obj.vertex_groups.find(name) for name in names])
+    if chosen is not None:
+        places[~chosen] = -1
+    found = np.flatnonzero(places >= 0)
+    picked = weights.tocsc()[:, places[found]].tocoo()
+    rows, columns = picked.coords
+    return csr_array((picked.data, (rows, found[columns])), shape=(weights.shape[0], len(names)))
 
 
 def _selected_bones(armature: bpy.types.Object) -> set[str]:

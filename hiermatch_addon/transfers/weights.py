@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array, vstack
+from scipy.sparse import csr_array
 
 from ...engine import Columns, carry_weights_steps, put_in, row_sums, with_rows
 from ..common.access import mesh_of
@@ -16,15 +16,12 @@ from ..common.phrases import counted, listed
 from ..common.side_names import flipped_name
 from ..jobs.transfer import TransferReport
 from ..scene import mesh_io
-from ..scene.armatures import bone_of
 from ..scene.character import parts_of, vertex_ranges
-from ..scene.deform_layer import check_weights_writable, read_group, read_weights, write_weights
+from ..scene.deform_layer import check_weights_writable, read_group
 from ..storage.written_names import written_names
-from .weight_groups import chosen_groups, deforming_bones, group_names, locked_groups
+from .weight_groups import chosen_groups, deforming_bones, group_columns, group_names, locked_groups, write_groups
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import bpy
     from numpy.typing import NDArray
 
@@ -142,7 +139,7 @@ class WeightTransfer:
         result = self._result.tocsr()[:, numbers]
         wanted = [names[number] for number in numbers]
         for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
-            _write_part(part, wanted, csr_array(result[own]), every=len(parts_of(target)) == 1)
+            write_groups(part, wanted, csr_array(result[own]), every=len(parts_of(target)) == 1)
             self._add_other_sides(source, part)
         if self._settings.mark:
             self._write_mark(target)
@@ -168,7 +165,7 @@ class WeightTransfer:
         """
         users = group_names(source)
         bones = deforming_bones(source, target)
-        if not bones and _is_whole(_columns(source, users, np.ones(len(users), bool))):
+        if not bones and _is_whole(group_columns(source, users, np.ones(len(users), bool))):
             # Without an armature to ask: groups that share out each vertex are those of bones.
             bones = set(users)
         some = self._settings.groups in ("SELECTED", "ACTIVE")
@@ -181,7 +178,7 @@ class WeightTransfer:
         new = np.arange(len(names)) < len(chosen)
         shared = np.array([name in bones for name in names])
         columns = Columns(np.array([name in locked for name in names]), new, shared, yielding=some)
-        return _Task(names, columns, shared & new, _columns(source, names, new), _columns(target, names))
+        return _Task(names, columns, shared & new, group_columns(source, names, new), group_columns(target, names))
 
     def _add_other_sides(self, source: Side, target: bpy.types.Object) -> None:
         """Add the empty groups of the other side that the source has, for whoever mirrors the target."""
@@ -231,32 +228,6 @@ def _said_of_pieces(obj: bpy.types.Object, name: str) -> NDArray[np.int8]:
     """Read what a vertex group says of loose pieces, (n,): 1 that they are rigid, -1 that they are not, 0 nothing."""
     weights = read_group(obj, name)
     return np.where(np.isnan(weights), 0, np.where(weights >= _RIGID, 1, -1)).astype(np.int8)
-
-
-def _write_part(obj: bpy.types.Object, names: Sequence[str], weights: csr_array, *, every: bool) -> None:
-    """Write groups (n, g) on one part: unless `every` is wanted, those only that have weight there, or are there."""
-    held = np.bincount(weights.tocoo().coords[1], minlength=len(names)) > 0
-    kept = [number for number, name in enumerate(names) if every or held[number] or name in obj.vertex_groups]
-    write_weights(obj, [names[number] for number in kept], csr_array(weights[:, kept]))
-
-
-def _columns(side: Side, names: Sequence[str], chosen: NDArray[np.bool_] | None = None) -> csr_array:
-    """Read the weights (n, g) of named groups; those that a part lacks, or that are not chosen, are empty there."""
-    return csr_array(vstack([_part_columns(part, names, chosen) for part in parts_of(side)], format="csr"))
-
-
-def _part_columns(obj: bpy.types.Object, names: Sequence[str], chosen: NDArray[np.bool_] | None) -> csr_array:
-    if chosen is not None and bone_of(obj):  # a part of the source that is moved by that bone alone
-        whole = np.array([name == bone_of(obj) for name in names]) & chosen
-        return csr_array(np.tile(whole.astype(float), (len(mesh_of(obj).vertices), 1)))
-    weights = read_weights(obj)
-    places = np.array([obj.vertex_groups.find(name) for name in names])
-    if chosen is not None:
-        places[~chosen] = -1
-    found = np.flatnonzero(places >= 0)
-    picked = weights.tocsc()[:, places[found]].tocoo()
-    rows, columns = picked.coords
-    return csr_array((picked.data, (rows, found[columns])), shape=(weights.shape[0], len(names)))
 
 
 def _is_whole(weights: csr_array) -> bool:

@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import bpy
 import numpy as np
-from hiermatch.engine import Progress, SurfaceMap
-from hiermatch.hiermatch_addon.jobs import pairing_job
+from hiermatch.engine import MatchQuality, Progress, SurfaceMap
+from hiermatch.hiermatch_addon.jobs import job, transfer_job
 from mathutils import Matrix
 
 from tests.addon.rigs import add_mesh, add_weights
+from tests.addon.scenes import made_up_result
 from tests.people import HANGING, at_rest_in, coarse_rig, fine_rig, person, renamed
 
 
@@ -72,18 +74,19 @@ def add_skeleton(name, rig, rolls=0.0):
     return obj
 
 
-def match_at_once(monkeypatch):
+def match_at_once(monkeypatch, confidence=0.9):
     """Let bodies whose vertices are numbered alike be matched by these."""
+    quality = MatchQuality(1.0, 0.05, 1.0, 0.0, None, confidence, "The shapes correspond closely.", 1.0, None, 0.0)
 
     def steps(source, target, *_arguments, **_names):
         yield Progress(0.5, "Matching")
         maps = {"source_to_target": SurfaceMap.identity(target), "target_to_source": SurfaceMap.identity(source)}
-        return type("Result", (), maps)
+        return replace(made_up_result(source, target), mirrored=None, quality=quality, **maps)
 
-    monkeypatch.setattr(pairing_job, "match_steps", steps)
-    fit = pairing_job.fit_rig_steps
+    monkeypatch.setattr(job, "match_steps", steps)
+    fit = transfer_job.fit_rig_steps
     monkeypatch.setattr(
-        pairing_job, "fit_rig_steps", lambda *bodies, **names: fit(*bodies, **names | {"refine": False})
+        transfer_job, "fit_rig_steps", lambda *bodies, **names: fit(*bodies, **names | {"refine": False})
     )
 
 

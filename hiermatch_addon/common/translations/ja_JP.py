@@ -1082,9 +1082,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Which actions of the source are carried over": "ソースのどのアクションを移すか",
     "The one that the source plays": "ソースが再生しているもの",
     "All actions of the file that move bones of the source": "ソースのボーンを動かす、ファイル内のすべてのアクション",
-    "Armature that has the motion, or a mesh that it moves": (
-        "モーションを持つアーマチュア、またはそれが動かすメッシュ"
-    ),
     "Keys": "キー",
     "At which frames the new action gets keys": "新しいアクションがどのフレームにキーを持つか",
     "At the source's keys if these are few, else reduced ones": (
@@ -1096,9 +1093,6 @@ MESSAGES: Final[dict[str, str]] = {
     "As few as keep the motion within the Tolerance": "モーションを許容誤差内に保つ最少のキー",
     "Every Frame": "全フレーム",
     "At every frame": "すべてのフレームに",
-    "Armature that is to have it, or a mesh that it moves": (
-        "モーションを受け取るアーマチュア、またはそれが動かすメッシュ"
-    ),
     "Stride": "歩幅",
     "How long the way along the ground is; 1 fits the length of the target's legs": (
         "地面に沿った移動の長さ。1でターゲットの脚の長さに合います"
@@ -1112,7 +1106,6 @@ MESSAGES: Final[dict[str, str]] = {
     "are computed then": (
         "ソースで足が立っているところでは、ターゲットの足も動かないように脚を曲げます。全フレームが計算されます"
     ),
-    "What became of it, one sentence per line": "結果。一行に一文",
     "Keep Hands on Body": "手を体に保つ",
     "Where a hand touches the body or the other hand in the source, bend the target's arm so that it "
     "does so too. All frames are computed then": (
@@ -1125,28 +1118,17 @@ MESSAGES: Final[dict[str, str]] = {
         "二つのリグのどのボーンが対応するかを、名前に関係なく、動かす表面から求めます。体がまだマッチングされてい"
         "なければ先に行います"
     ),
-    "Name of the armature that is to have it, or of a mesh that it moves; if empty, the one picked in "
-    "the panel or else all other selected armatures": (
-        "モーションを受け取るアーマチュア、またはそれが動かすメッシュの名前。空なら、パネルで選んだもの、なければ"
-        "選択中の他のすべてのアーマチュア"
-    ),
-    "Names of several of them": "その複数の名前",
-    "Name of the armature that has the motion, or of a mesh that it moves; if empty, the one picked in "
-    "the panel or else the active object": (
-        "モーションを持つアーマチュア、またはそれが動かすメッシュの名前。空なら、パネルで選んだもの、なければアク"
-        "ティブオブジェクト"
-    ),
     "Retarget Action": "アクションをリターゲット",
     "Carry actions of the source's armature to others, whatever their bones are called, how many there "
     "are, and how they rest. Bones are paired first if that has not been done": (
         "ソースのアーマチュアのアクションを、ボーンの名前や数やレストポーズに関係なく、他のアーマチュアに移します"
         "。ボーンがまだペアになっていなければ先に行います"
     ),
-    "Name of the action to carry over; if empty, those that Actions says": (
-        "移すアクションの名前。空なら「アクション」の設定に従います"
+    "Name of the action to carry over, or a pattern such as Walk*; several with a semicolon between "
+    "them. If empty, those that Actions says": (
+        "引き継ぐアクションの名前、または Walk* のようなパターン。複数ならセミコロンで区切ります。空なら「ア"
+        "クション」の指すもの"
     ),
-    "Several Actions": "複数のアクション",
-    "Names of several actions to carry over": "移す複数のアクションの名前",
     "NLA Strips": "NLAストリップ",
     "Carry the actions of the source's NLA strips over as well, and copy the strips": (
         "ソースのNLAストリップのアクションも移し、ストリップをコピーします"
@@ -1166,14 +1148,15 @@ MESSAGES: Final[dict[str, str]] = {
     "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone": (
         "二つのボーンを手でペアにしてロックします。ソースのボーンがなければ、ターゲットのボーンは単独のままです"
     ),
-    "Name of the target's armature; if empty, the one picked in the panel or else selected": (
-        "ターゲットのアーマチュアの名前。空なら、パネルで選んだもの、なければ選択中のもの"
+    "Name of the target's armature, or of what it moves; if empty, the one picked in the panel or else selected": (
+        "ターゲットのアーマチュア、またはそれが動かすものの名前。空なら、パネルで選んだもの、なければ選択したもの"
     ),
     "Bone of the target; if empty, the active bones of both armatures are paired": (
         "ターゲットのボーン。空なら、両方のアーマチュアのアクティブなボーンをペアにします"
     ),
-    "Name of the source's armature; if empty, the one picked in the panel or else the active one": (
-        "ソースのアーマチュアの名前。空なら、パネルで選んだもの、なければアクティブなもの"
+    "Name of the source's armature, or of what it moves; if empty, the one picked in the panel or else "
+    "the active one": (
+        "ソースのアーマチュア、またはそれが動かすものの名前。空なら、パネルで選んだもの、なければアクティブなもの"
     ),
     "Remove Bone Pair": "ボーンのペアを削除",
     "Take a pair of bones out of the table": "ボーンのペアを表から取り除きます",
@@ -1225,12 +1208,8 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"のどのボーンも、"{1}"のボーンが動かすところを動かしません。マッチングと、両方のメッシュにウェイトが'
         "あることを確認してください。"
     ),
-    '"{0}" is in {1}. Switch to Object Mode first.': '"{0}"は{1}です。先にオブジェクトモードに切り替えてください。',
     'The bones of "{0}" were changed meanwhile. Nothing was written.': (
         '"{0}"のボーンがその間に変更されました。何も書き込まれていません。'
-    ),
-    "The two bodies could not be matched vertex by vertex, so their bones stay unpaired.": (
-        "二つの体を頂点ごとにマッチングできなかったため、ボーンはペアになりません。"
     ),
     "No file is named. Choose where the pairs of bones are kept.": (
         "ファイルが指定されていません。ボーンのペアの保存先を選んでください。"
@@ -1241,18 +1220,14 @@ MESSAGES: Final[dict[str, str]] = {
         "どのボーンか不明です。ポーズモードで、それぞれのアーマチュアのボーンを一つアクティブにしてください。"
     ),
     "Carrying motion over": "モーションを移しています",
-    "Which armature is the Source is open: pick it in the panel, or make it the active object.": (
-        "どのアーマチュアがソースか不明です。パネルで選ぶか、アクティブオブジェクトにしてください。"
-    ),
-    "It is open which armature is the Target. Pick it in the panel, or select one or more beside the Source.": (
-        "どのアーマチュアがターゲットか不明です。パネルで選ぶか、ソースのほかに一つ以上選択してください。"
-    ),
-    'Paired {0} bones of "{1}" with bones of "{2}"': '"{1}"の{0}本のボーンを"{2}"のボーンとペアにしました',
     '"{0}" has no action that moves its bones. Give it one, or name an action.': (
         '"{0}"にはボーンを動かすアクションがありません。割り当てるか、アクションを指定してください。'
     ),
     'The action "{0}" moves no bone of "{1}". Choose one that does.': (
         'アクション"{0}"は"{1}"のボーンを動かしません。動かすものを選んでください。'
+    ),
+    'No action that moves bones of "{0}" fits the pattern "{1}".': (
+        '"{0}"のボーンを動かすアクションで、パターン"{1}"に合うものがありません。'
     ),
     'No bones of "{0}" and "{1}" are paired. Pair their bones first.': (
         '"{0}"と"{1}"のボーンはペアになっていません。先にペアにしてください。'
@@ -1279,19 +1254,11 @@ MESSAGES: Final[dict[str, str]] = {
         'アーマチュア"{0}"はライブラリオーバーライドのため書き込めません。先にローカル化してください(オブジェクト'
         " > 関係 > ローカル化)。"
     ),
-    'The armature "{0}" moves no mesh in this view layer. Bones are paired by the surface that they '
-    "move: bind a mesh to it first.": (
-        'アーマチュア"{0}"はこのビューレイヤーのどのメッシュも動かしません。ボーンは動かす表面によってペアになり'
-        "ます。先にメッシュをバインドしてください。"
-    ),
     '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
         '"{0}"にはアーマチュアのボーンのウェイトがありません。リグを持つソースを選んでください。'
     ),
     'The bones of "{0}" were changed. Pair the bones again.': (
         '"{0}"のボーンが変更されました。もう一度ボーンをペアにしてください。'
-    ),
-    '"{0}" has several meshes. Carry weights to another rig from mesh to mesh.': (
-        '"{0}"には複数のメッシュがあります。他のリグへのウェイトはメッシュごとに移してください。'
     ),
     'The vertex groups of all paired bones of "{0}" are locked on "{1}", or the bones do not deform. '
     "Unlock some of them.": (
@@ -1302,8 +1269,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Posing the bones": "ボーンにポーズを付けています",
     "Keeping the feet": "足を保っています",
     "Keeping the hands": "手を保っています",
-    '"{0}" has the new action "{1}"': '"{0}"は新しいアクション"{1}"を得ました',
-    '"{0}" was posed': '"{0}"にポーズを付けました',
     'Paired "{0}" with "{1}"': '"{0}"を"{1}"とペアにしました',
     '"{0}" stays alone': '"{0}"は単独のままです',
     '"{0}" was taken out of the table': '"{0}"を表から取り除きました',
@@ -2309,6 +2274,11 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} vertex groups": "{0}個の頂点グループ",
     "{0} UV maps": "{0}個のUVマップ",
     "1 vertex group": "1個の頂点グループ",
+    "{0} paired bones": "ペアにした{0}本のボーン",
+    "1 paired bone": "ペアにした1本のボーン",
+    "{0} actions": "{0}個のアクション",
+    "1 action": "1個のアクション",
+    "the pose": "ポーズ",
     "1 UV map": "1個のUVマップ",
     '"{0}" has no attribute "{1}". Check the Names.': "「{0}」に属性「{1}」はありません。名前を確認してください。",
     (

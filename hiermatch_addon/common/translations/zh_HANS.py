@@ -896,7 +896,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Which actions of the source are carried over": "传递源的哪些动作",
     "The one that the source plays": "源正在播放的动作",
     "All actions of the file that move bones of the source": "文件中所有移动源骨骼的动作",
-    "Armature that has the motion, or a mesh that it moves": "带有运动的骨架，或由它带动的网格",
     "Keys": "关键帧",
     "At which frames the new action gets keys": "新动作在哪些帧上有关键帧",
     "At the source's keys if these are few, else reduced ones": "源的关键帧较少时与之相同，否则为精简的关键帧",
@@ -906,7 +905,6 @@ MESSAGES: Final[dict[str, str]] = {
     "As few as keep the motion within the Tolerance": "使运动保持在容差内的最少关键帧",
     "Every Frame": "每一帧",
     "At every frame": "在每一帧上",
-    "Armature that is to have it, or a mesh that it moves": "要得到运动的骨架，或由它带动的网格",
     "Stride": "步幅",
     "How long the way along the ground is; 1 fits the length of the target's legs": (
         "沿地面移动的距离；1 与目标的腿长相称"
@@ -918,7 +916,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Keep Feet on Ground": "脚保持着地",
     "Where a foot stands in the source, let it stand in the target: the leg is bent for it. All frames "
     "are computed then": ("源的脚站立之处，目标的脚也站立不动：为此弯曲腿部。此时会计算所有帧"),
-    "What became of it, one sentence per line": "结果如何，每行一句",
     "Keep Hands on Body": "手保持贴身",
     "Where a hand touches the body or the other hand in the source, bend the target's arm so that it "
     "does so too. All frames are computed then": (
@@ -929,23 +926,15 @@ MESSAGES: Final[dict[str, str]] = {
     "called. The bodies are matched first if that has not been done": (
         "根据骨骼所带动的表面找出两套绑定中相互对应的骨骼，与名称无关。若身体尚未匹配，会先进行匹配"
     ),
-    "Name of the armature that is to have it, or of a mesh that it moves; if empty, the one picked in "
-    "the panel or else all other selected armatures": (
-        "要得到运动的骨架或由它带动的网格的名称；若为空，则为面板中所选的，否则为所有其他选中的骨架"
-    ),
-    "Names of several of them": "其中若干个的名称",
-    "Name of the armature that has the motion, or of a mesh that it moves; if empty, the one picked in "
-    "the panel or else the active object": (
-        "带有运动的骨架或由它带动的网格的名称；若为空，则为面板中所选的，否则为活动物体"
-    ),
     "Retarget Action": "重定向动作",
     "Carry actions of the source's armature to others, whatever their bones are called, how many there "
     "are, and how they rest. Bones are paired first if that has not been done": (
         "将源骨架的动作传递到其他骨架，无论骨骼的名称、数量和静置姿态如何。若骨骼尚未配对，会先进行配对"
     ),
-    "Name of the action to carry over; if empty, those that Actions says": "要传递的动作名称；若为空，则按“动作”选项",
-    "Several Actions": "多个动作",
-    "Names of several actions to carry over": "要传递的多个动作的名称",
+    "Name of the action to carry over, or a pattern such as Walk*; several with a semicolon between "
+    "them. If empty, those that Actions says": (
+        "要传递的动作的名称，或如 Walk* 的模式；多个之间用分号隔开。若为空，则为“动作”所指的"
+    ),
     "NLA Strips": "NLA 片段",
     "Carry the actions of the source's NLA strips over as well, and copy the strips": (
         "同时传递源的 NLA 片段的动作，并复制这些片段"
@@ -963,15 +952,14 @@ MESSAGES: Final[dict[str, str]] = {
     "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone": (
         "手动配对两个骨骼并锁定；没有源骨骼时，目标骨骼保持单独"
     ),
-    "Name of the target's armature; if empty, the one picked in the panel or else selected": (
-        "目标骨架的名称；若为空，则为面板中所选的，否则为选中的"
+    "Name of the target's armature, or of what it moves; if empty, the one picked in the panel or else selected": (
+        "目标骨架或其所移动之物的名称；若为空，则为面板中所选的，否则为选中的"
     ),
     "Bone of the target; if empty, the active bones of both armatures are paired": (
         "目标的骨骼；若为空，则将两个骨架的活动骨骼配对"
     ),
-    "Name of the source's armature; if empty, the one picked in the panel or else the active one": (
-        "源骨架的名称；若为空，则为面板中所选的，否则为活动的"
-    ),
+    "Name of the source's armature, or of what it moves; if empty, the one picked in the panel or else "
+    "the active one": ("源骨架或其所移动之物的名称；若为空，则为面板中所选的，否则为活动的"),
     "Remove Bone Pair": "移除骨骼配对",
     "Take a pair of bones out of the table": "将一对骨骼从表中移除",
     "Remove its pair with this bone only; if empty, all": "只移除与此骨骼的配对；若为空，则全部移除",
@@ -1010,11 +998,7 @@ MESSAGES: Final[dict[str, str]] = {
     'No bone of "{0}" moves what one of "{1}" moves. Check the match, and that both meshes have weights.': (
         '"{0}" 没有任何骨骼带动 "{1}" 的骨骼所带动的部位。请检查匹配，以及两个网格是否都有权重。'
     ),
-    '"{0}" is in {1}. Switch to Object Mode first.': '"{0}" 处于{1}。请先切换到物体模式。',
     'The bones of "{0}" were changed meanwhile. Nothing was written.': '"{0}" 的骨骼在此期间被更改。未写入任何内容。',
-    "The two bodies could not be matched vertex by vertex, so their bones stay unpaired.": (
-        "两个身体无法逐顶点匹配，因此骨骼未配对。"
-    ),
     "No file is named. Choose where the pairs of bones are kept.": "未指定文件。请选择骨骼配对的存放位置。",
     'The file "{0}" cannot be read: {1}': '无法读取文件 "{0}"：{1}',
     '"{0}" of "{1}" is not in the table of pairs.': '"{1}" 的 "{0}" 不在配对表中。',
@@ -1022,19 +1006,13 @@ MESSAGES: Final[dict[str, str]] = {
         "不清楚指的是哪些骨骼。请在姿态模式下将每个骨架的一个骨骼设为活动。"
     ),
     "Carrying motion over": "正在传递运动",
-    "Which armature is the Source is open: pick it in the panel, or make it the active object.": (
-        "不清楚哪个骨架是源：请在面板中选取，或将其设为活动物体。"
-    ),
-    "It is open which armature is the Target. Pick it in the panel, or select one or more beside the Source.": (
-        "不清楚哪个骨架是目标。请在面板中选取，或在源之外选中一个或多个。"
-    ),
-    'Paired {0} bones of "{1}" with bones of "{2}"': '已将 "{1}" 的 {0} 个骨骼与 "{2}" 的骨骼配对',
     '"{0}" has no action that moves its bones. Give it one, or name an action.': (
         '"{0}" 没有移动其骨骼的动作。请为其指定一个，或给出动作名称。'
     ),
     'The action "{0}" moves no bone of "{1}". Choose one that does.': (
         '动作 "{0}" 不移动 "{1}" 的任何骨骼。请选择会移动的动作。'
     ),
+    'No action that moves bones of "{0}" fits the pattern "{1}".': '没有移动 "{0}" 的骨骼的动作符合模式 "{1}"。',
     'No bones of "{0}" and "{1}" are paired. Pair their bones first.': (
         '"{0}" 和 "{1}" 没有配对的骨骼。请先配对骨骼。'
     ),
@@ -1054,25 +1032,16 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     'The armature "{0}" is a library override and cannot be written to. Make it local first (Object > '
     "Relations > Make Local).": ('骨架 "{0}" 是库重写，无法写入。请先将其设为本地（物体 > 关系 > 设为本地）。'),
-    'The armature "{0}" moves no mesh in this view layer. Bones are paired by the surface that they '
-    "move: bind a mesh to it first.": (
-        '骨架 "{0}" 在此视图层中不带动任何网格。骨骼是按其带动的表面配对的：请先将网格绑定到它。'
-    ),
     '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
         '"{0}" 没有骨架骨骼的权重。请选择已绑定的源。'
     ),
     'The bones of "{0}" were changed. Pair the bones again.': '"{0}" 的骨骼已被更改。请重新配对骨骼。',
-    '"{0}" has several meshes. Carry weights to another rig from mesh to mesh.': (
-        '"{0}" 有多个网格。请逐个网格地将权重传递到另一套绑定。'
-    ),
     'The vertex groups of all paired bones of "{0}" are locked on "{1}", or the bones do not deform. '
     "Unlock some of them.": ('"{0}" 的所有配对骨骼的顶点组在 "{1}" 上已锁定，或这些骨骼不变形。请解锁其中一些。'),
     "Transferring rotations": "正在传递旋转",
     "Posing the bones": "正在摆放骨骼",
     "Keeping the feet": "正在保持脚部",
     "Keeping the hands": "正在保持手部",
-    '"{0}" has the new action "{1}"': '"{0}" 有了新动作 "{1}"',
-    '"{0}" was posed': '"{0}" 已摆好姿态',
     'Paired "{0}" with "{1}"': '已将 "{0}" 与 "{1}" 配对',
     '"{0}" stays alone': '"{0}" 保持单独',
     '"{0}" was taken out of the table': '"{0}" 已从表中移除',
@@ -1872,6 +1841,11 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} vertex groups": "{0} 个顶点组",
     "{0} UV maps": "{0} 个 UV 贴图",
     "1 vertex group": "1 个顶点组",
+    "{0} paired bones": "{0} 个已配对的骨骼",
+    "1 paired bone": "1 个已配对的骨骼",
+    "{0} actions": "{0} 个动作",
+    "1 action": "1 个动作",
+    "the pose": "姿态",
     "1 UV map": "1 个 UV 贴图",
     '"{0}" has no attribute "{1}". Check the Names.': "“{0}”没有属性“{1}”。请检查名称。",
     (

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ...common.access import view_layer_of, window_manager_of
-from ...common.errors import ObjectError
 from ...common.redraw import redraw_sidebars
 from ...common.translated_text import translated
 from ...jobs.job import job_options
@@ -19,12 +18,12 @@ from ...jobs.running import can_start, start_soon
 from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...panels.question import draw_question
 from ...properties.freshness import refresh
-from ...properties.panel_state import picked, progress_of, state_of
+from ...properties.panel_state import progress_of, state_of
 from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import pick_named, remember
-from ...scene.character import side_of
-from ...scene.pair import active_side, left_out_note, name_of, named_side, selected_targets
+from ...scene.pair import name_of
 from ...transfers.retarget_properties import remember_transfer
+from ..picking import pick_sides
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
     from ...jobs.transfer_job import Carried
     from ...jobs.verdict import Verdict
     from ...scene.character import Side
+    from ...transfers.motion.motion_job import MotionJob
 
 __all__ = ["TransferOperator"]
 
@@ -117,7 +117,7 @@ class TransferOperator(JobOperator):
             return False
         return True
 
-    def _start(self, context: bpy.types.Context) -> TransferJob:
+    def _start(self, context: bpy.types.Context) -> TransferJob | MotionJob:
         """Read all objects."""
         state = state_of(context)
         self._named = bool(self.source and (self.target or len(self.targets)))
@@ -131,13 +131,19 @@ class TransferOperator(JobOperator):
             accept_doubtful=self.accept_doubtful,
             asks=self._asks,
         )
-        job = TransferJob(context, source, targets, self._transfers, options)
+        job = self._make_job(context, source, targets, options)
         # So that Adjust Last Operation repeats it with the same ones, whatever is selected by then.
         self.source = name_of(view_layer_of(context), source)
         self.targets.clear()
         for target in targets:
             self.targets.add().name = name_of(view_layer_of(context), target)
         return job
+
+    def _make_job(
+        self, context: bpy.types.Context, source: Side, targets: list[Side], options: TransferOptions
+    ) -> TransferJob | MotionJob:
+        """Make the job that carries."""
+        return TransferJob(context, source, targets, self._transfers, options)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Do it in slices, and ask about a match that is not to be trusted."""
@@ -146,7 +152,7 @@ class TransferOperator(JobOperator):
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Go on with the work, but for as long as it is open whether to write what is doubtful."""
-        job = cast("TransferJob", self._job)
+        job = cast("TransferJob | MotionJob", self._job)
         doubts = job.doubts
         progress = progress_of(context)
         if not doubts or progress.cancel or (event.type == "ESC" and event.value == "PRESS"):
@@ -184,7 +190,7 @@ class TransferOperator(JobOperator):
             window_manager_of(context).popup_menu(draw, title=translated("The match is doubtful"), icon="ERROR")
         redraw_sidebars(window_manager_of(context))
 
-    def _finish(self, context: bpy.types.Context, job: TransferJob) -> set[OperatorReturnItems]:
+    def _finish(self, context: bpy.types.Context, job: TransferJob | MotionJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
         carried = job.finish(context)
         scene = cast("bpy.types.Scene", context.scene)
@@ -225,24 +231,6 @@ class TransferOperator(JobOperator):
         ObjectError
             If a name is unknown, or the selection leaves open what is meant.
         """
-        layer, (picked_source, picked_target) = view_layer_of(context), picked(state_of(context))
         names = [item.name for item in self.targets] or ([self.target] if self.target else [])
-        targets = [named_side(layer, name) for name in dict.fromkeys(names)]
-        source = named_side(layer, self.source) if self.source else None
-        if source is None and picked_source is not None:
-            source = side_of(picked_source, layer)
-        if not targets and picked_target is not None:
-            targets = [side for side in [side_of(picked_target, layer)] if side != source]
-        if source is None:
-            source = active_side(context, without=targets[0] if len(targets) == 1 else None)
-            source = None if source in targets else source
-        if source is None:
-            raise ObjectError("Which mesh is the Source is open: pick it in the panel, or make it the active object.")
-        if not targets:
-            targets, parts = selected_targets(context, source)
-            self._left_out = left_out_note(source, parts) if parts else ""
-        if not targets:
-            raise ObjectError(
-                "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source."
-            )
+        source, targets, self._left_out = pick_sides(context, self.source, names)
         return source, targets

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...transfers.paired_weights import PairedWeightTransfer
+from ...transfers.motion.paired_weights import PairedWeightTransfer
 from .transfer_operator import TransferOperator
 
 if TYPE_CHECKING:

@@ -12,9 +12,10 @@ from ....engine import HierMatchError
 from ...common.errors import ObjectError
 from ...common.translated_text import translated
 from ...jobs.running import is_running
-from ...properties.bone_pairs import add_row, clear_rows, rows_of
-from ...properties.motion_properties import bone_pairs_of, motion_of
-from .motion_operator import picked_rigs
+from ...properties.bone_pairs import add_row, bone_pairs_of, clear_rows, rows_of
+from ...scene.motion.rigs import rig_of
+from ...transfers.retarget_properties import retarget_of
+from ..picking import pick_sides
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -30,12 +31,14 @@ class PairEditor:
     __annotations__ = {
         "source": _props.StringProperty(
             name="Source",
-            description="Name of the source's armature; if empty, the one picked in the panel or else the active one",
+            description="Name of the source's armature, or of what it moves; if empty, the one picked in the panel or "
+            "else the active one",
             options={"SKIP_SAVE"},
         ),
         "target": _props.StringProperty(
             name="Target",
-            description="Name of the target's armature; if empty, the one picked in the panel or else selected",
+            description="Name of the target's armature, or of what it moves; if empty, the one picked in the panel or "
+            "else selected",
             options={"SKIP_SAVE"},
         ),
     }
@@ -53,7 +56,8 @@ class PairEditor:
         """Do it, and report."""
         operator = cast("bpy.types.Operator", self)
         try:
-            said = self._do(context, picked_rigs(context, (self.source, self.target)))
+            source, targets, _ = pick_sides(context, self.source, [self.target] if self.target else [])
+            said = self._do(context, (rig_of(source), rig_of(targets[0])))
         except HierMatchError as error:
             operator.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
@@ -91,7 +95,7 @@ class HIERMATCH_OT_add_bone_pair(PairEditor, bpy.types.Operator):
             bones = active[0].name, active[1].name
         scene = cast("bpy.types.Scene", context.scene)
         add_row(scene, rigs, bones)
-        motion_of(context).index = len(bone_pairs_of(scene)) - 1
+        retarget_of(context).bone_pair = len(bone_pairs_of(scene)) - 1
         return f'Paired "{bones[0]}" with "{bones[1]}"' if bones[0] else f'"{bones[1]}" stays alone'
 
 

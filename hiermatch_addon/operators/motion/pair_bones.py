@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...common.translated_text import translated
-from ...jobs.job import job_options
-from ...jobs.pairing_job import PairingJob
-from ...properties.motion_properties import motion_of
-from ...properties.panel_state import state_of
+from ...transfers.motion.bone_pairs import pairing_job
 from .motion_operator import MotionOperator
 
 if TYPE_CHECKING:
-    from bpy.stub_internal.rna_enums import OperatorReturnItems
+    from ...jobs.transfer_job import TransferJob, TransferOptions
+    from ...scene.character import Side
 
 __all__ = ["HIERMATCH_OT_pair_bones"]
 
@@ -33,17 +30,7 @@ class HIERMATCH_OT_pair_bones(MotionOperator, bpy.types.Operator):
 
     doing = "Pairing bones"
 
-    def _start(self, context: bpy.types.Context) -> PairingJob:
-        """Read all objects."""
-        source, targets = self._rigs(context)
-        return PairingJob(context, source, targets, job_options(state_of(context)))
-
-    def _finish(self, context: bpy.types.Context, job: PairingJob) -> set[OperatorReturnItems]:
-        """Write, remember and report."""
-        paired = job.finish(context)
-        self._remember_pairs(context, paired)
-        notes = list(dict.fromkeys(note for one in paired for note in one.notes))
-        for note in notes:
-            self.report({"WARNING"}, translated(note))
-        motion_of(context).report = "\n".join(notes)
-        return {"FINISHED"}
+    def _make_job(
+        self, context: bpy.types.Context, source: Side, targets: list[Side], options: TransferOptions
+    ) -> TransferJob:
+        return pairing_job(context, source, targets, options)[0]

@@ -12,7 +12,7 @@ from mathutils import Matrix
 from ....engine import Motion, posed_motion, rotation_matrices
 from ..armatures import armature_of
 from .action_curves import CurveMaker, assign_action, bone_curves, slot_for
-from .rigged_body import own_skeleton, rest_matrices
+from .rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

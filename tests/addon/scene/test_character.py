@@ -21,7 +21,14 @@ from hiermatch.hiermatch_addon.scene.character import (
     vertex_count,
     vertex_ranges,
 )
-from hiermatch.hiermatch_addon.scene.pair import check_pair, find_pair, name_of, named_side, selected_targets
+from hiermatch.hiermatch_addon.scene.pair import (
+    check_object,
+    check_pair,
+    find_pair,
+    name_of,
+    named_side,
+    selected_targets,
+)
 
 from tests.addon.rigs import add_rigged, pose, split_up
 from tests.addon.scenes import add_blob
@@ -98,8 +105,9 @@ class TestWhatIsMeant:
         parts, armature = cut
         for part in parts:
             part.hide_set(state=True)
+        assert side_of(armature, layer()) == armature
         with pytest.raises(ObjectError, match=f'The armature "{armature.name}" moves no mesh'):
-            side_of(armature, layer())
+            check_object(layer(), armature)
         bpy.context.scene.collection.children.link(bpy.data.collections.new("Empty"))
         with pytest.raises(ObjectError, match='The collection "Empty" holds no mesh'):
             named_side(layer(), "Empty")

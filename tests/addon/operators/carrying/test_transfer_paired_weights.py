@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine import HierMatchError, run
-from hiermatch.hiermatch_addon.transfers.paired_weights import PairedWeightTransfer
+from hiermatch.hiermatch_addon.transfers.motion.paired_weights import PairedWeightTransfer
 
 from tests.addon.characters import add_person, match_at_once
 from tests.addon.rigs import true_passage
@@ -29,6 +29,20 @@ def made(monkeypatch):
     _, made = add_person("B", "fine")
     bpy.ops.hiermatch.pair_bones(source="A", target="B")
     return made
+
+
+@pytest.mark.usefixtures("made")
+def test_a_body_of_several_meshes_gets_them_all():
+    body, head = bpy.data.objects["B Body"], bpy.data.objects["B Head"]
+    before = weights_of(head)
+    for part in (body, head):
+        part.vertex_groups.clear()
+    assert bpy.ops.hiermatch.transfer_paired_weights(source="A", target="B", limit=0) == {"FINISHED"}
+    after = {name: weights for name, weights in weights_of(head).items() if not name.startswith("HM")}
+    assert "X_head" in after
+    assert "X_thigh.L" not in after
+    assert max(abs(after["X_head"].get(vertex, 0) - weight) for vertex, weight in before["X_head"].items()) < 0.02
+    assert "X_thigh.L" in weights_of(body)
 
 
 def differences(made, weights):

@@ -5,6 +5,7 @@ import json
 
 import bpy
 import pytest
+from hiermatch.hiermatch_addon.jobs import job
 
 from tests.addon.characters import add_person, match_at_once, someone
 
@@ -119,3 +120,48 @@ def test_two_armatures_that_are_selected_need_no_names(rigs):
         bpy.context.view_layer.objects.active = bpy.data.objects[name]
     assert ops.pair_bones() == {"FINISHED"}
     assert len(table()) == len(rigs)
+
+
+def test_a_collection_several_objects_and_the_picked_ones_are_taken_as_match_takes_them(rigs):
+    held = bpy.data.collections.new("Figure")
+    bpy.context.scene.collection.children.link(held)
+    for obj in (bpy.data.objects["B"], *bpy.data.objects["B"].children):
+        held.objects.link(obj)
+    assert ops.pair_bones(source="A Body + A Head", target="Figure") == {"FINISHED"}
+    whole = table()
+    assert len(whole) == len(rigs)
+    ops.clear_bone_pairs(source="A", target="Figure")
+    assert not table()
+    state = bpy.context.scene.hiermatch
+    state.source, state.target_collection = bpy.data.objects["A"], held
+    state.target = None
+    assert ops.pair_bones() == {"FINISHED"}
+    assert table() == whole
+
+
+def test_parts_that_were_matched_are_enough(rigs, monkeypatch):
+    bpy.ops.hiermatch.match(source="A Body", target="B Body")
+    monkeypatch.setattr(job, "match_steps", None)
+    assert ops.pair_bones(source="A", target="B") == {"FINISHED"}
+    found = {(source, rigs[target]) for source, target in table()}
+    assert ("thigh.L", "thigh.L") in found
+    assert all(source == origin for source, origin in found)
+
+
+@pytest.mark.usefixtures("rigs")
+def test_a_doubtful_match_pairs_nothing_unless_it_is_accepted(monkeypatch):
+    match_at_once(monkeypatch, confidence=0.1)
+    with pytest.raises(RuntimeError, match="is doubtful, and nothing was written"):
+        ops.pair_bones(source="A", target="B")
+    assert not table()
+    assert ops.pair_bones(source="A", target="B", accept_doubtful=True) == {"FINISHED"}
+    assert table()
+
+
+@pytest.mark.usefixtures("rigs")
+def test_it_is_offered_while_an_armature_is_posed():
+    bpy.context.view_layer.objects.active = bpy.data.objects["B"]
+    bpy.ops.object.mode_set(mode="POSE")
+    assert ops.pair_bones(source="A", target="B") == {"FINISHED"}
+    assert table()
+    bpy.ops.object.mode_set(mode="OBJECT")

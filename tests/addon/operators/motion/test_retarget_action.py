@@ -6,7 +6,7 @@ from math import radians
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.jobs import motion_job
+from hiermatch.hiermatch_addon.transfers.motion import motion_job
 from mathutils import Matrix
 
 from tests.addon.characters import add_action, add_person, match_at_once, posed_vertices
@@ -167,8 +167,36 @@ def test_the_table_is_kept_and_a_second_run_uses_it(monkeypatch):
     add_action(source)
     carry(source="A", target="B")
     assert len(bpy.context.scene.hiermatch_bone_pairs) == 22
-    monkeypatch.setattr(motion_job, "PairingJob", None)
+    monkeypatch.setattr(motion_job, "pairing_job", None)
     assert carry(source="A", target="B") == {"FINISHED"}
+
+
+def test_an_armature_alone_gives_motion_through_pairs_that_are_there():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source)
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    for part in list(source.children):
+        bpy.data.objects.remove(part)
+    assert carry(source="A", target="B") == {"FINISHED"}
+    bpy.context.scene.hiermatch_bone_pairs.clear()
+    with pytest.raises(RuntimeError, match='The armature "A" moves no mesh'):
+        carry(source="A", target="B")
+
+
+def test_actions_are_named_by_patterns():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    for name in ("Walk", "Walk;Fast", "Nod", "Run"):
+        add_action(source, name).use_fake_user = True
+    made = []
+    for text in ("Walk;Fast", "Walk*;Run", "R?n"):
+        before = set(bpy.data.actions.keys())
+        carry(source="A", target="B", action=text)
+        made.append(sorted(set(bpy.data.actions.keys()) - before))
+    assert made == [["Walk;Fast B"], ["Run B", "Walk B", "Walk;Fast B.001"], ["Run B.001"]]
+    with pytest.raises(RuntimeError, match='fits the pattern "Jump'):
+        carry(source="A", target="B", action="Jump*")
 
 
 def snapshot(target):

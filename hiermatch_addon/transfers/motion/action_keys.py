@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import local_transforms, reduced_keys, rotation_channels, slopes_of
-from ..scene.armatures import armature_of
-from ..scene.motion.motion_io import BoneKeys, rotation_channel
-from ..scene.motion.rigged_body import own_skeleton, rest_matrices
+from ....engine import local_transforms, reduced_keys, rotation_channels, slopes_of
+from ...scene.armatures import armature_of
+from ...scene.motion.motion_io import BoneKeys, rotation_channel
+from ...scene.motion.rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ...engine import BonePairing, TransferredMotion
-    from ..scene.motion.motion_io import ActionKeys
+    from ....engine import BonePairing, TransferredMotion
+    from ...scene.motion.motion_io import ActionKeys
 
 __all__ = ["BoneChannels", "baked_keys", "bone_channels", "sparse_frames", "sparse_keys"]
 

@@ -4,20 +4,24 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import numpy as np
 
-from ...engine import Motion, MotionSettings, Progress, local_transforms, transfer_motion_steps, within
-from ..common.access import view_layer_of
-from ..common.errors import ObjectError
-from ..common.phrases import listed
-from ..properties.bone_pairs import pairing_of, rows_of
-from ..scene.armatures import armature_of
-from ..scene.motion.action_curves import object_curves
-from ..scene.motion.motion_io import (
+from ....engine import Motion, MotionSettings, Progress, local_transforms, transfer_motion_steps, within
+from ...common.access import view_layer_of
+from ...common.errors import ObjectError
+from ...common.phrases import counted, listed
+from ...jobs.stepped_job import SteppedJob
+from ...jobs.transfer import TransferReport
+from ...jobs.transfer_job import Carried
+from ...properties.bone_pairs import pairing_of, rows_of
+from ...scene.armatures import armature_of
+from ...scene.character import SideReference
+from ...scene.motion.action_curves import object_curves
+from ...scene.motion.motion_io import (
     current_motion,
     evaluated_frames,
     needs_evaluation,
@@ -26,23 +30,25 @@ from ..scene.motion.motion_io import (
     set_pose,
     write_action,
 )
-from ..scene.motion.nla_strips import copy_strips
-from ..scene.motion.rigged_body import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of
+from ...scene.motion.nla_strips import copy_strips
+from ...scene.motion.rigs import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of, two_rigs
 from .action_keys import SIDE_STEP, baked_keys, bone_channels, sparse_frames, sparse_keys
-from .pairing_job import PairingJob, RigLink, found_again
-from .stepped_job import SteppedJob
+from .bone_pairs import pairing_job
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from ...engine import BonePairing, Steps, TransferredMotion
-    from ..scene.motion.motion_io import ActionKeys, BoneKeys
-    from .job import JobOptions
-    from .pairing_job import PairedRigs
+    from ....engine import BonePairing, Steps, TransferredMotion
+    from ...jobs.transfer_job import TransferJob, TransferOptions
+    from ...jobs.verdict import Verdict
+    from ...scene.character import Side
+    from ...scene.motion.motion_io import ActionKeys, BoneKeys
+    from ..options.motion import MotionPlan
+    from .bone_pairs import BonePairTransfer
 
-__all__ = ["CarriedMotion", "MotionJob", "MotionPlan"]
+__all__ = ["MotionJob"]
 
 _PAIRED = 0.6
 """Where on the progress bar pairing ends, if it is needed."""
@@ -54,59 +60,6 @@ _FEW = 0.5
 """A source has few keys if they are at fewer than this part of its frames."""
 
 
-@dataclass(frozen=True)
-class MotionPlan:
-    """What is carried over, and how.
-
-    Attributes
-    ----------
-    actions : tuple of str
-        Names of the actions; none for the pose of the moment.
-    settings : MotionSettings
-        How the target is posed.
-    keys : str
-        "AUTO", "SOURCE", "REDUCED" or "ALL".
-    tolerance : float
-        How much reduced keys may change a rotation, in radians.
-    assign : bool
-        Whether a target plays its new action, if there is one only.
-    strips : bool
-        Whether NLA strips of these actions are copied.
-    """
-
-    actions: tuple[str, ...]
-    settings: MotionSettings
-    keys: str = "AUTO"
-    tolerance: float = 0.0035
-    assign: bool = True
-    strips: bool = False
-
-
-@dataclass(frozen=True)
-class CarriedMotion:
-    """What became of one target.
-
-    Attributes
-    ----------
-    target : str
-        Name of the armature.
-    actions : tuple of str
-        Names of its new actions; none if it was posed.
-    paired : PairedRigs or None
-        The pairs, if they were made on the way.
-    notes : tuple of str
-        What is to be known.
-    seconds : float
-        How long it took until here since the job began.
-    """
-
-    target: str
-    actions: tuple[str, ...]
-    paired: PairedRigs | None
-    notes: tuple[str, ...]
-    seconds: float
-
-
 class MotionJob(SteppedJob):
     """Carries motion from one armature to several others.
 
@@ -116,13 +69,13 @@ class MotionJob(SteppedJob):
     ----------
     context : bpy.types.Context
         Where the objects are.
-    source : bpy.types.Object
-        An armature, or a mesh that it moves.
-    targets : sequence of bpy.types.Object
+    source : bpy.types.Object or Character
+        An armature, or what it moves.
+    targets : sequence of bpy.types.Object or Character
         Others.
     plan : MotionPlan
         What is carried over.
-    match : JobOptions
+    options : TransferOptions
         How bodies are matched whose rigs are not paired yet.
 
     Attributes
@@ -139,28 +92,27 @@ class MotionJob(SteppedJob):
     def __init__(
         self,
         context: bpy.types.Context,
-        source: bpy.types.Object,
-        targets: Sequence[bpy.types.Object],
+        source: Side,
+        targets: Sequence[Side],
         plan: MotionPlan,
-        match: JobOptions,
+        options: TransferOptions,
     ) -> None:
         self._begun, self._plan = time.perf_counter(), plan
-        rig = rig_of(source)
-        check_armature(rig, written=False)
-        rigs = [rig_of(target) for target in targets]
-        for each in rigs:
-            check_armature(each, written=True)
-            if each == rig:
-                raise ObjectError(f'Source and Target are both "{rig.name}". Choose two different armatures.')
+        rigs = [two_rigs(source, target, written=True)[1] for target in targets]
+        self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in rigs]
         scene = cast("bpy.types.Scene", context.scene)
-        waiting = [target for target, each in zip(targets, rigs, strict=True) if not rows_of(scene, rig, each)]
-        self._pairing = PairingJob(context, source, waiting, match) if waiting else None
-        self._unpaired = [rig_of(target).session_uid for target in waiting]
-        self._source, self._targets = RigLink.of(rig), [RigLink.of(each) for each in rigs]
-        for each in rigs:
-            if rows_of(scene, rig, each):
-                _check_channels(each, pairing_of(scene, rig, each))
         self._scene, self._view_layer = scene.name, view_layer_of(context)
+        waiting = []
+        for target, rig in zip(targets, rigs, strict=True):
+            if rows_of(scene, rig_of(source), rig):
+                _check_channels(rig, pairing_of(scene, rig_of(source), rig))
+            else:
+                waiting.append((target, rig.session_uid))
+        self._pairing: TransferJob | None = None
+        self._pairs: dict[int, BonePairTransfer] = {}
+        if waiting:
+            self._pairing, made = pairing_job(context, source, [target for target, _ in waiting], options)
+            self._pairs = {uid: one for (_, uid), one in zip(waiting, made, strict=True)}
         self._found: dict[tuple[str, str], list[BoneKeys]] = {}
         self._poses: dict[str, TransferredMotion] = {}
         super().__init__()
@@ -171,7 +123,17 @@ class MotionJob(SteppedJob):
         if self._pairing is not None:
             self._pairing.close()
 
-    def finish(self, context: bpy.types.Context) -> list[CarriedMotion]:
+    @property
+    def doubts(self) -> list[tuple[str, Verdict]]:
+        """See `TransferJob.doubts`."""
+        return [] if self._pairing is None else self._pairing.doubts
+
+    def accept(self) -> None:
+        """See `TransferJob.accept`."""
+        if self._pairing is not None:
+            self._pairing.accept()
+
+    def finish(self, context: bpy.types.Context) -> list[Carried]:
         """Write the actions or poses of all targets.
 
         Raises
@@ -181,35 +143,36 @@ class MotionJob(SteppedJob):
         """
         if not self._done:
             raise RuntimeError("The work has not come to its end yet.")
-        rigs = self._rigs()
-        for rig in rigs[1:]:
+        source, *rigs = self._rigs()
+        for rig in rigs:
             check_armature(rig, written=True)
         actions = [self._action(name) for name in self._plan.actions]
-        paired = {one.target: one for one in self._pairing.finish(context)} if self._pairing is not None else {}
+        paired = iter(self._pairing.finish(context) if self._pairing is not None else ())
         done = []
-        for rig in rigs[1:]:
-            made = {
-                action.name: write_action(
-                    f"{action.name} {rig.name}",
-                    rig,
-                    action,
-                    self._found[rig.name, action.name],
-                    assign=self._plan.assign and len(actions) == 1,
-                )
-                for action in actions
-            }
-            if rig.name in self._poses:
+        for rig in rigs:
+            before = next(paired) if rig.session_uid in self._pairs else None
+            made = {action.name: self._write(rig, action, alone=len(actions) == 1) for action in actions}
+            if not actions:
                 _set_pose(rig, self._poses[rig.name])
             if self._plan.strips:
-                copy_strips(rigs[0], rig, made)
-            names = tuple(action.name for action in made.values())
-            one = paired.get(rig.name)
-            notes = (*(one.notes if one is not None else ()), *_notes(rigs[0], rig, actions, self._moved(context, rig)))
-            done.append(CarriedMotion(rig.name, names, one, notes, time.perf_counter() - self._begun))
+                copy_strips(source, rig, made)
+            moved = [row.target for row in rows_of(cast("bpy.types.Scene", context.scene), source, rig) if row.source]
+            report = TransferReport(_said(made), tuple(_notes(source, rig, actions, moved)))
+            seconds = time.perf_counter() - self._begun
+            if before is None:
+                done.append(Carried(rig.name, None, (report,), seconds))
+            else:
+                reports = (*before.reports, report)
+                done.append(replace(before, target=rig.name, reports=reports, seconds=seconds))
         return done
 
+    def _write(self, rig: bpy.types.Object, action: bpy.types.Action, *, alone: bool) -> bpy.types.Action:
+        """Write a target's action."""
+        keys, assign = self._found[rig.name, action.name], self._plan.assign and alone
+        return write_action(f"{action.name} {rig.name}", rig, action, keys, assign=assign)
+
     def _rigs(self) -> list[bpy.types.Object]:
-        return [found_again(link) for link in (self._source, *self._targets)]
+        return [_found_again(link) for link in (self._source, *self._targets)]
 
     def _action(self, name: str) -> bpy.types.Action:
         """Look an action up again."""
@@ -222,11 +185,6 @@ class MotionJob(SteppedJob):
         self._view_layer = view_layer
         self._rigs()
 
-    def _moved(self, context: bpy.types.Context, rig: bpy.types.Object) -> list[str]:
-        """Names of the target's bones that get a motion."""
-        scene = cast("bpy.types.Scene", context.scene)
-        return [row.target for row in rows_of(scene, found_again(self._source), rig) if row.source]
-
     def _all_steps(self) -> Steps[None]:
         """Pair what is not paired, read each motion once, and compute it for each target."""
         begin = 0.0
@@ -234,32 +192,32 @@ class MotionJob(SteppedJob):
             while not self._pairing.advance(self._view_layer, 0.0):
                 yield Progress(_PAIRED * self._pairing.progress.fraction, self._pairing.progress.label)
             begin = _PAIRED
-        pairings = [self._pairs(number) for number in range(len(self._targets))]
+        pairings = [self._pairing_of(link) for link in self._targets]
         works = self._plan.actions or ("",)
         for number, name in enumerate(works):
             start, end = (begin + (1 - begin) * (number + step) / len(works) for step in range(2))
             steps = self._action_steps(name, pairings) if name else self._pose_steps(pairings)
             yield from within(steps, start, end)
 
-    def _pairs(self, number: int) -> BonePairing:
+    def _pairing_of(self, target: SideReference) -> BonePairing:
         """Return the pairs of one target: from the table, or just made."""
-        rigs = found_again(self._source), found_again(self._targets[number])
-        if rigs[1].session_uid not in self._unpaired:
-            return pairing_of(bpy.data.scenes[self._scene], *rigs)
-        pairing = cast("PairingJob", self._pairing).pairing(self._unpaired.index(rigs[1].session_uid))
-        _check_channels(rigs[1], pairing)
+        rig = _found_again(target)
+        if rig.session_uid not in self._pairs:
+            return pairing_of(bpy.data.scenes[self._scene], _found_again(self._source), rig)
+        pairing = cast("BonePairing", self._pairs[rig.session_uid].pairing)
+        _check_channels(rig, pairing)
         return pairing
 
     def _pose_steps(self, pairings: list[BonePairing]) -> Steps[None]:
         """Carry the pose of the moment over."""
-        motion = current_motion(found_again(self._source))
+        motion = current_motion(_found_again(self._source))
         for link, pairing in zip(self._targets, pairings, strict=True):
             steps = self._transfer_steps(motion, pairing, link, MotionSettings(hands=self._plan.settings.hands))
             self._poses[link.name] = yield from steps
 
     def _action_steps(self, name: str, pairings: list[BonePairing]) -> Steps[None]:
         """Carry an action over."""
-        keys = read_keys(self._action(name), found_again(self._source))
+        keys = read_keys(self._action(name), _found_again(self._source))
         first, last = np.floor(keys.frames[0]), np.ceil(keys.frames[1])
         sparse = self._is_sparse(keys, last - first + 1)
         frames = sparse_frames(keys) if sparse else np.arange(first, last + 1)
@@ -272,7 +230,7 @@ class MotionJob(SteppedJob):
         for number, (link, pairing) in enumerate(zip(self._targets, pairings, strict=True)):
             start, end = (0.5 + 0.5 * (number + step) / count for step in range(2))
             found = yield from within(self._transfer_steps(motion, pairing, link, settings), start, end)
-            rigs = found_again(self._source), found_again(link)
+            rigs = _found_again(self._source), _found_again(link)
             channels = bone_channels(rigs[1], found)
             if sparse:
                 made = sparse_keys(channels, frames, keys, pairing, rigs)
@@ -287,16 +245,16 @@ class MotionJob(SteppedJob):
             return False
         if plan.keys == "SOURCE":
             return True
-        return len(sparse_frames(keys)) < _FEW * count and not needs_evaluation(found_again(self._source))
+        return len(sparse_frames(keys)) < _FEW * count and not needs_evaluation(_found_again(self._source))
 
     def _reading_steps(self, name: str, frames: NDArray[np.float64]) -> Steps[Motion]:
         """Read the source's poses in frames (f,), some at a time."""
         parts = []
-        evaluated = needs_evaluation(found_again(self._source))
+        evaluated = needs_evaluation(_found_again(self._source))
         size = _EVALUATED_CHUNK if evaluated else _CHUNK
         for start in range(0, len(frames), size):
             yield Progress(start / len(frames), "Reading motion")
-            rig, action, some = found_again(self._source), self._action(name), frames[start : start + size]
+            rig, action, some = _found_again(self._source), self._action(name), frames[start : start + size]
             if evaluated:
                 parts.append(evaluated_frames(bpy.data.scenes[self._scene], action, rig, some))
             else:
@@ -305,12 +263,34 @@ class MotionJob(SteppedJob):
         return Motion(parts[0].skeleton, turns, heads)
 
     def _transfer_steps(
-        self, motion: Motion, pairing: BonePairing, link: RigLink, settings: MotionSettings
+        self, motion: Motion, pairing: BonePairing, link: SideReference, settings: MotionSettings
     ) -> Steps[TransferredMotion]:
         """Compute the motion of one target."""
-        rigs = found_again(self._source), found_again(link)
+        rigs = _found_again(self._source), _found_again(link)
         ups = np.array([object_rotation(rig)[2] for rig in rigs])  # the world's z axis in their spaces
         return (yield from transfer_motion_steps(motion, pairing, own_skeleton(rigs[1]), settings, ups=ups))
+
+
+def _found_again(reference: SideReference) -> bpy.types.Object:
+    """Look an armature up again.
+
+    Raises
+    ------
+    ObjectError
+        If it was deleted.
+    """
+    found = reference.find()
+    if found is None:
+        raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
+    return rig_of(found)
+
+
+def _said(made: dict[str, bpy.types.Action]) -> str:
+    """Say what a target has got."""
+    if len(made) == 1:
+        (action,) = made.values()
+        return f'the action "{action.name}"'
+    return counted(len(made), "action") if made else "the pose"
 
 
 def _check_channels(rig: bpy.types.Object, pairing: BonePairing) -> None:

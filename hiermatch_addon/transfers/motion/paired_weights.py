@@ -4,29 +4,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from scipy.sparse import csr_array, hstack
+from scipy.sparse import csr_array
 
-from ...engine import Columns, carry_weights_steps, paired_weights, put_in
-from ..common.errors import ObjectError
-from ..common.phrases import counted, listed
-from ..jobs.transfer import TransferReport
-from ..properties.bone_pairs import pairing_of
-from ..scene.armatures import armature_of, find_armature, read_rig, read_skeleton
-from ..scene.character import parts_of
-from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
-from ..scene.motion.rigged_body import rig_of
-from .weight_groups import locked_groups
+from ....engine import Columns, carry_weights_steps, paired_weights, put_in
+from ...common.errors import ObjectError
+from ...common.phrases import counted, listed
+from ...jobs.transfer import TransferReport
+from ...properties.bone_pairs import pairing_of
+from ...scene.armatures import armature_of, find_armature, read_rig, read_skeleton
+from ...scene.character import parts_of, vertex_ranges
+from ...scene.deform_layer import check_weights_writable
+from ...scene.motion.rigs import rig_of
+from ..weight_groups import group_columns, locked_groups, write_groups
 
 if TYPE_CHECKING:
     import bpy
 
-    from ...engine import BonePairing, Skeleton, Steps
-    from ..jobs.transfer import Passage
-    from ..scene.armatures import SourceRig
-    from ..scene.character import Side
+    from ....engine import BonePairing, Skeleton, Steps
+    from ...jobs.transfer import Passage
+    from ...scene.armatures import SourceRig
+    from ...scene.character import Side
 
 __all__ = ["PairedWeightTransfer"]
 
@@ -62,8 +62,8 @@ class PairedWeightTransfer:
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the weights, and the pairs of the two rigs."""
-        source, target = _only_mesh(source), _only_mesh(target)
-        check_weights_writable(target)
+        for part in parts_of(target):
+            check_weights_writable(part)
         rig, armature = read_rig(source), find_armature(source)
         if rig is None or armature is None:
             raise ObjectError(f'"{source.name}" has no weights for the bones of an armature. Choose a rigged Source.')
@@ -85,11 +85,8 @@ class PairedWeightTransfer:
                 f'The vertex groups of all paired bones of "{own.name}" are locked on "{target.name}", or the bones do '
                 "not deform. Unlock some of them."
             )
-        groups = [target.vertex_groups.find(name) for name in names]
-        there = read_weights(target).tocsc()
-        before = [there[:, [group]] if group >= 0 else csr_array((there.shape[0], 1)) for group in groups]
         columns = Columns(held, deforming, deforming, yielding=True)
-        self._task = _Task(rig, worldly, read_skeleton(own), names, _side_by_side(before), columns)
+        self._task = _Task(rig, worldly, read_skeleton(own), names, group_columns(target, names), columns)
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the weights of the target."""
@@ -103,13 +100,14 @@ class PairedWeightTransfer:
 
     def write(self, _context: bpy.types.Context, _source: Side, target: Side) -> TransferReport:
         """Write the groups of the target's bones."""
-        target = _only_mesh(target)
         task = self._read_task
         written = task.columns.new & ~task.columns.locked
-        present = np.array([name in target.vertex_groups for name in task.names], bool)
         used = np.asarray((self._result != 0).sum(axis=0)).ravel() > 0
-        numbers = np.flatnonzero(written & (used | present))
-        write_weights(target, [task.names[number] for number in numbers], csr_array(self._result[:, numbers]))
+        present = {group.name for part in parts_of(target) for group in part.vertex_groups}
+        numbers = [number for number in np.flatnonzero(written) if used[number] or task.names[number] in present]
+        wanted, result = [task.names[number] for number in numbers], self._result.tocsr()[:, numbers]
+        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
+            write_groups(part, wanted, csr_array(result[own]), every=False)
         held = [task.names[number] for number in np.flatnonzero(task.columns.locked)]
         notes = (f'Locked vertex groups of "{target.name}" were left alone: {listed(held)}.',) if held else ()
         return TransferReport(counted(len(numbers), "vertex group"), notes)
@@ -119,22 +117,3 @@ class PairedWeightTransfer:
         if self._task is None:
             raise RuntimeError("Nothing was read yet.")
         return self._task
-
-
-def _only_mesh(side: Side) -> bpy.types.Object:
-    """Return the only mesh of a side.
-
-    Raises
-    ------
-    ObjectError
-        If it has several.
-    """
-    parts = parts_of(side)
-    if len(parts) > 1:
-        raise ObjectError(f'"{side.name}" has several meshes. Carry weights to another rig from mesh to mesh.')
-    return parts[0]
-
-
-def _side_by_side(columns: list[Any]) -> csr_array:
-    """Put sparse columns together."""
-    return csr_array(hstack(columns, format="csr"))

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Armatures between which motion goes: which one is meant, whether it can be used, and how it stands in the world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ....engine import BonePairing, Skeleton
+from ...common.errors import ObjectError
+from ..armatures import armature_of, find_armature
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ..character import Side
+
+__all__ = [
+    "check_armature",
+    "in_own_spaces",
+    "object_rotation",
+    "own_skeleton",
+    "rest_matrices",
+    "rig_of",
+    "two_rigs",
+]
+
+
+def rig_of(side: Side) -> bpy.types.Object:
+    """Return the armature object that is meant by itself or by what it moves.
+
+    Raises
+    ------
+    ObjectError
+        If there is none.
+    """
+    bare = getattr(side, "type", "") == "ARMATURE"
+    armature = side if bare else find_armature(side)
+    if armature is None:
+        raise ObjectError(f'"{side.name}" has no armature. Choose an armature, or a mesh with an Armature modifier.')
+    return armature  # type: ignore[return-value]  # a character is no armature
+
+
+def two_rigs(source: Side, target: Side, *, written: bool) -> tuple[bpy.types.Object, bpy.types.Object]:
+    """Return the armatures of two sides, and make sure that they can be used; see `check_armature`."""
+    rigs = rig_of(source), rig_of(target)
+    check_armature(rigs[0], written=False)
+    check_armature(rigs[1], written=written)
+    if rigs[0] == rigs[1]:
+        raise ObjectError(f'Source and Target are both "{rigs[0].name}". Choose two different armatures.')
+    return rigs
+
+
+def check_armature(armature: bpy.types.Object, *, written: bool) -> None:
+    """Make sure that an armature can be read, and keys or poses of it can be written.
+
+    Raises
+    ------
+    ObjectError
+        If not; the message says why and what to do.
+    """
+    if armature.mode == "EDIT":
+        raise ObjectError(f'The armature "{armature.name}" is in Edit Mode. Switch to Object Mode first.')
+    if not len(armature_of(armature).bones):
+        raise ObjectError(f'The armature "{armature.name}" has no bones.')
+    matrix = np.array(armature.matrix_world, np.float64)[:3, :3]
+    if abs(np.linalg.det(matrix)) <= np.finfo(float).tiny:
+        raise ObjectError(f'The armature "{armature.name}" has a scale of zero. Set its scale first.')
+    if written and armature.library is not None:
+        raise ObjectError(
+            f'The armature "{armature.name}" is linked from another file and cannot be animated here. Make it local '
+            "first (Object > Relations > Make Local)."
+        )
+    if written and armature.override_library is not None:
+        raise ObjectError(
+            f'The armature "{armature.name}" is a library override and cannot be written to. Make it local first '
+            "(Object > Relations > Make Local)."
+        )
+
+
+def object_rotation(armature: bpy.types.Object) -> NDArray[np.float64]:
+    """Return how an object is turned in the world, (3, 3), without its scale."""
+    return np.array(armature.matrix_world.to_quaternion().to_matrix(), np.float64)
+
+
+def rest_matrices(armature: bpy.types.Object) -> NDArray[np.float64]:
+    """Return axes and head of each bone at rest, in the armature's own space, (b, 4, 4)."""
+    return np.array([bone.matrix_local for bone in armature_of(armature).bones], np.float64).reshape(-1, 4, 4)
+
+
+def own_skeleton(armature: bpy.types.Object) -> Skeleton:
+    """Read the bones at rest in the armature's own space."""
+    bones = armature_of(armature).bones
+    numbers = {bone.name: number for number, bone in enumerate(bones)}
+    parents = np.array([-1 if bone.parent is None else numbers[bone.parent.name] for bone in bones], np.int64)
+    heads, tails = (
+        np.array([getattr(bone, end) for bone in bones], np.float64) for end in ("head_local", "tail_local")
+    )
+    return Skeleton(parents, heads.reshape(-1, 3), tails.reshape(-1, 3))
+
+
+def in_own_spaces(
+    pairing: BonePairing, turns: tuple[NDArray[np.float64], NDArray[np.float64]], matrix: NDArray[np.float64]
+) -> BonePairing:
+    """Bring pairs that were found in the world into the armatures' own spaces, where they hold wherever these stand.
+
+    Parameters
+    ----------
+    pairing : BonePairing
+        The pairs.
+    turns : (3, 3) array of float, twice
+        How source and target are turned in the world.
+    matrix : (4, 4) array of float
+        The target's space in the world.
+    """
+    inverse = np.linalg.inv(matrix)
+    return BonePairing(
+        pairing.sources,
+        pairing.targets,
+        pairing.scores,
+        turns[1].T @ pairing.rotations @ turns[0],
+        pairing.places @ inverse[:3, :3].T + inverse[:3, 3],
+        turns[1].T @ pairing.upright @ turns[0],
+    )

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
+"""Options of carrying motion over: Blender's properties, and the plan that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ....engine import MotionSettings
+from ...common.errors import ObjectError
+from ...scene.motion.action_curves import actions_of, bone_curves, named_action, played_action
+from ...scene.motion.nla_strips import strip_actions
+
+__all__ = ["MotionOptions", "MotionPlan", "motion_plan"]
+
+_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
+
+
+@dataclass(frozen=True)
+class MotionPlan:
+    """What is carried over, and how.
+
+    Attributes
+    ----------
+    actions : tuple of str
+        Names of the actions; none for the pose of the moment.
+    settings : MotionSettings
+        How the target is posed.
+    keys : str
+        "AUTO", "SOURCE", "REDUCED" or "ALL".
+    tolerance : float
+        How much reduced keys may change a rotation, in radians.
+    assign : bool
+        Whether a target plays its new action, if there is one only.
+    strips : bool
+        Whether NLA strips of these actions are copied.
+    """
+
+    actions: tuple[str, ...]
+    settings: MotionSettings
+    keys: str = "AUTO"
+    tolerance: float = 0.0035
+    assign: bool = True
+    strips: bool = False
+
+
+class MotionOptions:
+    """How motion is carried over, for whatever class of Blender's inherits from it."""
+
+    __annotations__ = {
+        "action": _props.StringProperty(
+            name="Action",
+            description="Name of the action to carry over, or a pattern such as Walk*; several with a semicolon "
+            "between them. If empty, those that Actions says",
+            options={"SKIP_SAVE"},
+        ),
+        "actions": _props.EnumProperty(
+            name="Actions",
+            description="Which actions of the source are carried over",
+            items=[
+                ("ACTIVE", "Active", "The one that the source plays"),
+                ("ALL", "All", "All actions of the file that move bones of the source"),
+            ],
+            default="ACTIVE",
+        ),
+        "keying": _props.EnumProperty(
+            name="Keys",
+            description="At which frames the new action gets keys",
+            items=[
+                ("AUTO", "Automatic", "At the source's keys if these are few, else reduced ones"),
+                ("SOURCE", "As the Source", "At the keys of the source's bones, with their interpolation"),
+                ("REDUCED", "Reduced", "As few as keep the motion within the Tolerance"),
+                ("ALL", "Every Frame", "At every frame"),
+            ],
+            default="AUTO",
+        ),
+        "tolerance": _props.FloatProperty(
+            name="Tolerance",
+            description="By how much reduced keys may change a rotation",
+            subtype="ANGLE",
+            min=0,
+            max=0.5,
+            default=0.0035,
+        ),
+        "keep_feet": _props.BoolProperty(
+            name="Keep Feet on Ground",
+            description="Where a foot stands in the source, let it stand in the target: the leg is bent for it. All "
+            "frames are computed then",
+        ),
+        "keep_hands": _props.BoolProperty(
+            name="Keep Hands on Body",
+            description="Where a hand touches the body or the other hand in the source, bend the target's arm so that "
+            "it does so too. All frames are computed then",
+        ),
+        "stride": _props.FloatProperty(
+            name="Stride",
+            description="How long the way along the ground is; 1 fits the length of the target's legs",
+            min=0,
+            soft_max=3,
+            default=1,
+        ),
+        "in_place": _props.BoolProperty(
+            name="In Place", description="Take out the way from the first to the last frame, for walk cycles"
+        ),
+        "strips": _props.BoolProperty(
+            name="NLA Strips",
+            description="Carry the actions of the source's NLA strips over as well, and copy the strips",
+        ),
+        "assign": _props.BoolProperty(
+            name="Play", description="Let the target play the new action, if it is one only", default=True
+        ),
+    }
+
+    if TYPE_CHECKING:
+        action: str
+        actions: str
+        keying: str
+        tolerance: float
+        keep_feet: bool
+        keep_hands: bool
+        stride: float
+        in_place: bool
+        strips: bool
+        assign: bool
+
+
+def motion_plan(scene: bpy.types.Scene, options: MotionOptions, rig: bpy.types.Object) -> MotionPlan:
+    """Make the plan of the options for the actions of a rig.
+
+    Raises
+    ------
+    ObjectError
+        If there are none, or one that is named does not move the rig.
+    """
+    names = _wanted(options, rig)
+    if options.strips:
+        known = {action.name for action in actions_of(rig)}
+        names = list(dict.fromkeys([*names, *(name for name in strip_actions(rig) if name in known)]))
+    if not names:
+        raise ObjectError(f'"{rig.name}" has no action that moves its bones. Give it one, or name an action.')
+    settings = MotionSettings(
+        feet=options.keep_feet,
+        hands=options.keep_hands,
+        stride=options.stride,
+        in_place=options.in_place,
+        rate=scene.render.fps / scene.render.fps_base,
+    )
+    return MotionPlan(
+        tuple(names), settings, options.keying, options.tolerance, assign=options.assign, strips=options.strips
+    )
+
+
+def _wanted(options: MotionOptions, rig: bpy.types.Object) -> list[str]:
+    """Names of the actions that the options name, or else mean."""
+    if options.action:
+        return _named(options.action, rig)
+    if options.actions == "ALL":
+        return [action.name for action in actions_of(rig)]
+    played = played_action(rig)
+    return [played.name] if played is not None and _moves(played, rig) else []
+
+
+def _named(text: str, rig: bpy.types.Object) -> list[str]:
+    """Names of the actions that a text names: one, or several and patterns with semicolons between them."""
+    parts = [text] if text in bpy.data.actions else [part.strip() for part in text.split(";") if part.strip()]
+    found: list[str] = []
+    for part in parts:
+        if part not in bpy.data.actions and set("*?[") & set(part):
+            fitting = [action.name for action in actions_of(rig) if fnmatchcase(action.name, part)]
+            if not fitting:
+                raise ObjectError(f'No action that moves bones of "{rig.name}" fits the pattern "{part}".')
+            found += fitting
+        elif not _moves(named_action(part), rig):
+            raise ObjectError(f'The action "{part}" moves no bone of "{rig.name}". Choose one that does.')
+        else:
+            found.append(part)
+    return list(dict.fromkeys(found))
+
+
+def _moves(action: bpy.types.Action, rig: bpy.types.Object) -> bool:
+    return any(True for _ in bone_curves(action, rig))
