@@ -15,7 +15,7 @@ from ..storage.match_exchange import apply_match, collect_match
 from ..storage.match_file import load_match, save_match
 from .command import EXIT_CODES
 from .match import add_pair_arguments, load_pair
-from .outputs import output_argument, save
+from .outputs import KINDS, output_argument, save
 from .reports import add_report_options, run_reported
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
     parser.add_argument("map", type=Path, metavar="MATCH", help="The .npz or .json to read.")
     parser.add_argument(
         "--output",
-        type=output_argument,
+        type=output_argument(KINDS),
         action="append",
         required=True,
         metavar="FILE",

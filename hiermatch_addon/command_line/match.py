@@ -23,19 +23,22 @@ from .command import EXIT_CODES, ExitCode
 from .console import Console, drive
 from .meshes import load_meshes, mesh_argument
 from .options import add_options, chosen_options, given_options
-from .outputs import output_argument, save
+from .outputs import KINDS, output_argument, save
 from .reports import Report, add_report_options, run_reported
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Sequence
 
     from ..scene.character import Side
 
 __all__ = [
     "add_commands",
+    "add_output_option",
     "add_pair_arguments",
     "add_result_options",
     "load_pair",
+    "save_outputs",
     "save_results",
     "warn_if_nothing_is_written",
 ]
@@ -66,23 +69,29 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
 def add_result_options(parser: argparse.ArgumentParser, what: str = "the target") -> None:
     """Add where results are written."""
     group = parser.add_argument_group("what is written")
-    group.add_argument(
-        "--output",
-        type=output_argument,
-        action="append",
-        default=[],
-        metavar="FILE",
-        help=f"Write the whole scene into a .blend, or {what} with its armature into an .obj, .ply, .stl, .fbx, .glb "
-        "or .gltf; may be given several times.",
-    )
+    add_output_option(group, what)
     group.add_argument(
         "--map", type=Path, metavar="FILE", help="Write the correspondence into an .npz or .json as well."
     )
 
 
+def add_output_option(group: Any, what: str, kinds: Sequence[str] = KINDS) -> None:  # noqa: ANN401 - as above
+    """Add where the scene, or the target, is written."""
+    named = f"{', '.join(kinds[1:-1])} or {kinds[-1]}"
+    group.add_argument(
+        "--output",
+        type=output_argument(kinds),
+        action="append",
+        default=[],
+        metavar="FILE",
+        help=f"Write the whole scene into a .blend, or {what} with its armature into a {named}; may be given several "
+        "times.",
+    )
+
+
 def warn_if_nothing_is_written(parsed: argparse.Namespace, console: Console) -> None:
     """Say before the work that nothing will be left of it."""
-    if not (parsed.output or parsed.map or parsed.report):
+    if not (parsed.output or getattr(parsed, "map", None) or parsed.report):
         console.say("Nothing will be written: name a file by --output, --map or --report.")
 
 
@@ -122,13 +131,26 @@ def save_results(
         console.progress(1.0, f"Writing {parsed.map}")
         save_match(match, parsed.map.absolute())
         report.written.append(str(parsed.map.absolute()))
+    save_outputs(parsed, report, pair[1], console, clean=clean)
+
+
+def save_outputs(
+    parsed: argparse.Namespace,
+    report: Report,
+    target: Side,
+    console: Console,
+    *,
+    clean: bool,
+    clips: Sequence[bpy.types.Action] = (),
+) -> None:
+    """Write the scene and the target into all files that are wanted; see `save_results` and `save`."""
     for path in sorted(parsed.output, key=lambda output: output.suffix.lower() != ".blend"):
         console.progress(1.0, f"Writing {path}")
         if clean and path.suffix.lower() != ".blend":
-            for part in parts_of(pair[1]):
-                for written in writing.prefixes(part):
+            for part in parts_of(target):
+                for written in writing.prefixes(part) if part.type == "MESH" else ():
                     writing.clear(part, written)
-        save(path, pair[1])
+        save(path, target, clips)
         report.written.append(str(path.absolute()))
 
 

@@ -106,9 +106,11 @@ def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tup
     for argument in arguments:
         path = argument.path
         if path == opened:
-            chosen = _named(argument, view_layer_of(bpy.context).objects) or _choose(_scene_meshes(), argument)
+            objects = list(view_layer_of(bpy.context).objects)
+            chosen = _named(argument, objects) or (whole and _only_character(argument, objects))
+            chosen = chosen or _choose([obj for obj in objects if obj.type == "MESH"], argument)
         elif path.suffix.lower() == ".blend":
-            chosen = _append(argument)
+            chosen = _append(argument, whole=whole)
         else:
             if path not in imported:
                 imported[path] = _import(path)
@@ -164,12 +166,8 @@ def _start(opened: Path | None) -> None:
         raise ObjectError(f'"{opened}" cannot be opened: {said_by(error)}') from error
 
 
-def _scene_meshes() -> list[bpy.types.Object]:
-    return [obj for obj in view_layer_of(bpy.context).objects if obj.type == "MESH"]
-
-
 def _import(path: Path) -> list[bpy.types.Object]:
-    """Import a file and return its meshes with faces, and its armatures."""
+    """Import a file and return its meshes with faces, and its armatures; not what only shows bones in the view."""
     name = next((name for name in _IMPORTERS[path.suffix.lower()] if has_operator(name)), None)
     if name is None:
         raise ObjectError(
@@ -182,60 +180,59 @@ def _import(path: Path) -> list[bpy.types.Object]:
         getattr(getattr(bpy.ops, group), operator)(filepath=str(path.resolve()))
     except RuntimeError as error:
         raise ObjectError(f'"{path}" cannot be read: {said_by(error)}') from error
-    added = [obj for obj in bpy.data.objects if obj not in before]
+    added = [obj for obj in view_layer_of(bpy.context).objects if obj not in before]
     return [obj for obj in added if obj.type == "ARMATURE" or (obj.type == "MESH" and len(mesh_of(obj).polygons))]
 
 
-def _append(argument: MeshArgument) -> Side:
+def _append(argument: MeshArgument, *, whole: bool) -> Side:
     """Append an object of another .blend, with its parents and what its modifiers use, or a whole character."""
-    path = str(argument.path.resolve())
     try:
         libraries: Any = bpy.data.libraries
-        with libraries.load(path, link=False) as (there, here):
-            names = [name for name in there.objects if argument.name in ("", name)]
-            if argument.name and not names and argument.name in there.collections:
-                here.collections = [argument.name]
+        with libraries.load(str(argument.path.resolve()), link=False) as (there, here):
+            names = list(there.objects)
+            if argument.name and argument.name not in names and argument.name in there.collections:
+                names, here.collections = [], [argument.name]
             here.objects = list(names)
-        if here.collections:
-            (collection,) = here.collections
-            cast("bpy.types.Scene", bpy.context.scene).collection.children.link(collection)
-            for obj in list(collection.all_objects):
-                _link(obj)
-            view_layer_of(bpy.context).update()
-            return side_of(collection, view_layer_of(bpy.context))
-        if argument.name and names and here.objects[0].type == "ARMATURE":
-            return _append_character(path, here.objects[0])
     except (OSError, RuntimeError) as error:
         raise ObjectError(f'"{argument.path}" cannot be opened: {said_by(error)}') from error
-    if argument.name and not names:
+    if here.collections:
+        (collection,) = here.collections
+        cast("bpy.types.Scene", bpy.context.scene).collection.children.link(collection)
+        for obj in list(collection.all_objects):
+            _link(obj)
+        view_layer_of(bpy.context).update()
+        return side_of(collection, view_layer_of(bpy.context))
+    if argument.name and argument.name not in names:
         raise ObjectError(f'"{argument.path}" has no object called "{argument.name}".')
     loaded = cast("list[bpy.types.Object | None]", here.objects)
-    meshes = {
-        name: obj
-        for name, obj in zip(names, loaded, strict=True)
-        if obj is not None and obj.type == "MESH" and len(mesh_of(obj).polygons)
-    }
-    obj = _choose(meshes.values(), argument, tuple(meshes))
-    _link(obj)
-    return obj
-
-
-def _append_character(path: str, armature: bpy.types.Object) -> Side:
-    """Append all meshes of another .blend that an armature moves which was appended from it."""
-    before = set(bpy.data.objects)
-    name, libraries = armature.name, cast("Any", bpy.data.libraries)
-    bpy.data.objects.remove(armature)  # it comes again with what hangs on it
-    with libraries.load(path, link=False) as (there, here):
-        here.objects = list(there.objects)
-    loaded = [obj for obj in here.objects if obj is not None]
-    mover = next(obj for obj in loaded if obj.type == "ARMATURE" and obj.name == name)
-    kept = [obj for obj in loaded if mover in armatures_above(obj)]
+    found = {name: obj for name, obj in zip(names, loaded, strict=True) if obj is not None}
+    meshes = {name: obj for name, obj in found.items() if obj.type == "MESH" and len(mesh_of(obj).polygons)}
+    chosen = found.get(argument.name)
+    mover = chosen if chosen is not None and chosen.type == "ARMATURE" else None
+    if not argument.name and whole and len(meshes) != 1:
+        mover = _only_mover(found.values())
+    kept = [obj for obj in found.values() if mover in armatures_above(obj)] if mover else []
+    kept = kept or [_choose(meshes.values(), argument, tuple(meshes))]
     for obj in kept:
         _link(obj)
-    used = {obj for obj in bpy.data.objects if obj in before or obj.users_collection}
-    for obj in [obj for obj in loaded if obj not in used]:
-        bpy.data.objects.remove(obj)
+    for obj in found.values():
+        if not obj.users_collection:
+            bpy.data.objects.remove(obj)
     view_layer_of(bpy.context).update()
+    return side_of(mover or kept[0], view_layer_of(bpy.context))
+
+
+def _only_mover(objects: Iterable[bpy.types.Object]) -> bpy.types.Object | None:
+    """Return the only armature of some objects; None if there are more, or none."""
+    armatures = [obj for obj in objects if obj.type == "ARMATURE"]
+    return armatures[0] if len(armatures) == 1 else None
+
+
+def _only_character(argument: MeshArgument, objects: Sequence[bpy.types.Object]) -> Side | None:
+    """Return what the only armature moves, if no name is given and it is not a matter of one mesh."""
+    mover = _only_mover(objects)
+    if argument.name or mover is None or sum(obj.type == "MESH" for obj in objects) == 1:
+        return None
     return side_of(mover, view_layer_of(bpy.context))
 
 
@@ -268,7 +265,8 @@ def _chosen_of_import(
 ) -> Side:
     """Return what is named of an import, or the character of the mesh with the most vertices."""
     exact = any(obj.type == "MESH" and obj.name == argument.name for obj in added)
-    found = None if exact else _named(argument, added)
+    bare = None if any(obj.type == "MESH" for obj in added) else _only_character(argument, added)
+    found = None if exact else _named(argument, added) or bare
     if found is not None:
         return found
     chosen = _choose_largest([obj for obj in added if obj.type == "MESH"], argument, notes)

@@ -15,15 +15,17 @@ from ..common.errors import ObjectError
 from ..common.file_writing import beside
 from ..scene.character import parts_of
 from ..scene.garments import fitted_to
+from ..scene.motion.nla_strips import add_tracks
+from ..scene.motion.rigs import rig_of
 from .meshes import has_operator
 from .operator_errors import said_by
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from ..scene.character import Side
 
-__all__ = ["output_argument", "save"]
+__all__ = ["KINDS", "MOVING_KINDS", "output_argument", "save"]
 
 _EXPORTERS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     ".obj": ("wm.obj_export", {"export_selected_objects": True, "apply_modifiers": False, "path_mode": "ABSOLUTE"}),
@@ -38,25 +40,36 @@ _EXPORTERS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
 }
 """For each kind of file the operator that writes it, and with which options: what is selected, as it is."""
 
-_KINDS = (".blend", *_EXPORTERS)
+_MOVING: Final[dict[str, dict[str, Any]]] = {
+    ".fbx": {"bake_anim": True, "bake_anim_use_nla_strips": True, "bake_anim_use_all_actions": False},
+    ".glb": {"export_animations": True, "export_animation_mode": "NLA_TRACKS"},
+    ".gltf": {"export_animations": True, "export_animation_mode": "NLA_TRACKS"},
+}
+"""For each kind of file that can hold motion its options for that: each track of the NLA editor is a clip."""
+
+KINDS: Final = (".blend", *_EXPORTERS)
+"""The kinds of files that can be written."""
+
+MOVING_KINDS: Final = (".blend", *_MOVING)
+"""Those of them that can hold motion."""
 
 
-def output_argument(text: str) -> Path:
-    """Read the name of a file to write.
+def output_argument(kinds: Sequence[str]) -> Callable[[str], Path]:
+    """Make what reads the name of a file to write, of one of some kinds; of another, it raises an ArgumentTypeError."""
 
-    Raises
-    ------
-    argparse.ArgumentTypeError
-        If it is of no known kind.
-    """
-    path = Path(text)
-    if path.suffix.lower() not in _KINDS:
-        raise argparse.ArgumentTypeError(f'"{text}" does not end with {", ".join(_KINDS)}')
-    return path
+    def parse(text: str) -> Path:
+        path = Path(text)
+        if path.suffix.lower() not in kinds:
+            raise argparse.ArgumentTypeError(f'"{text}" does not end with {", ".join(kinds)}')
+        return path
+
+    return parse
 
 
-def save(path: Path, side: Side) -> None:
+def save(path: Path, side: Side, clips: Sequence[bpy.types.Action] = ()) -> None:
     """Write the whole scene into a .blend, or a side with its armatures and clothes into another kind of file.
+
+    There, `clips` of its armature go along, and what its armature plays otherwise.
 
     Raises
     ------
@@ -70,7 +83,9 @@ def save(path: Path, side: Side) -> None:
                 bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
         else:
             _select(side)
-            _export(path)
+            if clips:
+                add_tracks(rig_of(side), clips)
+            _export(path, moving=bool(clips))
     except RuntimeError as error:
         raise ObjectError(f'"{path}" cannot be written: {said_by(error)}') from error
 
@@ -87,9 +102,10 @@ def _select(side: Side) -> None:
     layer.objects.active = parts[0]
 
 
-def _export(path: Path) -> None:
+def _export(path: Path, *, moving: bool) -> None:
     """Write what is selected into a folder beside the file, and move all that was written to its place."""
     name, options = _EXPORTERS[path.suffix.lower()]
+    options = options | (_MOVING[path.suffix.lower()] if moving else {})
     if not has_operator(name):
         raise ObjectError(
             f'This Blender cannot write "{path.name}". Enable the add-on that exports {path.suffix} files, or write '

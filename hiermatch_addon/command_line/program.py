@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...engine import HierMatchError
-from . import exchange, match, retarget, symmetry, wear
+from . import exchange, match, motion, retarget, symmetry, wear
 from .batches import batch
 from .command import EXIT_CODES, ExitCode, UsageError
 from .console import Console
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 __all__ = ["main", "make_parser"]
 
 _DESCRIPTION = """\
-Find dense correspondence of two meshes in any pose, and carry rigs, weights, shape keys, UV maps and attributes across
-it.  FILE is a .blend, .obj, .ply, .stl, .fbx, .glb, .gltf or .vrm file.  FILE:NAME names a mesh in it, an armature with
-all meshes that it moves, or a collection; without a name it is the only mesh of a .blend, and of another file the mesh
-with the most vertices, with all others on its armature.
+Find dense correspondence of two meshes in any pose, and carry rigs, weights, shape keys, UV maps, attributes and motion
+across it.  FILE is a .blend, .obj, .ply, .stl, .fbx, .glb, .gltf or .vrm file.  FILE:NAME names a mesh in it, an
+armature with all meshes that it moves, or a collection; without a name it is the only mesh of a .blend, or all that
+its only armature moves, and of another file the mesh with the most vertices, with all others on its armature.
 """
 
 
@@ -32,7 +32,7 @@ def make_parser() -> Parser:
     """
     parser = Parser(prog="blender --command hiermatch", description=_DESCRIPTION, epilog=EXIT_CODES)
     commands = parser.add_subparsers(title="commands", dest="command", metavar="COMMAND", required=True)
-    for module in (match, retarget, wear, symmetry, exchange, batch):
+    for module in (match, retarget, motion, wear, symmetry, exchange, batch):
         module.add_commands(commands)
     parser.set_defaults(check=parser.parse_args)
     return parser

@@ -85,7 +85,7 @@ class Report:
 
     def add_object(self, role: str, argument: MeshArgument, obj: Side) -> None:
         """Say what was loaded."""
-        meshes = [mesh_of(part) for part in parts_of(obj)]
+        meshes = [mesh_of(part) for part in parts_of(obj) if part.type == "MESH"]
         self.objects[role] = {
             "file": str(argument.path),
             "object": obj.name,

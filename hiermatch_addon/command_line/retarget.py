@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import bpy
 
@@ -25,12 +26,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..jobs.transfer import Transfer
+    from ..jobs.transfer_job import Carried
     from ..scene.character import Side
+    from ..transfers.motion.motion_job import MotionJob
     from .command import ExitCode
     from .console import Console
     from .reports import Report
 
-__all__ = ["NOT_OF_THE_MATCH", "add_commands", "run_transfers"]
+    _Start: TypeAlias = Callable[[Any, tuple[Side, Side], TransferOptions], TransferJob | MotionJob]
+
+__all__ = ["NOT_OF_THE_MATCH", "add_commands", "run_transfers", "transferring"]
 
 NOT_OF_THE_MATCH = frozenset({"prefix", "dense", "use_modifiers"})
 """Options of a match that retargeting decides itself, or has under the same name."""
@@ -56,17 +61,32 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Retarget and write."""
     return run_transfers(
-        parsed, console, "retarget", lambda options, _pair: chosen_transfers(options, options.prefix), optional=True
+        parsed,
+        console,
+        "retarget",
+        transferring(lambda options, _pair: chosen_transfers(options, options.prefix), optional=True),
     )
+
+
+def transferring(make: Callable[[Any, tuple[Side, Side]], list[Transfer]], *, optional: bool) -> _Start:
+    """Return what starts the job of transfers, which are made of an operator's options for a source and a target.
+
+    Those that cannot be carried over are left out with a note if they are `optional`.
+    """
+
+    def start(options: Any, pair: tuple[Side, Side], how: TransferOptions) -> TransferJob:  # noqa: ANN401 - see `_Start`
+        how = replace(how, optional=optional)
+        return TransferJob(bpy.context, pair[0], [pair[1]], lambda: make(options, pair), how)
+
+    return start
 
 
 def run_transfers(
     parsed: argparse.Namespace,
     console: Console,
     operator: str,
-    make: Callable[[Any, tuple[Side, Side]], list[Transfer]],
-    *,
-    optional: bool,
+    start: _Start,
+    finish: Callable[[Report, tuple[Side, Side], list[Carried]], None] | None = None,
 ) -> ExitCode:
     """Carry something over and write all files that are wanted.
 
@@ -78,10 +98,10 @@ def run_transfers(
         Where to say how far it is.
     operator : str
         The operator whose options are among them.
-    make : callable
-        Makes the transfers of its options, for a source and a target.
-    optional : bool
-        Whether what cannot be carried over is left out with a note.
+    start : callable
+        Starts the job: of the operator's options, for source and target, by some way between them.
+    finish : callable, optional
+        Writes the files in place of `save_results`, when all was carried over.
     """
     warn_if_nothing_is_written(parsed, console)
 
@@ -93,13 +113,12 @@ def run_transfers(
             job_options(matching),
             options.prefix,
             refine=options.refine,
-            optional=optional,
             accept_doubtful=options.accept_doubtful,
         )
         console.progress(0.0, "Reading files")
         source, target = load_pair(parsed, report)
         context = bpy.context
-        job = TransferJob(context, source, [target], lambda: make(options, (source, target)), settings)
+        job = start(options, (source, target), settings)
         drive(job, context, console)
         carried = job.finish(context)
         outcome = carried[0].outcome
@@ -109,6 +128,11 @@ def run_transfers(
         refresh(cast("bpy.types.Scene", context.scene))
         remember_transfer(context, source.name, carried)
         report.add_carried(carried)
+        if finish is not None:
+            if outcome is not None:
+                report.add_match(outcome.stored)
+            finish(report, (source, target), carried)
+            return
         prefix = options.prefix if outcome is None else matching.prefix
         save_results(parsed, report, (source, target), prefix, console, clean=True)
 

@@ -13,7 +13,7 @@ from .command import EXIT_CODES
 from .match import add_pair_arguments, add_result_options
 from .options import add_options
 from .reports import add_report_options
-from .retarget import NOT_OF_THE_MATCH, run_transfers
+from .retarget import NOT_OF_THE_MATCH, run_transfers, transferring
 
 if TYPE_CHECKING:
     import argparse
@@ -46,7 +46,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Fit and write."""
-    return run_transfers(parsed, console, "wear", _transfers, optional=False)
+    return run_transfers(parsed, console, "wear", transferring(_transfers, optional=False))
 
 
 def _transfers(options: Any, pair: tuple[Side, Side]) -> list[Transfer]:  # noqa: ANN401 - stands for the operator

@@ -13,11 +13,13 @@ from mathutils import Matrix, Quaternion, Vector
 
 from ...engine import BonePairing
 from ..common.errors import ObjectError
+from ..common.file_writing import write_whole
 from ..scene.armatures import armature_of
 from ..scene.motion.rigs import object_rotation, own_skeleton
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -27,10 +29,10 @@ __all__ = [
     "bone_pairs_of",
     "clear_rows",
     "held_pairs",
+    "load_pairs",
     "pairing_of",
-    "pairs_from_text",
-    "pairs_to_text",
     "rows_of",
+    "save_pairs",
     "write_pairing",
 ]
 
@@ -202,13 +204,13 @@ def clear_rows(scene: bpy.types.Scene, rigs: tuple[bpy.types.Object, bpy.types.O
     return len(gone)
 
 
-def pairs_to_text(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> str:
-    """Write the table of two armatures as JSON.
+def save_pairs(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object, path: Path) -> None:
+    """Write the table of two armatures into a file, as JSON.
 
     Raises
     ------
     ObjectError
-        If it is empty.
+        If it is empty, or the file cannot be written.
     """
     rows = rows_of(scene, source, target)
     if not rows:
@@ -219,13 +221,13 @@ def pairs_to_text(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.
         for row in rows
     ]
     text = {"format": _FORMAT, "version": _VERSION, "source": source.name, "target": target.name, "pairs": pairs}
-    return json.dumps(text, indent=1)
+    write_whole(path, json.dumps(text, indent=1).encode("utf8"))
 
 
-def pairs_from_text(
-    scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object, text: str
+def load_pairs(
+    scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object, path: Path
 ) -> tuple[int, list[str]]:
-    """Read a table from JSON in place of that of two armatures.
+    """Read a table from a file in place of that of two armatures.
 
     Returns
     -------
@@ -237,13 +239,15 @@ def pairs_from_text(
     Raises
     ------
     ObjectError
-        If it is no such text, or no pair fits; nothing is changed then.
+        If it is no such file, or no pair fits; nothing is changed then.
     """
     try:
-        read = json.loads(text)
+        read = json.loads(path.read_text(encoding="utf8"))
         if read["format"] != _FORMAT or read["version"] != _VERSION:
             raise ValueError  # noqa: TRY301 - told below
         pairs = [_checked(pair) for pair in read["pairs"]]
+    except (OSError, UnicodeDecodeError) as error:
+        raise ObjectError(f'The file "{path}" cannot be read: {error}') from error
     except (ValueError, KeyError, TypeError) as error:
         raise ObjectError("The file holds no pairs of bones. Choose one that was exported from HierMatch.") from error
     bones = [set(armature_of(rig).bones.keys()) for rig in (source, target)]

@@ -21,7 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = ["COMMANDS", "Pair", "read_manifest", "take_shard"]
 
-COMMANDS = {"match": ("match",), "retarget": ("retarget", "match"), "wear": ("wear", "match")}
+COMMANDS = {
+    "match": ("match",),
+    "retarget": ("retarget", "match"),
+    "motion": ("retarget_action", "match"),
+    "wear": ("wear", "match"),
+}
 """For each subcommand that a batch can run, the operators whose options it takes; the first of a name counts."""
 
 _FIXED = ("name", "command", "source", "target", "output", "map")
@@ -190,8 +195,8 @@ def _pair(number: int, row: Mapping[str, str], defaults: Mapping[str, str], comm
 
 def _operator_of(command: str, name: str) -> str | None:
     """Return the operator that an option of a subcommand belongs to; None if it has no such option."""
-    for operator in COMMANDS.get(command, ()):
-        own = operator == command
+    for number, operator in enumerate(COMMANDS.get(command, ())):
+        own = number == 0
         if name in option_names(operator) and (own or name not in NOT_OF_THE_MATCH):
             return operator
     return None

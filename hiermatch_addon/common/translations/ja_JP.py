@@ -1080,7 +1080,7 @@ MESSAGES: Final[dict[str, str]] = {
     "By how much reduced keys may change a rotation": "キーの削減で回転がどれだけ変わってよいか",
     "Actions": "アクション",
     "Which actions of the source are carried over": "ソースのどのアクションを移すか",
-    "The one that the source plays": "ソースが再生しているもの",
+    "The one that the source plays, or the only one that it has": "ソースが再生しているもの、または唯一のもの",
     "All actions of the file that move bones of the source": "ソースのボーンを動かす、ファイル内のすべてのアクション",
     "Keys": "キー",
     "At which frames the new action gets keys": "新しいアクションがどのフレームにキーを持つか",
@@ -1222,6 +1222,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Carrying motion over": "モーションを移しています",
     '"{0}" has no action that moves its bones. Give it one, or name an action.': (
         '"{0}"にはボーンを動かすアクションがありません。割り当てるか、アクションを指定してください。'
+    ),
+    '"{0}" plays no action. Name one of these, or choose all: {1}.': (
+        '"{0}"はアクションを再生していません。次のいずれかを指定するか、すべてを選んでください：{1}。'
     ),
     'The action "{0}" moves no bone of "{1}". Choose one that does.': (
         'アクション"{0}"は"{1}"のボーンを動かしません。動かすものを選んでください。'

@@ -894,7 +894,7 @@ MESSAGES: Final[dict[str, str]] = {
     "By how much reduced keys may change a rotation": "精简关键帧时旋转允许改变的量",
     "Actions": "动作",
     "Which actions of the source are carried over": "传递源的哪些动作",
-    "The one that the source plays": "源正在播放的动作",
+    "The one that the source plays, or the only one that it has": "源正在播放的动作，或其唯一的动作",
     "All actions of the file that move bones of the source": "文件中所有移动源骨骼的动作",
     "Keys": "关键帧",
     "At which frames the new action gets keys": "新动作在哪些帧上有关键帧",
@@ -1008,6 +1008,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Carrying motion over": "正在传递运动",
     '"{0}" has no action that moves its bones. Give it one, or name an action.': (
         '"{0}" 没有移动其骨骼的动作。请为其指定一个，或给出动作名称。'
+    ),
+    '"{0}" plays no action. Name one of these, or choose all: {1}.': (
+        '"{0}" 没有播放任何动作。请指定其中之一，或选择全部：{1}。'
     ),
     'The action "{0}" moves no bone of "{1}". Choose one that does.': (
         '动作 "{0}" 不移动 "{1}" 的任何骨骼。请选择会移动的动作。'

@@ -11,9 +11,8 @@ import bpy
 
 from ...common.access import window_manager_of
 from ...common.errors import ObjectError
-from ...common.file_writing import write_whole
 from ...common.phrases import listed
-from ...properties.bone_pairs import pairs_from_text, pairs_to_text
+from ...properties.bone_pairs import load_pairs, save_pairs
 from .edit_bone_pairs import PairEditor
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ class HIERMATCH_OT_export_bone_pairs(_FileOperator, bpy.types.Operator):
     def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
         path = self._path()
         path = path if path.suffix else path.with_suffix(".json")
-        write_whole(path, pairs_to_text(cast("bpy.types.Scene", context.scene), *rigs).encode("utf8"))
+        save_pairs(cast("bpy.types.Scene", context.scene), *rigs, path)
         return f'The pairs of bones were saved to "{path}"'
 
 
@@ -81,12 +80,7 @@ class HIERMATCH_OT_import_bone_pairs(_FileOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
-        path = self._path()
-        try:
-            text = path.read_text(encoding="utf8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise ObjectError(f'The file "{path}" cannot be read: {error}') from error
-        count, missing = pairs_from_text(cast("bpy.types.Scene", context.scene), *rigs, text)
+        count, missing = load_pairs(cast("bpy.types.Scene", context.scene), *rigs, self._path())
         if missing:
             return f"{count} pairs were loaded. These bones are missing: {listed(missing)}"
         return f"{count} pairs were loaded"

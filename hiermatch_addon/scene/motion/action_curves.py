@@ -49,8 +49,26 @@ def named_action(name: str) -> bpy.types.Action:
 
 
 def actions_of(armature: bpy.types.Object) -> list[bpy.types.Action]:
-    """Return all actions of the file that move bones of an armature."""
-    return [action for action in bpy.data.actions if any(True for _ in bone_curves(action, armature))]
+    """Return all actions of the file that move bones of an armature.
+
+    Where rigs have bones of the same names, what others play and it does not is theirs.
+    """
+    others = {name for obj in bpy.data.objects if obj.type == "ARMATURE" and obj != armature for name in _playing(obj)}
+    theirs = others - set(_playing(armature))
+    return [
+        action
+        for action in bpy.data.actions
+        if action.name not in theirs and any(True for _ in bone_curves(action, armature))
+    ]
+
+
+def _playing(armature: bpy.types.Object) -> list[str]:
+    """Names of the actions that an armature plays, or has on a track of the NLA editor."""
+    animation = armature.animation_data
+    if animation is None:
+        return []
+    strips = [strip.action for track in animation.nla_tracks for strip in track.strips]
+    return [action.name for action in (animation.action, *strips) if action is not None]
 
 
 def slot_for(action: bpy.types.Action, armature: bpy.types.Object) -> Any:  # noqa: ANN401 - new in Blender 4.4

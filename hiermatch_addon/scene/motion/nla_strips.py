@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 from .action_curves import slot_for
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     import bpy
 
-__all__ = ["copy_strips", "strip_actions"]
+__all__ = ["add_tracks", "copy_strips", "strip_actions"]
 
 _TRACK = ("mute", "lock")
 _STRIP = (
@@ -38,6 +38,25 @@ def strip_actions(source: bpy.types.Object) -> list[str]:
     animation = source.animation_data
     tracks = animation.nla_tracks if animation is not None else ()
     return list(dict.fromkeys(strip.action.name for track in tracks for strip in track.strips if strip.action))
+
+
+def add_tracks(rig: bpy.types.Object, actions: Iterable[bpy.types.Action]) -> None:
+    """Put actions, and the one that is played, on tracks of their own, which are called as they are.
+
+    Those on a track already stay where they are.
+    """
+    animation: Any = rig.animation_data or rig.animation_data_create()
+    played, there = animation.action, strip_actions(rig)
+    animation.action = None
+    for action in dict.fromkeys([*([played] if played is not None else []), *actions]):
+        if action.name in there:
+            continue
+        track = animation.nla_tracks.new()
+        track.name = action.name
+        strip = track.strips.new(action.name, int(action.frame_range[0]), action)
+        slot = slot_for(action, rig)
+        if slot is not None:
+            strip.action_slot = slot
 
 
 def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mapping[str, bpy.types.Action]) -> None:

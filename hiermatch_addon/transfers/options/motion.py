@@ -12,6 +12,7 @@ import bpy
 
 from ....engine import MotionSettings
 from ...common.errors import ObjectError
+from ...common.phrases import listed
 from ...scene.motion.action_curves import actions_of, bone_curves, named_action, played_action
 from ...scene.motion.nla_strips import strip_actions
 
@@ -62,7 +63,7 @@ class MotionOptions:
             name="Actions",
             description="Which actions of the source are carried over",
             items=[
-                ("ACTIVE", "Active", "The one that the source plays"),
+                ("ACTIVE", "Active", "The one that the source plays, or the only one that it has"),
                 ("ALL", "All", "All actions of the file that move bones of the source"),
             ],
             default="ACTIVE",
@@ -141,6 +142,9 @@ def motion_plan(scene: bpy.types.Scene, options: MotionOptions, rig: bpy.types.O
         known = {action.name for action in actions_of(rig)}
         names = list(dict.fromkeys([*names, *(name for name in strip_actions(rig) if name in known)]))
     if not names:
+        found = [action.name for action in actions_of(rig)]
+        if found:
+            raise ObjectError(f'"{rig.name}" plays no action. Name one of these, or choose all: {listed(found)}.')
         raise ObjectError(f'"{rig.name}" has no action that moves its bones. Give it one, or name an action.')
     settings = MotionSettings(
         feet=options.keep_feet,
@@ -161,7 +165,10 @@ def _wanted(options: MotionOptions, rig: bpy.types.Object) -> list[str]:
     if options.actions == "ALL":
         return [action.name for action in actions_of(rig)]
     played = played_action(rig)
-    return [played.name] if played is not None and _moves(played, rig) else []
+    if played is not None and _moves(played, rig):
+        return [played.name]
+    found = [action.name for action in actions_of(rig)]
+    return found if len(found) == 1 else []
 
 
 def _named(text: str, rig: bpy.types.Object) -> list[str]:

@@ -19,7 +19,7 @@ from hiermatch.hiermatch_addon.command_line.batches.ledger import Ledger, summar
 from hiermatch.hiermatch_addon.command_line.batches.manifest import read_manifest, take_shard
 from hiermatch.hiermatch_addon.command_line.command import UsageError
 from hiermatch.hiermatch_addon.command_line.outputs import save
-from hiermatch.hiermatch_addon.command_line.program import main
+from hiermatch.hiermatch_addon.command_line.program import main, make_parser
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 
 from tests.addon.conftest import ROOT
@@ -242,6 +242,17 @@ def test_tables_are_read_as_programs_write_them(tmp_path, delimiter):
     assert pair.outputs == (str(tmp_path / "o" / "x.fbx"), str(tmp_path / "o" / "x.blend"))
     assert pair.options == (("points", "99"), ("weight_limit", "4"), ("weight_mix", "0.5"))
     assert pair.arguments()[-3:] == ["--points=99", "--weight-limit=4", "--weight-mix=0.5"]
+
+
+def test_motion_has_a_row_of_its_own(tmp_path):
+    path = tmp_path / "pairs.csv"
+    path.write_text("source,target,output,command,action,keep_feet\na.glb,b.glb,out.glb,motion,Walk*,true\n")
+    (pair,) = read_manifest(path, {"points": "32", "weight_limit": "4"}, "match")
+    arguments = pair.arguments()
+    assert arguments[0] == "motion"
+    assert set(arguments[4:]) == {"--action=Walk*", "--keep-feet", "--points=32"}
+    parsed = make_parser().parse_args(arguments)
+    assert (parsed.action, parsed.keep_feet, parsed.points) == ("Walk*", True, 32)
 
 
 def test_json_has_options_for_all(tmp_path):

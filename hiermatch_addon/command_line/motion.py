@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The subcommand that carries motion from one rig to another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+
+from ..properties.bone_pairs import load_pairs, save_pairs
+from ..scene.motion.rigs import rig_of, two_rigs
+from ..transfers.motion.motion_job import MotionJob
+from ..transfers.options.motion import motion_plan
+from .command import EXIT_CODES
+from .match import add_output_option, add_pair_arguments, save_outputs
+from .options import add_options
+from .outputs import MOVING_KINDS
+from .reports import add_report_options
+from .retarget import NOT_OF_THE_MATCH, run_transfers
+
+if TYPE_CHECKING:
+    import argparse
+
+    from ..jobs.transfer_job import Carried, TransferOptions
+    from ..scene.character import Side
+    from .command import ExitCode
+    from .console import Console
+    from .reports import Report
+
+__all__ = ["add_commands"]
+
+
+def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
+    """Add it."""
+    parser = commands.add_parser(
+        "motion",
+        help="carry actions from one rig to another, whatever its bones are called",
+        description="Pair the bones of two rigs by the surface that they move, if they are not paired yet, and carry "
+        "actions of the source's over. Bodies that carry no match yet are matched first.",
+        usage="%(prog)s SOURCE TARGET --output FILE [--action NAME] [options]",
+        epilog=EXIT_CODES,
+    )
+    add_pair_arguments(parser)
+    group = parser.add_argument_group("what is written")
+    add_output_option(group, "the target with its new clips", MOVING_KINDS)
+    group.add_argument("--write-pairs", type=Path, metavar="FILE.json", help="Write the pairs of bones as well.")
+    add_report_options(parser)
+    add_options(parser, "retarget_action", title="what is carried over")
+    parser.add_argument(
+        "--pairs",
+        type=Path,
+        metavar="FILE.json",
+        help="Pairs of bones that were written before. With them, neither side needs a mesh.",
+    )
+    add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")
+    parser.set_defaults(run=_run)
+
+
+def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
+    """Carry motion over and write."""
+    known: set[bpy.types.Action] = set()
+
+    def start(options: Any, pair: tuple[Side, Side], how: TransferOptions) -> MotionJob:  # noqa: ANN401 - the operator
+        scene, rigs = cast("bpy.types.Scene", bpy.context.scene), two_rigs(*pair, written=True)
+        if parsed.pairs is not None:
+            load_pairs(scene, *rigs, parsed.pairs)
+        known.update(bpy.data.actions)
+        return MotionJob(bpy.context, pair[0], [pair[1]], motion_plan(scene, options, rigs[0]), how)
+
+    def finish(report: Report, pair: tuple[Side, Side], _carried: list[Carried]) -> None:
+        scene, rigs = cast("bpy.types.Scene", bpy.context.scene), (rig_of(pair[0]), rig_of(pair[1]))
+        if parsed.write_pairs is not None:
+            save_pairs(scene, *rigs, parsed.write_pairs.absolute())
+            report.written.append(str(parsed.write_pairs.absolute()))
+        clips = [action for action in bpy.data.actions if action not in known]
+        save_outputs(parsed, report, pair[1], console, clean=True, clips=clips)
+
+    return run_transfers(parsed, console, "retarget_action", start, finish)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The subcommand `motion`."""
+
+from __future__ import annotations
+
+import json
+
+import bpy
+import pytest
+from hiermatch.hiermatch_addon.command_line.program import main
+
+from tests.addon.characters import add_action, add_person, match_at_once
+
+
+@pytest.fixture
+def folder(monkeypatch, tmp_path):
+    """A folder with a file of two persons, and one for each of them; bodies are matched without work."""
+    match_at_once(monkeypatch)
+    for name, rig in (("A", "plain"), ("B", "renamed")):
+        bpy.ops.wm.read_homefile(use_empty=True)
+        armature, _ = add_person(name, rig)
+        if name == "A":
+            for action in ("Walk", "Walk Fast", "Nod"):
+                add_action(armature, action).use_fake_user = True
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / f"{name}.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "A.blend"))
+    add_person("B", "renamed")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "both.blend"))
+    return tmp_path
+
+
+def clips_of(path):
+    """Names of the animations in a .glb, and the armatures."""
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.import_scene.gltf(filepath=str(path))
+    return {action.name for action in bpy.data.actions}, [
+        obj.name for obj in bpy.data.objects if obj.type == "ARMATURE"
+    ]
+
+
+def test_actions_by_a_pattern_go_to_another_rig_of_the_same_file(folder):
+    both = str(folder / "both.blend")
+    outputs = [f"--output={folder / name}" for name in ("out.glb", "out.blend")]
+    code = main(["motion", f"{both}:A", f"{both}:B", "--action=Walk*", *outputs, f"--report={folder / 'report.json'}"])
+    assert code == 0
+    report = json.loads((folder / "report.json").read_text())
+    assert (report["command"], report["status"]) == ("motion", "done")
+    assert report["carried"][0]["done"][-1] == "2 actions"
+    assert report["match"]["quality"]["confidence"] == 0.9
+    clips, rigs = clips_of(folder / "out.glb")
+    assert clips == {"Walk B", "Walk Fast B"}
+    assert rigs == ["B"]
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "out.blend"))
+    assert {"Walk", "Nod", "Walk B", "Walk Fast B"} <= set(bpy.data.actions.keys())
+    assert bpy.data.objects["B"].animation_data is None  # the tracks are for the other file only
+
+
+def test_files_of_one_character_each_need_no_names_and_the_action_is_played(folder):
+    arguments = [str(folder / f"{name}.blend") for name in "AB"]
+    options = ["--in-place", "--keying=all", f"--output={folder / 'out.blend'}"]
+    assert main(["motion", *arguments, "--action=Nod", *options]) == 0
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "out.blend"))
+    action = bpy.data.objects["B"].animation_data.action
+    assert action.name == "Nod B"
+    assert len({obj.name for obj in bpy.data.objects if obj.type == "MESH"}) == 4
+
+
+def test_pairs_in_a_file_are_enough_for_an_armature_without_a_mesh(folder, capsys):
+    both, pairs = str(folder / "both.blend"), folder / "pairs.json"
+    assert main(["motion", f"{both}:A", f"{both}:B", "--action=Nod", f"--write-pairs={pairs}", "--quiet"]) == 0
+    assert len(json.loads(pairs.read_text())["pairs"]) == 22
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "A.blend"))
+    for part in list(bpy.data.objects["A"].children):
+        bpy.data.objects.remove(part)
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "bare.blend"))
+    arguments = [str(folder / "bare.blend"), str(folder / "B.blend"), "--action=Nod", f"--output={folder / 'out.glb'}"]
+    assert main(["motion", *arguments]) == 1
+    assert 'The armature "A" moves no mesh' in capsys.readouterr().err
+    assert main(["motion", *arguments, f"--pairs={pairs}"]) == 0
+    assert clips_of(folder / "out.glb") == ({"Nod B"}, ["B"])
+
+
+def test_what_cannot_be_done_is_told(folder, capsys, monkeypatch):
+    both = str(folder / "both.blend")
+    output = f"--output={folder / 'out.glb'}"
+    for names, options, code, said in (
+        ("AB", ["--action=Jump"], 1, 'There is no action called "Jump"'),
+        ("AB", ["--action=Jump*"], 1, 'fits the pattern "Jump*"'),
+        ("BA", [], 1, '"B" has no action that moves its bones'),
+        ("AA", [], 1, 'Source and Target are both "A"'),
+        ("AB", [f"--pairs={folder / 'none.json'}"], 1, "cannot be read"),
+        ("AB", [f"--output={folder / 'out.obj'}"], 2, "does not end with .blend, .fbx, .glb, .gltf"),
+    ):
+        assert main(["motion", *(f"{both}:{name}" for name in names), output, *options]) == code
+        assert said in capsys.readouterr().err
+    match_at_once(monkeypatch, confidence=0.1)
+    arguments = ["motion", f"{both}:A", f"{both}:B", "--action=Nod", output]
+    assert main(arguments) == 1
+    assert "is doubtful, and nothing was written" in capsys.readouterr().err
+    assert not (folder / "out.glb").exists()
+    assert main([*arguments, "--accept-doubtful", "--strict"]) == 3
+    assert (folder / "out.glb").exists()
