@@ -13,7 +13,7 @@ from mathutils import Matrix, Quaternion, Vector
 
 from ...engine import BonePairing
 from ..common.errors import ObjectError
-from ..common.file_writing import write_whole
+from ..common.file_writing import read_text, write_whole
 from ..scene.armatures import armature_of
 from ..scene.motion.rigs import object_rotation, own_skeleton
 
@@ -241,13 +241,12 @@ def load_pairs(
     ObjectError
         If it is no such file, or no pair fits; nothing is changed then.
     """
+    text = read_text(path)
     try:
-        read = json.loads(path.read_text(encoding="utf8"))
+        read = json.loads(text)
         if read["format"] != _FORMAT or read["version"] != _VERSION:
             raise ValueError  # noqa: TRY301 - told below
         pairs = [_checked(pair) for pair in read["pairs"]]
-    except (OSError, UnicodeDecodeError) as error:
-        raise ObjectError(f'The file "{path}" cannot be read: {error}') from error
     except (ValueError, KeyError, TypeError) as error:
         raise ObjectError("The file holds no pairs of bones. Choose one that was exported from HierMatch.") from error
     bones = [set(armature_of(rig).bones.keys()) for rig in (source, target)]

@@ -504,8 +504,8 @@ MESSAGES: Final[dict[str, str]] = {
     "Name of the object that is the source; if empty, the one picked in the panel or else the active object": (
         "ソースであるオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
     ),
-    "Name of the object that is the target; if empty, the one picked in the panel or else the other selected mesh": (
-        "ターゲットであるオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ"
+    "Name of the object that is the target; if empty, the one picked in the panel or else the other selected one": (
+        "ターゲットとなるオブジェクトの名前。空なら、パネルで選んだもの、なければ選択したもう一方"
     ),
     "Pick Landmarks": "ランドマークを指定",
     "Guide Me": "案内に従う",
@@ -571,7 +571,7 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Warn before a file is overwritten": "ファイルを上書きする前に警告します",
     "File": "ファイル",
-    "Path of the file of landmarks, a JSON text": "ランドマークのファイルのパス。JSONテキストです",
+    "Path of the file, a JSON text": "ファイルのパス（JSONテキスト）",
     "Which files are listed": "表示するファイル",
     "Load Landmarks": "ランドマークを読み込み",
     "Load landmarks of source and target from a file": "ソースとターゲットのランドマークをファイルから読み込みます",
@@ -1148,15 +1148,8 @@ MESSAGES: Final[dict[str, str]] = {
     "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone": (
         "二つのボーンを手でペアにしてロックします。ソースのボーンがなければ、ターゲットのボーンは単独のままです"
     ),
-    "Name of the target's armature, or of what it moves; if empty, the one picked in the panel or else selected": (
-        "ターゲットのアーマチュア、またはそれが動かすものの名前。空なら、パネルで選んだもの、なければ選択したもの"
-    ),
     "Bone of the target; if empty, the active bones of both armatures are paired": (
         "ターゲットのボーン。空なら、両方のアーマチュアのアクティブなボーンをペアにします"
-    ),
-    "Name of the source's armature, or of what it moves; if empty, the one picked in the panel or else "
-    "the active one": (
-        "ソースのアーマチュア、またはそれが動かすものの名前。空なら、パネルで選んだもの、なければアクティブなもの"
     ),
     "Remove Bone Pair": "ボーンのペアを削除",
     "Take a pair of bones out of the table": "ボーンのペアを表から取り除きます",
@@ -1170,7 +1163,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Save the pairs of bones of two armatures to a file, for other files with the same rigs": (
         "二つのアーマチュアのボーンのペアをファイルに保存します。同じリグを使う他のファイルのためです"
     ),
-    "Path of the file of pairs, a JSON text": "ペアのファイルのパス。JSONテキストです",
     "Import Bone Pairs": "ボーンのペアを読み込み",
     "Load pairs of bones from a file in place of those of two armatures": (
         "二つのアーマチュアのペアの代わりに、ファイルからボーンのペアを読み込みます"
@@ -1211,10 +1203,6 @@ MESSAGES: Final[dict[str, str]] = {
     'The bones of "{0}" were changed meanwhile. Nothing was written.': (
         '"{0}"のボーンがその間に変更されました。何も書き込まれていません。'
     ),
-    "No file is named. Choose where the pairs of bones are kept.": (
-        "ファイルが指定されていません。ボーンのペアの保存先を選んでください。"
-    ),
-    'The file "{0}" cannot be read: {1}': 'ファイル"{0}"を読み込めません: {1}',
     '"{0}" of "{1}" is not in the table of pairs.': '"{1}"の"{0}"はペアの表にありません。',
     "Which bones are meant is open. Make one bone of each armature active, in Pose Mode.": (
         "どのボーンか不明です。ポーズモードで、それぞれのアーマチュアのボーンを一つアクティブにしてください。"
@@ -1392,9 +1380,7 @@ MESSAGES: Final[dict[str, str]] = {
         "切り替えるマッチングがありません。先に二つのメッシュをマッチングするか、マッチングを持つメッシュを指定"
         "してください。"
     ),
-    "No file is named. Choose where the landmarks are kept.": (
-        "ファイルが指定されていません。ランドマークの保存場所を選んでください。"
-    ),
+    "No file is named. Choose one.": "ファイルが指定されていません。選んでください。",
     "Two mesh objects are needed in this view layer": "このビューレイヤーに二つのメッシュオブジェクトが必要です",
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "クリックできるものがありません。二つの頂点を指定してhiermatch.add_landmarkを使ってください。"
@@ -2135,8 +2121,8 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" cannot be written: {1}. Choose another place.': "「{0}」に書き込めません：{1}。別の場所を選んでください。",
     '"{0}" cannot be read: {1}. Choose another file.': "「{0}」を読み込めません：{1}。別のファイルを選んでください。",
     '"{0}" cannot be read: {1}.': "「{0}」を読み込めません：{1}。",
-    '"{0}" is no text. Choose a file that Save Landmarks has written.': (
-        "「{0}」はテキストではありません。ランドマークの保存で書き出したファイルを選んでください。"
+    '"{0}" is no text. Choose a file that HierMatch has written.': (
+        '"{0}"はテキストではありません。HierMatchが書き出したファイルを選んでください。'
     ),
     '"{0}" is no name for a match file. Let it end with .npz or .json.': (
         "「{0}」は対応ファイルの名前ではありません。末尾を.npzか.jsonにしてください。"

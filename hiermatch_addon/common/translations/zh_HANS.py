@@ -427,8 +427,8 @@ MESSAGES: Final[dict[str, str]] = {
     "Name of the object that is the source; if empty, the one picked in the panel or else the active object": (
         "作为源的物体的名称；为空时使用面板中选取的物体，否则使用活动物体"
     ),
-    "Name of the object that is the target; if empty, the one picked in the panel or else the other selected mesh": (
-        "作为目标的物体的名称；为空时使用面板中选取的物体，否则使用另一个选中的网格"
+    "Name of the object that is the target; if empty, the one picked in the panel or else the other selected one": (
+        "作为目标的物体的名称；若为空，则为面板中所选的，否则为另一个选中的物体"
     ),
     "Pick Landmarks": "拾取地标",
     "Guide Me": "引导我",
@@ -472,7 +472,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Save the landmarks that source and target have in common to a file": "将源与目标共有的地标保存到文件",
     "Warn before a file is overwritten": "覆盖文件之前发出警告",
     "File": "文件",
-    "Path of the file of landmarks, a JSON text": "地标文件的路径，为 JSON 文本",
+    "Path of the file, a JSON text": "文件路径（JSON 文本）",
     "Which files are listed": "列出哪些文件",
     "Load Landmarks": "加载地标",
     "Load landmarks of source and target from a file": "从文件加载源与目标的地标",
@@ -952,14 +952,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone": (
         "手动配对两个骨骼并锁定；没有源骨骼时，目标骨骼保持单独"
     ),
-    "Name of the target's armature, or of what it moves; if empty, the one picked in the panel or else selected": (
-        "目标骨架或其所移动之物的名称；若为空，则为面板中所选的，否则为选中的"
-    ),
     "Bone of the target; if empty, the active bones of both armatures are paired": (
         "目标的骨骼；若为空，则将两个骨架的活动骨骼配对"
     ),
-    "Name of the source's armature, or of what it moves; if empty, the one picked in the panel or else "
-    "the active one": ("源骨架或其所移动之物的名称；若为空，则为面板中所选的，否则为活动的"),
     "Remove Bone Pair": "移除骨骼配对",
     "Take a pair of bones out of the table": "将一对骨骼从表中移除",
     "Remove its pair with this bone only; if empty, all": "只移除与此骨骼的配对；若为空，则全部移除",
@@ -972,7 +967,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Save the pairs of bones of two armatures to a file, for other files with the same rigs": (
         "将两个骨架的骨骼配对保存到文件，供使用相同绑定的其他文件使用"
     ),
-    "Path of the file of pairs, a JSON text": "配对文件的路径，为 JSON 文本",
     "Import Bone Pairs": "导入骨骼配对",
     "Load pairs of bones from a file in place of those of two armatures": (
         "从文件加载骨骼配对，取代两个骨架现有的配对"
@@ -999,8 +993,6 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" 没有任何骨骼带动 "{1}" 的骨骼所带动的部位。请检查匹配，以及两个网格是否都有权重。'
     ),
     'The bones of "{0}" were changed meanwhile. Nothing was written.': '"{0}" 的骨骼在此期间被更改。未写入任何内容。',
-    "No file is named. Choose where the pairs of bones are kept.": "未指定文件。请选择骨骼配对的存放位置。",
-    'The file "{0}" cannot be read: {1}': '无法读取文件 "{0}"：{1}',
     '"{0}" of "{1}" is not in the table of pairs.': '"{1}" 的 "{0}" 不在配对表中。',
     "Which bones are meant is open. Make one bone of each armature active, in Pose Mode.": (
         "不清楚指的是哪些骨骼。请在姿态模式下将每个骨架的一个骨骼设为活动。"
@@ -1148,7 +1140,7 @@ MESSAGES: Final[dict[str, str]] = {
     "There is no match to flip. Match two meshes first, or name one that carries a match.": (
         "没有可切换的匹配。请先匹配两个网格，或指定一个带有匹配的网格。"
     ),
-    "No file is named. Choose where the landmarks are kept.": "未指定文件。请选择保存地标的位置。",
+    "No file is named. Choose one.": "没有指定文件。请选择一个。",
     "Two mesh objects are needed in this view layer": "此视图层中需要两个网格物体",
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "没有可点击的对象。请用两个顶点调用 hiermatch.add_landmark。"
@@ -1746,7 +1738,7 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" cannot be written: {1}. Choose another place.': "无法写入“{0}”：{1}。请选择其他位置。",
     '"{0}" cannot be read: {1}. Choose another file.': "无法读取“{0}”：{1}。请选择其他文件。",
     '"{0}" cannot be read: {1}.': "无法读取“{0}”：{1}。",
-    '"{0}" is no text. Choose a file that Save Landmarks has written.': "“{0}”不是文本。请选择由保存地标写出的文件。",
+    '"{0}" is no text. Choose a file that HierMatch has written.': "“{0}”不是文本。请选择由 HierMatch 写出的文件。",
     '"{0}" is no name for a match file. Let it end with .npz or .json.': (
         "“{0}”不是匹配文件的名称。请以 .npz 或 .json 结尾。"
     ),

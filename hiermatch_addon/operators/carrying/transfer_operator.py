@@ -23,7 +23,7 @@ from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import pick_named, remember
 from ...scene.pair import name_of
 from ...transfers.retarget_properties import remember_transfer
-from ..picking import pick_sides
+from ..pair_operator import pick_sides
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems

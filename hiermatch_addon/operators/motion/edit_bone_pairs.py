@@ -4,69 +4,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import cast
 
 import bpy
 
-from ....engine import HierMatchError
+from ...common.access import window_manager_of
 from ...common.errors import ObjectError
-from ...common.translated_text import translated
 from ...jobs.running import is_running
 from ...properties.bone_pairs import add_row, bone_pairs_of, clear_rows, rows_of
 from ...scene.motion.rigs import rig_of
 from ...transfers.retarget_properties import retarget_of
-from ..picking import pick_sides
-
-if TYPE_CHECKING:
-    from bpy.stub_internal.rna_enums import OperatorReturnItems
+from ..pair_operator import PairOperator, pick_sides
 
 __all__ = ["HIERMATCH_OT_add_bone_pair", "HIERMATCH_OT_clear_bone_pairs", "HIERMATCH_OT_remove_bone_pair", "PairEditor"]
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
-
-class PairEditor:
+class PairEditor(PairOperator):
     """What operators on the table of two armatures have in common."""
-
-    __annotations__ = {
-        "source": _props.StringProperty(
-            name="Source",
-            description="Name of the source's armature, or of what it moves; if empty, the one picked in the panel or "
-            "else the active one",
-            options={"SKIP_SAVE"},
-        ),
-        "target": _props.StringProperty(
-            name="Target",
-            description="Name of the target's armature, or of what it moves; if empty, the one picked in the panel or "
-            "else selected",
-            options={"SKIP_SAVE"},
-        ),
-    }
-
-    if TYPE_CHECKING:
-        source: str
-        target: str
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it when nothing else is running."""
-        return not is_running(cast("bpy.types.WindowManager", context.window_manager))
+        return not is_running(window_manager_of(context))
 
-    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
-        """Do it, and report."""
-        operator = cast("bpy.types.Operator", self)
-        try:
-            source, targets, _ = pick_sides(context, self.source, [self.target] if self.target else [])
-            said = self._do(context, (rig_of(source), rig_of(targets[0])))
-        except HierMatchError as error:
-            operator.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
-        operator.report({"INFO"}, translated(said))
-        return {"FINISHED"}
-
-    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
-        """Do it to two armatures; return what was done."""
-        raise NotImplementedError
+    def _sides(self, context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object]:
+        source, targets, _ = pick_sides(context, self.source, [self.target] if self.target else [])
+        return rig_of(source), rig_of(targets[0])
 
 
 class HIERMATCH_OT_add_bone_pair(PairEditor, bpy.types.Operator):
@@ -86,15 +49,15 @@ class HIERMATCH_OT_add_bone_pair(PairEditor, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
+    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
         bones = self.source_bone, self.target_bone
         if not bones[1]:
-            active = [cast("bpy.types.Armature", rig.data).bones.active for rig in rigs]
+            active = [cast("bpy.types.Armature", rig.data).bones.active for rig in (source, target)]
             if active[0] is None or active[1] is None:
                 raise ObjectError("Which bones are meant is open. Make one bone of each armature active, in Pose Mode.")
             bones = active[0].name, active[1].name
         scene = cast("bpy.types.Scene", context.scene)
-        add_row(scene, rigs, bones)
+        add_row(scene, (source, target), bones)
         retarget_of(context).bone_pair = len(bone_pairs_of(scene)) - 1
         return f'Paired "{bones[0]}" with "{bones[1]}"' if bones[0] else f'"{bones[1]}" stays alone'
 
@@ -114,15 +77,15 @@ class HIERMATCH_OT_remove_bone_pair(PairEditor, bpy.types.Operator):
         name="Source Bone", description="Remove its pair with this bone only; if empty, all", options={"SKIP_SAVE"}
     )
 
-    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
+    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
         scene = cast("bpy.types.Scene", context.scene)
         gone = {
             row.as_pointer()
-            for row in rows_of(scene, *rigs)
+            for row in rows_of(scene, source, target)
             if row.target == self.target_bone and self.source_bone in {"", row.source}
         }
         if not gone:
-            raise ObjectError(f'"{self.target_bone}" of "{rigs[1].name}" is not in the table of pairs.')
+            raise ObjectError(f'"{self.target_bone}" of "{target.name}" is not in the table of pairs.')
         table = bone_pairs_of(scene)
         for number in [number for number, row in enumerate(table) if row.as_pointer() in gone][::-1]:
             table.remove(number)
@@ -139,6 +102,6 @@ class HIERMATCH_OT_clear_bone_pairs(PairEditor, bpy.types.Operator):
 
     locked: bpy.props.BoolProperty(name="Locked Too", description="Take locked pairs out as well")
 
-    def _do(self, context: bpy.types.Context, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> str:
-        count = clear_rows(cast("bpy.types.Scene", context.scene), rigs, locked=self.locked)
+    def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
+        count = clear_rows(cast("bpy.types.Scene", context.scene), (source, target), locked=self.locked)
         return f"{count} pairs were taken out of the table"

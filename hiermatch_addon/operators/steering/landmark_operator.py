@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# mypy: disable-error-code="valid-type"
 """Common base of the operators on the landmarks and matched points of two meshes."""
 
 from __future__ import annotations
@@ -8,7 +7,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ....engine import HierMatchError
 from ...common.access import window_manager_of
 from ...common.errors import ObjectError
 from ...common.translated_text import translated
@@ -17,19 +15,12 @@ from ...properties.panel_state import pick, picked, state_of
 from ...properties.steering_lists import sync_lists
 from ...scene.character import Character, parts_of
 from ...scene.pair import check_writable, find_pair
+from ..pair_operator import PairOperator
 
 if TYPE_CHECKING:
-    from bpy.stub_internal.rna_enums import OperatorReturnItems
-
     from ...scene.character import Side
 
-    _Operator = bpy.types.Operator
-else:
-    _Operator = object
-
 __all__ = ["LandmarkOperator", "pick_pair", "steerable_pair"]
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 def steerable_pair(context: bpy.types.Context, names: tuple[str, str] = ("", "")) -> tuple[Side, Side]:
@@ -78,31 +69,11 @@ def _handle(side: Side) -> bpy.types.ID | None:
     return None
 
 
-class LandmarkOperator(_Operator):
+class LandmarkOperator(PairOperator):
     """An operator on two meshes, in Object Mode or in Edit Mode; to be inherited from before `bpy.types.Operator`."""
 
-    __annotations__ = {
-        "source": _props.StringProperty(
-            name="Source",
-            description="Name of the object that is the source; if empty, the one picked in the panel or else the "
-            "active object",
-            options={"SKIP_SAVE"},
-        ),
-        "target": _props.StringProperty(
-            name="Target",
-            description="Name of the object that is the target; if empty, the one picked in the panel or else the "
-            "other selected mesh",
-            options={"SKIP_SAVE"},
-        ),
-    }
-
-    if TYPE_CHECKING:
-        source: str
-        target: str
-
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
-        """Do it, and return what to report."""
-        raise NotImplementedError
+    def _sides(self, context: bpy.types.Context) -> tuple[Side, Side]:
+        return steerable_pair(context, (self.source, self.target))
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -116,16 +87,6 @@ class LandmarkOperator(_Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
-        """Do it, bring the lists up to date, and report."""
-        try:
-            source, target = steerable_pair(context, (self.source, self.target))
-            done = self._do(context, source, target)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+    def _after(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         pick_pair(context, source, target)
         sync_lists(cast("bpy.types.Scene", context.scene))
-        if done:
-            self.report({"INFO"}, translated(done))
-        return {"FINISHED"}

@@ -397,6 +397,7 @@ class TestFiles:
         with pytest.raises(RuntimeError, match="no landmarks in common"):
             bpy.ops.hiermatch.save_landmarks(filepath=str(tmp_path / "none.json"))
         add(3, 5)
+        (tmp_path / "no folder").touch()
         with pytest.raises(RuntimeError, match="cannot be written"):
             bpy.ops.hiermatch.save_landmarks(filepath=str(tmp_path / "no folder" / "a.json"))
 
