@@ -199,6 +199,24 @@ def test_actions_are_named_by_patterns():
         carry(source="A", target="B", action="Jump*")
 
 
+def test_without_a_name_the_only_action_is_meant_and_what_others_play_is_theirs():
+    source, _ = add_person("A")
+    target, _ = add_person("B")  # its bones have the same names
+    add_action(source, "Wave").use_fake_user = True
+    source.animation_data_clear()
+    add_action(target, "Dance")
+    assert carry(source="A", target="B", assign=False) == {"FINISHED"}
+    assert set(bpy.data.actions.keys()) == {"Wave", "Dance", "Wave B"}
+    bpy.data.actions.remove(bpy.data.actions["Wave B"])
+    add_action(source, "Nod").use_fake_user = True
+    source.animation_data_clear()
+    with pytest.raises(RuntimeError, match=r'plays no action\. Name one of .*: "Nod", "Wave"'):
+        carry(source="A", target="B")
+    assert carry(source="A", target="B", actions="ALL") == {"FINISHED"}
+    assert {"Wave B", "Nod B"} <= set(bpy.data.actions.keys())
+    assert "Dance B" not in bpy.data.actions
+
+
 def snapshot(target):
     """What must stay as it is after a refusal."""
     return (
