@@ -40,6 +40,7 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
     ) -> None:
         """Draw a pair: both bones to pick, the score, and the lock."""
         row: Any = layout.row(align=True)
+        row.use_property_split = False  # the panel's own would leave the names no room
         if item.source_rig is not None and item.target_rig is not None:
             row.prop_search(item, "source", item.source_rig.data, "bones", text="", icon="BLANK1")
             row.prop_search(item, "target", item.target_rig.data, "bones", text="", icon="BLANK1")
