@@ -146,6 +146,11 @@ class Camera:
         panel = self.panel()
         self.save(name, [[self.look(seen(objects, len(panel))), panel]])
 
+    def save_beside(self, name: str, rows: list[list[Pixels]], panel: Pixels) -> None:
+        """Save pictures on a sheet, row by row, with the sidebar beside them."""
+        column = _stacked([_stacked(row, axis=1) for row in rows[::-1]], axis=0)
+        self.save(name, [[column, panel]])
+
     def save(self, name: str, rows: list[list[Pixels]]) -> None:
         """Save pictures on a sheet, row by row, as `name`.jpg."""
         sheet = _stacked([_stacked(row, axis=1) for row in rows[::-1]], axis=0)

@@ -25,6 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import page_first_match
 import page_install
+import page_motion
 import page_retargeting
 import page_scan
 import page_settings
@@ -42,6 +43,7 @@ PAGES = {
     "settings": page_settings.pictures,
     "steering": page_steering.pictures,
     "retargeting": page_retargeting.pictures,
+    "motion": page_motion.pictures,
     "scan": page_scan.pictures,
     "symmetry": page_symmetry.pictures,
 }

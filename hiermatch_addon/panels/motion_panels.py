@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 __all__ = ["HIERMATCH_PT_motion", "HIERMATCH_UL_bone_pairs"]
 
 
+_SCORE_WIDTH = 1.7
+"""Of the column of scores, in Blender's units of the interface."""
+
+
 class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
     """The list of pairs of bones."""
 
@@ -38,13 +42,13 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
         _active_data: Any,  # noqa: ANN401 - Blender's own
         _active_name: str,
     ) -> None:
-        """Draw a pair: both bones to pick, the score, and the lock."""
+        """Draw a pair: the names of both bones, the score, and the lock."""
         row: Any = layout.row(align=True)
-        row.use_property_split = False  # the panel's own would leave the names no room
-        if item.source_rig is not None and item.target_rig is not None:
-            row.prop_search(item, "source", item.source_rig.data, "bones", text="", icon="BLANK1")
-            row.prop_search(item, "target", item.target_rig.data, "bones", text="", icon="BLANK1")
-        row.label(text=f"{item.score:.2f}")
+        for name in ("source", "target"):
+            row.prop(item, name, text="", emboss=False)
+        score = row.row()
+        score.ui_units_x = _SCORE_WIDTH  # else it takes as much room as a name
+        score.label(text=f"{item.score:.2f}")
         row.prop(item, "locked", text="", icon="LOCKED" if item.locked else "UNLOCKED")
         button = row.operator("hiermatch.remove_bone_pair", text="", icon="X")
         button.source_bone, button.target_bone = item.source, item.target
@@ -114,6 +118,10 @@ def _draw_table(layout: Any, context: bpy.types.Context, options: Any) -> None: 
         layout.template_list(
             "HIERMATCH_UL_bone_pairs", "", scene, "hiermatch_bone_pairs", options, "bone_pair", rows=5, maxrows=14
         )
+        active = bone_pairs_of(scene)[min(options.bone_pair, len(bone_pairs_of(scene)) - 1)]
+        if _is_shown(active, rigs) and active.source_rig is not None and active.target_rig is not None:
+            layout.prop_search(active, "source", active.source_rig.data, "bones", text="Source")
+            layout.prop_search(active, "target", active.target_rig.data, "bones", text="Target")
     row = layout.row(align=True)
     row.operator("hiermatch.add_bone_pair", text="", icon="ADD")
     row.operator("hiermatch.export_bone_pairs", text="", icon="EXPORT")
