@@ -81,7 +81,7 @@ def match_at_once(monkeypatch, confidence=0.9):
     def steps(source, target, *_arguments, **_names):
         yield Progress(0.5, "Matching")
         maps = {"source_to_target": SurfaceMap.identity(target), "target_to_source": SurfaceMap.identity(source)}
-        return replace(made_up_result(source, target), mirrored=None, quality=quality, **maps)
+        return replace(made_up_result(source, target), quality=quality, **maps)
 
     monkeypatch.setattr(job, "match_steps", steps)
     fit = transfer_job.fit_rig_steps
