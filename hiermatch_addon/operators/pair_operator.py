@@ -18,7 +18,7 @@ from ..scene.character import side_of
 from ..scene.pair import active_side, left_out_note, named_side, selected_targets
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
@@ -54,17 +54,12 @@ class PairOperator(_Operator):
     if TYPE_CHECKING:
         source: str
         target: str
+        # With the context and what `_sides` has found: does it, and returns what to report.
+        _do: Callable[..., str]
 
-    def _sides(self, context: bpy.types.Context) -> tuple[Side, Side]:
-        """Find the two sides, and make sure that it can be done with them."""
+    def _sides(self, context: bpy.types.Context) -> tuple[Any, Any]:
+        """Find the two sides, or the armatures that they mean, and make sure that it can be done with them."""
         raise NotImplementedError
-
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
-        """Do it, and return what to report."""
-        raise NotImplementedError
-
-    def _after(self, context: bpy.types.Context, source: Side, target: Side) -> None:
-        """Bring up to date what shows it."""
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Do it, and report."""
@@ -74,7 +69,6 @@ class PairOperator(_Operator):
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
-        self._after(context, *sides)
         if done:
             self.report({"INFO"}, translated(done))
         return {"FINISHED"}

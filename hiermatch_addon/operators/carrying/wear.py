@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
     from ...jobs.transfer_job import TransferJob
     from ...scene.character import Side
+    from ...transfers.motion.motion_job import MotionJob
 
 __all__ = ["HIERMATCH_OT_wear"]
 
@@ -59,7 +60,7 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
 
     _chosen: tuple[str, ...] = ()
 
-    def _start(self, context: bpy.types.Context) -> TransferJob:
+    def _start(self, context: bpy.types.Context) -> TransferJob | MotionJob:
         """Find bodies and items, and read them."""
         self._chosen = tuple(item.name for item in self.items)
         if not self._chosen and self.collection:

@@ -55,7 +55,7 @@ class HIERMATCH_OT_add_landmark(LandmarkOperator, bpy.types.Operator):
             return {"FINISHED"}
         return self.execute(context)
 
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         """Add the landmark."""
         if self.source_vertex >= 0 and self.target_vertex >= 0:
             pair = self.source_vertex, self.target_vertex

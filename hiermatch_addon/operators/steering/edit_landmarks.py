@@ -52,7 +52,7 @@ class HIERMATCH_OT_remove_landmark(_OneLandmark, bpy.types.Operator):
     bl_description = "Remove a landmark from both meshes"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)
         remove_landmark(source, target, number)
         return f"Removed landmark {number}"
@@ -66,7 +66,7 @@ class HIERMATCH_OT_clear_landmarks(LandmarkOperator, bpy.types.Operator):
     bl_description = "Remove all landmarks that source and target have in common"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         return f"Removed {clear_landmarks(source, target)} landmarks"
 
 
@@ -80,7 +80,7 @@ class HIERMATCH_OT_switch_landmark(_OneLandmark, bpy.types.Operator):
 
     use: bpy.props.BoolProperty(name="Use", description="Whether matches are to keep to it", default=True)
 
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)
         switch_landmark(source, target, number, use=self.use)
         return f"Landmark {number} is {'on' if self.use else 'off'}"
@@ -94,7 +94,7 @@ class HIERMATCH_OT_select_landmark(_OneLandmark, bpy.types.Operator):
     bl_description = "Select the two vertices of a landmark, and nothing else of the two meshes"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)
         found = {landmark.number: landmark for landmark in find_landmarks(source, target)}
         if number not in found:

@@ -74,7 +74,7 @@ class HIERMATCH_OT_select_pair(_PairOperator, bpy.types.Operator):
     bl_description = "Select the vertices nearest to a matched point, and nothing else of the two meshes"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         row = self._row(context)
         select_on_side(source, [row.source])
         select_on_side(target, [row.target])
@@ -92,7 +92,7 @@ class HIERMATCH_OT_lock_pair(_PairOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         row = self._row(context)
         pair = (row.source, row.target)
         for landmark in find_landmarks(source, target):
@@ -111,7 +111,7 @@ class HIERMATCH_OT_remove_pair(_PairOperator, bpy.types.Operator):
     bl_description = "Remove the vertex groups of a matched point from both meshes; the dense map stays as it is"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         check_pair(view_layer_of(context), source, target)
         row = self._row(context)
         number, name = row.number, row.name

@@ -46,7 +46,7 @@ class HIERMATCH_OT_save_landmarks(_LandmarkFile, bpy.types.Operator):
         name="Check Existing", description="Warn before a file is overwritten", default=True, options={"HIDDEN"}
     )
 
-    def _do(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         path, landmarks = self._path(written=True), find_landmarks(source, target)
         if not landmarks:
             raise ObjectError(f'"{source.name}" and "{target.name}" have no landmarks in common. Add some first.')
@@ -69,7 +69,7 @@ class HIERMATCH_OT_load_landmarks(_LandmarkFile, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def _do(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
+    def _edit(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         path = self._path()
         landmarks, notes = landmarks_from_text(read_text(path), source, target)
         if self.replace:

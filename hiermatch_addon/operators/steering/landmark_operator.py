@@ -87,6 +87,12 @@ class LandmarkOperator(PairOperator):
             return False
         return True
 
-    def _after(self, context: bpy.types.Context, source: Side, target: Side) -> None:
+    def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+        done = self._edit(context, source, target)
         pick_pair(context, source, target)
         sync_lists(cast("bpy.types.Scene", context.scene))
+        return done
+
+    def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+        """Change the landmarks, and return what to report."""
+        raise NotImplementedError

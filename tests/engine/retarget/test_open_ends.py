@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hiermatch.engine import TriangleMesh
-from hiermatch.engine.retarget.open_ends import open_ends
 
+from engine import TriangleMesh
+from engine.retarget.open_ends import open_ends
 from tests.shapes import cylinder, icosphere, torus
 
 
