@@ -85,7 +85,10 @@ class FileOperator(_Operator):
 
     __annotations__ = {
         "filepath": _props.StringProperty(
-            name="File", description="Path of the file, a JSON text", subtype="FILE_PATH"
+            name="File",
+            description="Path of the file, a JSON text",
+            subtype="FILE_PATH",
+            options={"PATH_SUPPORTS_BLEND_RELATIVE"},
         ),
         "filter_glob": _props.StringProperty(
             name="Filter", description="Which files are listed", default="*.json", options={"HIDDEN"}
