@@ -53,6 +53,9 @@ _CUT = 0.4
 _SHARED = 0.8
 """Part of both surfaces that is shared from which on all of them is matched as well: their sizes hardly differ."""
 
+_SMALL_PART = 0.6
+"""Part of a surface that is shared up to which more is missing on the other than faces here and there."""
+
 _OVERLAP, _FIRST_AFTER = 0.35, 0.6
 """Parts of the work after which it is known what surfaces share, and then how they match as they are."""
 
@@ -189,8 +192,8 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
     If some of the part has no partner then, or the piece is less like it than one body is like itself in another pose,
-    or like another whole body if the overlap is clear, all of the whole surface is tried as well: a body whose faces
-    are missing here and there is no part.
+    or like another whole body if the overlap is clear, all of the whole surface is tried as well.  So it is if most of
+    that is shared: a body whose faces are missing here and there is no part.
     """
     known = overlap.result
     whole, shown = (x, known.source_to_target) if of_source else (y, known.target_to_source)
@@ -200,7 +203,8 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     steps = piece_matched_steps(known, x, y, task, piece, of_source=of_source)
     result = yield from within(steps, 0.0, _CLOSER)
     enough = MUCH_ALIKE if overlap.credibility >= CLEAR else ALL_ALIKE
-    if shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough):
+    is_part = min(overlap.shares) < _SMALL_PART and shows_all_of_part(result, of_source=of_source)
+    if is_part and is_as_alike(result, enough):
         return result
     try:
         other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
