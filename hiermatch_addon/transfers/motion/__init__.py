@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is carried between two rigs: pairs of bones, motion, and weights through the pairs."""
+"""Transfers between two rigs: pairs of bones, motion, and weights through the pairs."""
