@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..registration.registration import points_at
+from ..runtime.errors import MatchError
 from ..runtime.progress import Preview, Progress, Steps, within
-from .credibility import is_clear_choice
+from .credibility import EVEN, RISE, is_clear_choice
 from .dense_hypotheses import USUAL, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
 from .proposers import PROPOSERS, Contest, are_distinct, contenders
@@ -119,6 +120,11 @@ def registered_pair_steps(
     -------
     RegisteredPair
         The surfaces, laid onto one another.
+
+    Raises
+    ------
+    MatchError
+        If they are less alike than the selection asks for.
     """
     yield from within(x.spectrum_steps(EIGENPAIRS), 0.0, 0.05)
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.05, 0.1)
@@ -151,8 +157,10 @@ def registered_pair_steps(
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
     yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
-    # Where no map is looked for, the one that is given is followed as it is.
-    hopeful = landmarks is not None or candidates[0].likeness > selection.least
+    if landmarks is None and candidates[0].likeness < selection.least:
+        raise MatchError("The surfaces are not enough alike to be matched.")
+    # Where no map is looked for, the one that is given is followed as it is; and where none can be right, the best one.
+    hopeful = landmarks is not None or candidates[0].likeness >= EVEN - RISE
     proposers = PROPOSERS if search and hopeful else ()
     contest = Contest(follow, landmarks, selection)
     for number, propose in enumerate(proposers):

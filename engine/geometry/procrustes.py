@@ -28,6 +28,9 @@ _STEP = 1e-14
 _LEAST_SLOPE = 1e-10
 """Where two eigenvalues are the same, as for matrices of rank one, the slope vanishes with what is left to be found."""
 
+_FEW = 100
+"""Matrices up to which singular values, three microseconds each, are faster than the quaternions' many operations."""
+
 _BLOCK = 4096
 """Matrices at once: what is computed from them stays in the cache."""
 
@@ -59,6 +62,8 @@ def nearest_rotations(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     .. [2] D. L. Theobald, "Rapid calculation of RMSDs using a quaternion-based characteristic polynomial", Acta
        Crystallographica A 61, 2005.
     """
+    if len(matrices) <= _FEW:
+        return _by_singular_values(matrices)
     rotations = np.empty(matrices.shape)
     for first in range(0, len(matrices), _BLOCK):
         part = slice(first, first + _BLOCK)

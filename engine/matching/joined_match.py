@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..dense.credibility import EVEN, MUCH_ALIKE
+from ..dense.credibility import EVEN, MUCH_ALIKE, RISE
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
 from ..shapes.enclosing_surface import separate_limbs, with_limbs_steps
@@ -82,7 +83,8 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     alike = abs(more) < _ALIKE
     # Without its limbs, a trunk is open; what is closed may be all of a body, and the rest what it stands on.
     if alike or not has_border(y if more > 0 else x):
-        first = yield from within(_tried_steps(x, y, task), 0.0, _FIRST)
+        # What is not right rather than not by its main parts is better joined first.
+        first = yield from within(_tried_steps(x, y, replace(task, least=max(task.least, EVEN))), 0.0, _FIRST)
         together = 0.0 if first is None else _together_but_for_extras(first, bodies)
         if first is not None and together >= _TOGETHER and (alike or _is_clear(first)):
             return first, x, y
@@ -96,13 +98,15 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     end = 1.0 if first is not None else (1 + begin) / 2
     second = None
     if joined[0] is not x or joined[1] is not y:
-        second = yield from within(_tried_steps(joined[0], joined[1], task), begin, end)
+        least = -np.inf if first is None else min(_likeness(first), EVEN) - RISE
+        second = yield from within(_tried_steps(*joined, replace(task, least=max(task.least, least))), begin, end)
     if second is None:
         # If bodies as a whole cannot be matched either, their main parts say why.
         return first or (yield from within(matched_steps(x, y, task), end, 1.0)), x, y
     if first is None and not (_is_plausible(second) and _partnered(second) >= _TOGETHER):
         # What hangs on one body alone is better left alone.
-        first = yield from within(_tried_steps(x, y, task), end, 1.0)
+        least = max(task.least, min(_likeness(second), EVEN))
+        first = yield from within(_tried_steps(x, y, replace(task, least=least)), end, 1.0)
     if first is not None and not alike and (together < _TOGETHER or _likeness(first) < _likeness(second)):
         together = min(_together(first, bodies), _partnered(first))
     if first is None or _is_better(second, first, together):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dense.components.masked_maps import share_of, with_piece_only
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, is_less_alike
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, RISE, is_less_alike
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
 from ..shapes.enclosing_surface import with_limbs_steps
@@ -51,10 +51,6 @@ _MISSED = 15.0
 
 _MOST = 2
 """Pieces of the surfaces that the match is done with at most, to choose between them."""
-
-_RISE = 6.0
-"""By how much the likeness of a piece may yet rise once it has been registered softly: of fuzzed shapes it rose by 3.7
-at most, of long bodies that were turned back."""
 
 _ROUNDS = 2
 """How often: a piece that turns out too small grows."""
@@ -155,7 +151,7 @@ def piece_matched_steps(
     MatchResult
         The most credible match, the given one among them.
     """
-    way = _Way(x, y, of_source, replace(task, least=least - _RISE))
+    way = _Way(x, y, of_source, replace(task, least=least - RISE))
     for again in range(_ROUNDS):
         other = yield from within(way.matched_steps(piece), again / _ROUNDS, (again + 1) / _ROUNDS)
         if other is None or not is_better_part(other, result, least, of_source=of_source):

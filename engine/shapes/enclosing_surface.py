@@ -41,7 +41,10 @@ _MOSTLY = 0.3
 """Part of a piece that must do so: the rest may lie in others."""
 
 _LYING = 0.04
-"""How far, in sqrt(area), most of a piece may be from a surface around it: its vertices are 0.015 apart."""
+"""How far, in sqrt(area), most of a piece may be from a surface around it."""
+
+_FINER = 4
+"""How many times the vertices of a small body its surface has at most: about as many as `Proxy.finer` makes of them."""
 
 _LEAST_MORE = 0.04
 """Part of the surface in such pieces from which on they matter: a head or two hands."""
@@ -93,10 +96,15 @@ def with_limbs_steps(shape: Shape, name: str, vertices: NDArray[np.int64]) -> St
         return shape
     if shape.joined is not None:
         return shape.joined
-    joined = yield from joined_steps(surface.cleaned, name)
+    taking_part = _taking_part(surface.cleaned)
+    count = sum(
+        piece.mesh.vertex_count for piece, takes in zip(surface.cleaned.pieces, taking_part, strict=True) if takes
+    )
+    wanted = min(surface.wanted, _FINER * count)
+    joined = yield from joined_steps(surface.cleaned, name, wanted)
     whole = shape
     if joined is not surface.cleaned:
-        whole = Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh)))
+        whole = Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh), wanted=wanted))
     shape.keep_joined(whole)
     return whole
 
@@ -171,7 +179,7 @@ def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Step
         return cleaned
     coarse = yield from within(proxy_steps(skin, vertices), 0.6, 0.9, _LABEL)
     # What is too far away from all else was not reached.
-    taking_part &= _lying_on(coarse.mesh, cleaned.pieces)
+    taking_part &= _lying_on(skin, cleaned.pieces)
     if not taking_part[0] or taking_part.sum() == 1:
         return cleaned
     body = _Body.of([piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if takes])

@@ -29,8 +29,8 @@ __all__ = ["laid_onto_steps"]
 _NORMAL_LENGTH = 0.25
 """How many radii a unit of difference of the normals counts: it tells the two sides of a thin part from each other."""
 
-_ROUNDS, _MOST_POINTS = 12, 1500
-"""Rounds of rigid fitting at most, and how many vertices of either part serve for it."""
+_ROUNDS, _MOST_POINTS, _TRIED_POINTS = 12, 1500, 200
+"""Rounds of rigid fitting at most; how many vertices of either part serve for it, and to try how it may be turned."""
 
 _CONVERGED = 0.99
 """Mean squared distance, as part of that of the round before, from which on no further round is made."""
@@ -104,11 +104,13 @@ def laid_onto_steps(
     ----------
     .. [1] P. J. Besl, N. D. McKay, "A method for registration of 3-D shapes", IEEE PAMI 14(2), 1992.
     """
-    aim = _Aim(partner, pair)
+    aim = _Aim(partner, pair, _MOST_POINTS)
     best = _rigidly(part, aim, pair, pair.rotations[0])
     if thoroughly and best.distance > _RIGID**2:
-        others = [_rigidly(part, aim, pair, rotation) for rotation in _turned(pair)]
-        for other in (others[0], min(others[1:], key=lambda motion: motion.cost)):
+        roughly = _Aim(partner, pair, _TRIED_POINTS)
+        others = [_rigidly(part, roughly, pair, rotation) for rotation in _turned(pair)]
+        for tried in (others[0], min(others[1:], key=lambda motion: motion.cost)):
+            other = _rigidly(part, aim, pair, tried.rotation)
             best = other if other.cost < _CLEARLY * best.cost else best
     placed, normals = _placed(part, pair, best.rotation, best.centre), part.vertex_normals @ best.rotation.T
     if best.distance < _RIGID**2:
@@ -116,7 +118,7 @@ def laid_onto_steps(
     handed = np.sign(np.linalg.det(best.rotation))
     carried = around.similarities(part.vertices, around.nearest(part.vertices)[0])(part.vertices)
     worn = handed * TriangleMesh(carried, part.triangles).vertex_normals
-    cost = _cost(aim.found(_points(part, carried, worn))[0], pair, carried)
+    cost = _cost(aim.found(_points(part, carried, worn, _MOST_POINTS))[0], pair, carried)
     fewest, most = _DEFORMED
     sizes = part.vertex_count, partner.vertex_count
     if thoroughly and fewest <= min(sizes) and max(sizes) <= most and handed > 0:
@@ -177,7 +179,7 @@ def _deformed_steps(
 def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: NDArray[np.float64]) -> _Motion:
     """Move a part to where it is closest to its partner, beginning with a rotation, centre on centre."""
     handed = float(np.sign(np.linalg.det(rotation)))
-    here, centre = _points(part, part.vertices, part.vertex_normals), pair.centres[1]
+    here, centre = _points(part, part.vertices, part.vertex_normals, aim.most), pair.centres[1]
     arms = pair.ratio * (here.places - pair.centres[0])
     shift, before = np.zeros(3), np.inf
     for number in range(_ROUNDS + 1):
@@ -206,18 +208,19 @@ class _Points:
     shares: NDArray[np.float64]
 
 
-def _points(mesh: TriangleMesh, places: NDArray[np.float64], normals: NDArray[np.float64]) -> _Points:
-    """Take evenly numbered vertices of a mesh that has been moved to places (n, 3) with normals (n, 3)."""
-    chosen = np.linspace(0, mesh.vertex_count - 1, min(mesh.vertex_count, _MOST_POINTS)).astype(int)
+def _points(mesh: TriangleMesh, places: NDArray[np.float64], normals: NDArray[np.float64], most: int) -> _Points:
+    """Take evenly numbered vertices, so many at most, of a mesh that has been moved to places and normals (n, 3)."""
+    chosen = np.linspace(0, mesh.vertex_count - 1, min(mesh.vertex_count, most)).astype(int)
     areas = mesh.vertex_areas[chosen] + 1e-9 * mesh.area
     return _Points(places[chosen], normals[chosen], areas / areas.sum())
 
 
 class _Aim:
-    """The partner that parts are laid onto: finds what is closest to points and looks to the same side."""
+    """The partner that parts are laid onto by so many points: finds what is closest and looks to the same side."""
 
-    def __init__(self, partner: TriangleMesh, pair: PartPair) -> None:
-        self.points = _points(partner, partner.vertices, partner.vertex_normals)
+    def __init__(self, partner: TriangleMesh, pair: PartPair, most: int) -> None:
+        self.most = most
+        self.points = _points(partner, partner.vertices, partner.vertex_normals, most)
         self._pair = pair
         self._features = self._located(self.points)
         self._tree = cKDTree(self._features)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import Shape, SurfacePoints, TriangleMesh, run
+from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
 from engine.dense import dense_registration as dense_map
 from engine.dense import proposers
 from engine.dense.dense_hypotheses import LandmarkStart, Selection, assessed_everywhere, map_hypotheses_steps
@@ -475,14 +475,26 @@ def test_a_pair_that_nothing_was_compared_for_has_no_likeness():
     assert RegisteredPair(*[None] * 6, candidates=(), margin=None).likeness is None
 
 
-def test_where_all_maps_are_of_no_use_the_best_alone_is_followed(bodies, both_starts, monkeypatch):
+def test_where_no_map_can_be_right_the_best_alone_is_followed(bodies, both_starts, monkeypatch):
     """With the true map made to seem worse at first, the wrong one is kept: no close registration decides."""
     x, y = bodies[:2]
     asked = []
     monkeypatch.setattr(dense_map, "PROPOSERS", (lambda *_: asked.append(1),))
+    monkeypatch.setattr(dense_map, "EVEN", np.inf)
     with_soft_score(monkeypatch, "true", 100.0)
-    selection = replace(BOTH, contested=1000.0, least=np.inf)
+    selection = replace(BOTH, contested=1000.0)
     pair = run(registered_pair_steps(x, y, both_starts, selection=selection))
     assert not asked
     assert pair.candidates[0].hypothesis.origin != "true"
     assert pair.margin is not None
+
+
+def test_surfaces_that_are_less_alike_than_asked_for_are_given_up_before_close_registrations(
+    bodies, both_starts, monkeypatch
+):
+    x, y = bodies[:2]
+    closely = []
+    monkeypatch.setattr(dense_map, "_contest_steps", lambda *_: closely.append(1))
+    with pytest.raises(MatchError, match="not enough alike"):
+        run(registered_pair_steps(x, y, both_starts, selection=replace(BOTH, least=np.inf)))
+    assert not closely

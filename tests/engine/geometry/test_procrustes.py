@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from engine.geometry import procrustes
 from engine.geometry.procrustes import nearest_rotations
 
 SMALL = 1e-12
@@ -56,7 +57,8 @@ def test_covariances_of_edges_in_a_plane_have_a_nearest_rotation(rng):
 
 
 @pytest.mark.filterwarnings("error")
-def test_covariances_of_edges_along_a_line_have_a_nearest_rotation(rng):
+def test_covariances_of_edges_along_a_line_have_a_nearest_rotation(rng, monkeypatch):
+    monkeypatch.setattr(procrustes, "_FEW", 0)
     for _ in range(2000):  # one after the other: the search ends when all are found
         matrix = -np.outer(*rng.standard_normal((2, 3)))[None]
         rotations = nearest_rotations(matrix)
@@ -64,24 +66,31 @@ def test_covariances_of_edges_along_a_line_have_a_nearest_rotation(rng):
         assert np.allclose(agreement(rotations, matrix), best_agreement(matrix))
 
 
+def test_few_get_the_rotations_that_they_get_among_many(rng):
+    matrices = rng.standard_normal((1000, 3, 3))
+    few = np.concatenate([nearest_rotations(matrices[i : i + 10]) for i in range(0, 1000, 10)])
+    assert np.allclose(few, nearest_rotations(matrices), atol=1e-9)
+
+
 def test_size_does_not_matter(rng):
-    matrices = rng.standard_normal((50, 3, 3))
+    matrices = rng.standard_normal((200, 3, 3))
     for size in (1e-170, 1e-100, 1e-9, 1e9):
         assert np.allclose(nearest_rotations(size * matrices), nearest_rotations(matrices), atol=1e-9)
 
 
 def test_turning_the_matrices_turns_the_rotations(rng):
-    matrices = rng.standard_normal((50, 3, 3))
+    matrices = rng.standard_normal((200, 3, 3))
     turn = Rotation.random(random_state=2).as_matrix()
     assert np.allclose(nearest_rotations(turn @ matrices), turn @ nearest_rotations(matrices), atol=1e-9)
 
 
 @pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.outer([1, 2, 3], [4, 5, 6]), -np.eye(3)])
-def test_matrices_without_a_single_nearest_rotation_get_one_of_them(matrix):
-    rotations = nearest_rotations(np.array([matrix], float))
+@pytest.mark.parametrize("count", [1, 200])
+def test_matrices_without_a_single_nearest_rotation_get_one_of_them(matrix, count):
+    rotations = nearest_rotations(np.array([matrix] * count, float))
     assert_rotations(rotations)
     values = np.linalg.svd(matrix, compute_uv=False)
-    assert agreement(rotations, [matrix])[0] == pytest.approx(values @ [1, 1, np.sign(np.linalg.det(matrix))])
+    assert agreement(rotations, [matrix] * count)[-1] == pytest.approx(values @ [1, 1, np.sign(np.linalg.det(matrix))])
 
 
 def test_none_have_none():

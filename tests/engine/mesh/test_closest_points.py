@@ -129,6 +129,27 @@ def test_nearest_on_a_creased_surface_is_almost_always_the_closest_of_all(star):
     assert (np.sqrt(found.squared_distances[missed]) - np.sqrt(least[missed]) < star.edge_lengths.max() / 2).all()
 
 
+@pytest.mark.parametrize("weight", [0.0, 0.3])
+def test_nearest_of_few_points_is_the_closest_of_all_triangles(star, weight):
+    points, triangles = around(star, 20, 0.1)
+    normals = star.triangle_normals[triangles]
+    assert len(points) * star.triangle_count <= 15_000  # all are tried
+    found = ClosestPoints(star).nearest(points, normals, normal_weight=weight, normal_gate=0.5)
+    costs = all_squared_distances(points, star)
+    costs += weight * np.maximum(0.5 - normals @ star.triangle_normals.T, 0)
+    taken = costs[np.arange(len(points)), found.triangles]
+    np.testing.assert_allclose(taken, costs.min(axis=1), atol=1e-12)
+    squared = np.square(points - positions(found, star)).sum(axis=1)
+    np.testing.assert_allclose(found.squared_distances, squared, atol=1e-12)
+
+
+def test_nearest_of_few_points_far_from_the_origin(star):
+    away = TriangleMesh(star.vertices + 1e5, star.triangles)
+    points, _ = around(star, 20, 0.1)
+    here, there = ClosestPoints(star).nearest(points), ClosestPoints(away).nearest(points + 1e5)
+    np.testing.assert_allclose(there.squared_distances, here.squared_distances, atol=1e-9)
+
+
 def test_nearest_vertices(star):
     points, _ = around(star, 300, 0.2)
     expected = np.linalg.norm(points[:, None] - star.vertices, axis=2).argmin(axis=1)
