@@ -32,7 +32,7 @@ from .retarget.rig.rest_pose import RestPose, at_rest, is_posed, length_ratio, r
 from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
 from .retarget.rig.skeleton import Skeleton
 from .retarget.values.attribute_transfer import CarriedValues, Crossing, Domain, carry_values_steps
-from .retarget.values.corner_transfer import carry_normals
+from .retarget.values.corner_transfer import carry_normals, turned_normals
 from .retarget.values.deformation_gradients import LocalFrames, bone_frames, surface_frames
 from .retarget.values.face_correspondence import FacePlaces
 from .retarget.values.face_transfer import carry_face_values
@@ -158,6 +158,7 @@ __all__ = [
     "symmetry_map_steps",
     "transfer_motion",
     "transfer_motion_steps",
+    "turned_normals",
     "unposed",
     "use_processes",
     "wear_steps",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import diags_array
+from scipy.sparse import csr_array, diags_array
 
 from ..dense.components.similarity_field import Surroundings
 from ..geometry.laplacian import laplace_beltrami
@@ -45,6 +45,12 @@ _SOLVES = 3
 
 _RADIUS = 0.01
 """Over what distance rotations are averaged, in sqrt(area)."""
+
+_RINGS = 4
+"""Around what is folded still the surface is smoothed so many edges wide at most: with more, noses and ears go."""
+
+_COINCIDENT = 1e-6
+"""Vertices closer than this part of the diagonal of the bounding box are one place."""
 
 _LOOSE = 1e-4
 """How much, beside others, parts count that nothing holds: they stay near where their surroundings take them."""
@@ -86,7 +92,8 @@ def wrap_steps(
     growing force.  A vertex is not drawn if the way to the target and back leads elsewhere, if the map has no
     confidence in it, or if a triangle there is turned over: such places deform as rigidly as possible with their
     surroundings.  Vertices at a seam that the source was cut open at, as for UVs, are one point before, and stay one:
-    of the places that the map has for it, the one in which it has most confidence counts.
+    of the places that the map has for it, the one in which it has most confidence counts.  What is folded at the end
+    is smoothed with what is around it.
 
     Parameters
     ----------
@@ -150,8 +157,9 @@ def wrap_steps(
             continue
         held = held.copy()
         held[source.triangles[folded]] = False
+    positions, folded = _smoothed(source, positions, folded)
     share = float(source.triangle_areas[folded].sum() / source.area)
-    return WrappedSurface((positions * unit)[parts.welded], held[parts.welded], share)
+    return WrappedSurface(_united(parts.mesh, (positions * unit)[parts.welded]), held[parts.welded], share)
 
 
 def kept_in_place(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -175,6 +183,60 @@ def kept_in_place(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray
     left, _, right = np.linalg.svd((mesh.vertices - before).T @ (weights[:, None] * (positions - after)))
     left[:, 2] *= np.sign(np.linalg.det(left @ right))
     return (positions - after) @ (left @ right).T + before
+
+
+def _smoothed(
+    mesh: TriangleMesh, positions: NDArray[np.float64], folded: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Span the surface (n, 3) evenly over what is folded, (m,), and around that as far as needed: new ones of both."""
+    n = mesh.vertex_count
+    one, other = mesh.edges.T
+    graph = csr_array((np.ones(len(one)), (one, other)), shape=(n, n))
+    graph = csr_array(graph + graph.T)
+    spread = csr_array(diags_array(graph.sum(axis=1)) - graph)
+    for rings in range(1, _RINGS + 1):
+        if not folded.any():
+            break
+        free = np.zeros(n, bool)
+        free[mesh.triangles[folded]] = True
+        for _ in range(rings):
+            free |= graph @ free > 0
+        # A piece that is free as a whole has nothing to be spanned between.
+        fixed = np.zeros(mesh.component_labels.max() + 1, bool)
+        fixed[mesh.component_labels[~free]] = True
+        free &= fixed[mesh.component_labels]
+        if not free.any():
+            continue
+        smooth = positions.copy()
+        pull = -spread[free][:, ~free] @ positions[~free]
+        smooth[free] = symmetric_factor(csr_array(spread[free][:, free])).solve(pull)
+        still = _folded(mesh, smooth)
+        if mesh.triangle_areas[still].sum() < mesh.triangle_areas[folded].sum():
+            positions, folded = smooth, still
+    return positions, folded
+
+
+def _united(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Bring vertices at one place of the mesh together again, (n, 3), unless they belong to different places by now.
+
+    Such as both ends of an edge without length, or the corners of two shields one before the other; but not hands that
+    touched, and that the other surface holds apart.
+    """
+    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    _, place = np.unique(np.round(mesh.vertices / (_COINCIDENT * size)), axis=0, return_inverse=True)
+    place = place.ravel()
+    counts = np.bincount(place)
+    middle = np.stack([np.bincount(place, axis) for axis in positions.T], axis=1) / counts[:, None]
+    away = np.zeros(len(counts))
+    np.maximum.at(away, place, np.linalg.norm(positions - middle[place], axis=1))
+    one, other = mesh.edges.T
+    lengths, ends = np.linalg.norm(positions[one] - positions[other], axis=1), mesh.edges.ravel()
+    n = mesh.vertex_count
+    around = np.bincount(ends, np.repeat(lengths, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)
+    near = np.full(len(counts), np.inf)
+    np.minimum.at(near, place, around)
+    together = ((counts > 1) & (away <= near))[place]
+    return np.where(together[:, None], middle[place], positions)
 
 
 def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> NDArray[np.bool_]:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..common.access import view_layer_of
-from ..common.errors import ObjectError
 from ..jobs.job import MatchJob, job_options
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
@@ -17,6 +16,7 @@ from ..properties.summary import remember
 from ..scene.character import parts_of
 from ..scene.pair import is_own
 from ..storage import writing
+from ..storage.linked_matches import kept_linked
 from ..storage.match_exchange import collect_match
 from ..storage.match_file import save_match
 from .command import EXIT_CODES, ExitCode
@@ -118,13 +118,7 @@ def save_results(
     A `clean` target carries what was transferred into files other than a .blend, but no colors, groups and attributes
     of the match, which an engine or a renderer would take for its own.
     """
-    own = is_own(pair[0])
-    if parsed.map is not None and not own:
-        raise ObjectError(
-            f'"{pair[0].name}" is linked from another file, so the match is not kept, and there is no --map to write. '
-            "Make it local first."
-        )
-    match = collect_match(*pair, prefix) if own else None
+    match = collect_match(*pair, prefix) if is_own(pair[0]) else kept_linked(*pair, prefix)
     if match is not None:
         report.add_match(match.stored)
     if match is not None and parsed.map is not None:

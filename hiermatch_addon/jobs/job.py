@@ -332,6 +332,19 @@ class MatchJob(SteppedJob):
         writing.write(list(zip(objects, prepared.contents, strict=True)), prefix)
         return Outcome(*names, prepared.result, prepared.maps, stored, time.perf_counter() - self._start)
 
+    def stored(self, view_layer: bpy.types.ViewLayer) -> StoredMatch:
+        """Collect what is to be kept of the match, without writing it; it must have come to its end.
+
+        Raises
+        ------
+        HierMatchError
+            If the objects have changed.
+        """
+        if self._found is None:
+            raise RuntimeError("The match has not come to its end yet.")
+        source, target = self._objects(view_layer)
+        return self._stored(self._found, (source.name, target.name))
+
     def _stored(self, found: _Found, names: tuple[str, str]) -> StoredMatch:
         """Collect what is kept of the match in the file."""
         options, result, notes = self._options, found.result, list(found.result.notes)

@@ -14,6 +14,7 @@ from ..scene.armatures import read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of
 from ..scene.pair import check_pair, check_side, is_own
 from ..storage.halves import find_common
+from ..storage.linked_matches import keep_linked, kept_linked
 from ..storage.stored_map import find_maps, keep_refined
 from ..storage.vertex_maps import MapPair, StoredMaps
 from .job import MatchJob
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from ...engine import Steps, TriangleMesh
     from ..scene.armatures import SourceRig
     from ..scene.character import Side
-    from ..storage.stored_match import Quality
+    from ..storage.stored_match import Quality, StoredMatch
     from .job import JobOptions, Outcome
     from .transfer import Transfer
 
@@ -101,11 +102,15 @@ class _Leg:
         self.refined = False
         self.prefix = options.prefix
         self.quality: Quality | None = None
+        self.kept: StoredMatch | None = None  # if the target keeps it alone
         self.verdict: Verdict | None = None
         if carry_fresh_match(source, target, options.prefix):
             found = find_maps(source, target, options.prefix)
             self.stored, self.refined, self.prefix = found.maps, found.refined, found.source.prefix
             self.quality = found.quality
+        elif not is_own(source) and (kept := kept_linked(source, target, options.prefix)) is not None:
+            self.stored, self.refined, self.quality = kept.maps, kept.stored.answer.refined, kept.stored.answer.quality
+            self.kept = kept.stored
         self.match: MatchJob | None = None
         if self.stored is None:
             self.match = MatchJob(context, source, target, _with_maps(options.match), writes=is_own(source))
@@ -248,17 +253,30 @@ class TransferJob(SteppedJob):
     def _write_match(self, context: bpy.types.Context, leg: _Leg, source: Side, target: Side) -> Outcome | None:
         """Write the match if it is new, and the better maps.
 
-        A source carries one match of a prefix only: with several targets, the new matches are used but not kept; nor
-        are those of a source that is another file's.
+        A source carries one match of a prefix only: with several targets, the new matches are used but not kept.  Those
+        of a source that is another file's are kept on the target alone.
         """
         outcome = None
+        if not is_own(source):
+            self._keep_linked(context, leg, source, target)
+            return None
         if leg.match is not None:
-            if len(self._legs) > 1 or not is_own(source):
+            if len(self._legs) > 1:
                 return None
             outcome = leg.match.finish(view_layer_of(context))
-        if leg.better is not None and is_own(source):
+        if leg.better is not None:
             keep_refined(context, source, target, leg.prefix, leg.better)
         return outcome
+
+    def _keep_linked(self, context: bpy.types.Context, leg: _Leg, source: Side, target: Side) -> None:
+        """Keep a match with a source of another file on the target, if it is new or has become better."""
+        stored = leg.kept if leg.match is None else leg.match.stored(view_layer_of(context))
+        if stored is None or (leg.match is None and leg.better is None):
+            return
+        maps = leg.stored if leg.better is None else leg.better
+        if maps is not None:
+            prefix = leg.prefix or self._options.match.prefix
+            keep_linked(source, target, stored if leg.better is None else stored.as_refined(), maps, prefix)
 
     def _check(self, view_layer: bpy.types.ViewLayer) -> None:
         self._objects(view_layer)

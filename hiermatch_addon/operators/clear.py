@@ -16,6 +16,7 @@ from ..properties.panel_state import picked, state_of
 from ..properties.steering_lists import sync_lists
 from ..scene.character import parts_of, side_of
 from ..scene.pair import check_writable, named_side, selected_meshes
+from ..storage.linked_matches import forget_linked, linked_prefixes
 from ..storage.writing import clear, is_marked, kept, prefixes
 
 if TYPE_CHECKING:
@@ -48,7 +49,8 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
         """Allow it in Object Mode, when there is something to remove."""
         if not can_start(cls, context):
             return False
-        if not any(obj.type == "MESH" and is_marked(mesh_of(obj)) for obj in view_layer_of(context).objects):
+        meshes = (obj for obj in view_layer_of(context).objects if obj.type == "MESH")
+        if not any(is_marked(mesh_of(obj)) or linked_prefixes(obj) for obj in meshes):
             cls.poll_message_set(translated("There is nothing here that HierMatch has written"))
             return False
         return True
@@ -56,7 +58,7 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Remove it."""
         try:
-            objects = [obj for obj in self._objects(context) if self._prefixes(obj)]
+            objects = [obj for obj in self._objects(context) if self._prefixes(obj) or self._linked(obj)]
             for obj in objects:
                 check_writable(obj)
         except HierMatchError as error:
@@ -70,6 +72,8 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
             for prefix in reversed(self._prefixes(obj)):  # each restores what was active before it
                 cleared.add((prefix, kept(obj, prefix).get("key")))
                 clear(obj, prefix)
+            for prefix in self._linked(obj):
+                forget_linked(obj, prefix)
         names = [obj.name for obj in objects]
         if (summary.prefix, summary.key) in cleared:
             state_of(context).property_unset("summary")
@@ -90,3 +94,7 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
     def _prefixes(self, obj: bpy.types.Object) -> tuple[str, ...]:
         """Return which of the results on an object are to go, oldest first."""
         return tuple(prefix for prefix in prefixes(obj) if self.prefix in ("", prefix))
+
+    def _linked(self, obj: bpy.types.Object) -> tuple[str, ...]:
+        """Return which of the matches with sources of other files are to go."""
+        return tuple(prefix for prefix in linked_prefixes(obj) if self.prefix in ("", prefix))

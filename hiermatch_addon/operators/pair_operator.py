@@ -32,6 +32,13 @@ __all__ = ["FileOperator", "PairOperator", "pick_sides"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
+_BESIDE_BLEND: Any = (
+    {"PATH_SUPPORTS_BLEND_RELATIVE"}
+    if "is_path_supports_blend_relative" in bpy.types.Property.bl_rna.properties
+    else set()
+)
+"""Option of a path that may begin with `//`; Blender 4.3 has no such option, and allows that of all paths."""
+
 
 class PairOperator(_Operator):
     """An operator that does something at once with two sides; to be inherited from before `bpy.types.Operator`."""
@@ -88,7 +95,7 @@ class FileOperator(_Operator):
             name="File",
             description="Path of the file, a JSON text",
             subtype="FILE_PATH",
-            options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+            options=_BESIDE_BLEND,
         ),
         "filter_glob": _props.StringProperty(
             name="Filter", description="Which files are listed", default="*.json", options={"HIDDEN"}

@@ -177,15 +177,52 @@ def write_seams(mesh: bpy.types.Mesh, seams: NDArray[np.bool_]) -> None:
     mesh.edges.foreach_set("use_seam", np.ascontiguousarray(seams, np.bool_))
 
 
-def read_corner_normals(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
-    """Read the normals with which the corners of faces are shaded, in the object's own space, (l, 3)."""
+def read_corner_normals(mesh: bpy.types.Mesh, matrix: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    """Read the normals with which the corners of faces are shaded, (l, 3).
+
+    They are in the mesh's own space, or, with a matrix (3, 3) that takes directions from there, in the other one:
+    normals turn by the inverse transpose of what positions turn by.
+    """
     normals = np.empty(3 * len(mesh.loops), np.float32)
     corners: Any = mesh.corner_normals
     corners.foreach_get("vector", normals)
-    return normals.reshape(-1, 3).astype(np.float64)
+    own = normals.reshape(-1, 3).astype(np.float64)
+    return own if matrix is None else _unit(own @ np.linalg.inv(matrix))
 
 
-def write_corner_normals(mesh: bpy.types.Mesh, normals: NDArray[np.float64]) -> None:
-    """Set custom normals, (l, 3); Blender marks edges as sharp where those on one side differ from the other's."""
+def write_corner_normals(
+    mesh: bpy.types.Mesh,
+    normals: NDArray[np.float64],
+    matrix: NDArray[np.float64] | None = None,
+    positions: NDArray[np.float64] | None = None,
+) -> None:
+    """Set custom normals, (l, 3); Blender marks edges as sharp where those on one side differ from the other's.
+
+    Parameters
+    ----------
+    mesh : bpy.types.Mesh
+        Whose.
+    normals : (l, 3) array of float
+        The normals.
+    matrix : (3, 3) array of float, optional
+        What takes directions from the mesh's own space to that of the normals.
+    positions : (n, 3) array of float, optional
+        With which vertices the surface has these normals, such as those of a shape key; else the mesh's own.  Blender
+        keeps normals relative to the surface.
+    """
     own: Any = mesh
-    own.normals_split_custom_set(normals.tolist())
+    rest = np.empty(3 * len(mesh.vertices), np.float32)
+    if positions is not None:
+        mesh.vertices.foreach_get("co", rest)
+        mesh.vertices.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
+        mesh.update()
+    own.normals_split_custom_set((normals if matrix is None else _unit(normals @ matrix)).tolist())
+    if positions is not None:
+        mesh.vertices.foreach_set("co", rest)
+        mesh.update()
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale vectors (k, 3) to length one, leaving zero vectors alone."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)

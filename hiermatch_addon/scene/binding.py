@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..common.phrases import listed
-from .armatures import armature_modifier, find_armature, moving_armatures
+from .armatures import armature_modifier, armature_of, find_armature, moving_armatures
 from .character import parts_of, take_place
 from .mesh_io import rest_matrix
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = ["bind", "is_made", "made_rig", "mark_made", "unbind"]
+__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "unbind"]
 
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
@@ -102,6 +102,30 @@ def bind(
     for name, names in parents.items():
         notes.append(f'{listed(names)} keeps its parent "{name}".')
     return notes
+
+
+def hand_over(part: bpy.types.Object, other: Side) -> None:
+    """Let an armature of another side move a part in the place of its own, if it has all bones that move it.
+
+    So what has been laid onto a character that got the part's rig moves as that one does.  It stays where it is.
+    """
+    modifier = armature_modifier(part)
+    own: Any = part.parent if modifier is None else modifier.object
+    if own is None or own.type != "ARMATURE":
+        return
+    bones = own.data.bones
+    used = [part.parent_bone] if modifier is None else [name for name in part.vertex_groups.keys() if name in bones]  # noqa: SIM118
+    for armature in moving_armatures(other):
+        if armature == own or not used or not all(name in armature_of(armature).bones for name in used):
+            continue
+        for one in part.modifiers:
+            if getattr(one, "object", None) == own:
+                cast("Any", one).object = armature
+        if part.parent == own:
+            stands = part.matrix_world.copy()
+            part.parent = armature
+            part.matrix_world = stands
+        return
 
 
 def unbind(target: Side, armature: bpy.types.Object, kept: Container[bpy.types.Object]) -> list[bpy.types.Object]:

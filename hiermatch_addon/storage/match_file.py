@@ -25,14 +25,14 @@ from .checked_arrays import MAPS, CheckedArrays
 from .stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from .vertex_maps import StoredMaps
 
-__all__ = ["FORMAT", "SUFFIXES", "VERSION", "MatchFile", "load_match", "save_match"]
+__all__ = ["FORMAT", "SUFFIXES", "VERSION", "MatchFile", "load_match", "packed_match", "save_match", "unpacked_match"]
 
 FORMAT = "hiermatch-match"
 """What the header of every such file says it is."""
@@ -92,17 +92,32 @@ def save_match(match: MatchFile, path: Path) -> None:
     ObjectError
         If its name ends with neither .npz nor .json, or the file cannot be written.
     """
-    header, arrays = _header(match), _arrays(match)
     if _kind_of(path) == ".json":
-        lists = {name: array.tolist() for name, array in arrays.items()}
-        content = json.dumps({"header": header, "arrays": lists}, allow_nan=False).encode()
+        lists = {name: array.tolist() for name, array in _arrays(match).items()}
+        content = json.dumps({"header": _header(match), "arrays": lists}, allow_nan=False).encode()
     else:
-        buffer = io.BytesIO()
-        text = np.frombuffer(json.dumps(header, allow_nan=False).encode(), np.uint8)
-        named: dict[str, Any] = {"header": text, **arrays}
-        np.savez_compressed(buffer, **named)
-        content = buffer.getvalue()
+        content = packed_match(match)
     write_whole(path, content)
+
+
+def packed_match(match: MatchFile) -> bytes:
+    """Return what an NPZ file of a match holds."""
+    buffer = io.BytesIO()
+    text = np.frombuffer(json.dumps(_header(match), allow_nan=False).encode(), np.uint8)
+    named: dict[str, Any] = {"header": text, **_arrays(match)}
+    np.savez_compressed(buffer, **named)
+    return buffer.getvalue()
+
+
+def unpacked_match(content: bytes) -> MatchFile:
+    """Undo `packed_match`.
+
+    Raises
+    ------
+    ObjectError
+        If it was not made by that.
+    """
+    return _checked("The kept match", _read_npz, content)
 
 
 def load_match(path: Path) -> MatchFile:
@@ -115,18 +130,25 @@ def load_match(path: Path) -> MatchFile:
     """
     read = _read_json if _kind_of(path) == ".json" else _read_npz
     try:
-        header, arrays = read(path)
+        content = path.read_bytes()
+    except OSError as error:
+        raise ObjectError(f'"{path}" cannot be read: {error.strerror or error}.') from error
+    return _checked(f'"{path.name}"', read, content)
+
+
+def _checked(name: str, read: Callable[[bytes], tuple[Any, dict[str, NDArray[Any]]]], content: bytes) -> MatchFile:
+    """Make a match of what a file holds, if it is one."""
+    try:
+        header, arrays = read(content)
         if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise ObjectError(f'"{path.name}" is no match that HierMatch has exported. Choose another file.')
+            raise ObjectError(f"{name} is no match that HierMatch has exported. Choose another file.")
         if header.get("version") != VERSION:
-            raise ObjectError(f'"{path.name}" was exported by a later version of HierMatch. Update the add-on.')
+            raise ObjectError(f"{name} was exported by a later version of HierMatch. Update the add-on.")
         return _match_of(header, arrays)
     except HierMatchError:
         raise
-    except OSError as error:
-        raise ObjectError(f'"{path}" cannot be read: {error.strerror or error}.') from error
     except _BAD_FILE as error:
-        raise ObjectError(f'"{path.name}" is damaged or no match file: {error}. Export the match again.') from error
+        raise ObjectError(f"{name} is damaged or no match file: {error}. Export the match again.") from error
 
 
 def _kind_of(path: Path) -> str:
@@ -136,14 +158,14 @@ def _kind_of(path: Path) -> str:
     return kind
 
 
-def _read_npz(path: Path) -> tuple[Any, dict[str, NDArray[Any]]]:
-    with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
+def _read_npz(content: bytes) -> tuple[Any, dict[str, NDArray[Any]]]:
+    with np.load(io.BytesIO(content), allow_pickle=False) as archive:
         arrays = {name: archive[name] for name in archive.files}
     return json.loads(arrays.pop("header").tobytes().decode()), arrays
 
 
-def _read_json(path: Path) -> tuple[Any, dict[str, NDArray[Any]]]:
-    plain = json.loads(path.read_text(encoding="utf-8"))
+def _read_json(content: bytes) -> tuple[Any, dict[str, NDArray[Any]]]:
+    plain = json.loads(content.decode())
     return plain["header"], {name: np.array(values) for name, values in plain["arrays"].items()}
 
 

@@ -98,12 +98,8 @@ class AttributeTransfer:
         if self._settings.materials and any(len(part.material_slots) for part in parts_of(source)):
             self._materials = _read_materials(source)[1]
         if self._settings.normals and any(mesh.has_custom_normals for mesh in meshes):
-            # Normals turn by the inverse transpose of what positions turn by.
             self._normals = np.concatenate(
-                [
-                    _unit(read_corner_normals(mesh_of(part)) @ np.linalg.inv(_linear_part(context, part)))
-                    for part in parts_of(source)
-                ]
+                [read_corner_normals(mesh_of(part), _linear_part(context, part)) for part in parts_of(source)]
             )
             self._to_local = [_linear_part(context, part) for part in parts_of(target)]
         if not self._values and self._materials is None and self._normals is None and not self._notes:
@@ -196,7 +192,7 @@ class AttributeTransfer:
         if self._materials is not None:
             assign_materials(part, materials, self._materials[ranges["FACE"]])
         if self._normals is not None:
-            write_corner_normals(mesh, _unit(self._normals[ranges["CORNER"]] @ self._to_local[number]))
+            write_corner_normals(mesh, self._normals[ranges["CORNER"]], self._to_local[number])
         mesh.update()
 
     def _show_colors(self, mesh: bpy.types.Mesh) -> None:
@@ -240,9 +236,3 @@ def _linear_part(context: bpy.types.Context, obj: bpy.types.Object) -> NDArray[n
     """Matrix (3, 3) that takes directions from an object's own space to the world's."""
     evaluated = obj.evaluated_get(context.evaluated_depsgraph_get())
     return np.array(evaluated.matrix_world, dtype=np.float64)[:3, :3]
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale vectors (k, 3) to length one, leaving zero vectors alone."""
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import Progress, called_steps, in_between, kept_in_place, within, wrap_steps
+from ...engine import Progress, called_steps, in_between, kept_in_place, turned_normals, within, wrap_steps
 from ..common.access import mesh_of
 from ..jobs.transfer import TransferReport
-from ..scene.character import parts_of, vertex_ranges
-from ..scene.mesh_io import vertex_positions
+from ..scene.attribute_io import read_corner_normals, write_corner_normals
+from ..scene.binding import hand_over
+from ..scene.character import corner_ranges, parts_of, read_faces, vertex_ranges
+from ..scene.mesh_io import rest_matrix, vertex_positions
 from ..scene.pair import check_writable
 from ..scene.shape_key_io import (
     KeySettings,
@@ -69,7 +71,10 @@ class WrapTransfer:
         self._settings = settings
         self._from_world: list[NDArray[np.float64]] = []
         self._shapes: NDArray[np.float64] = np.empty((0, 0, 3))  # the wrapped one, and the in-betweens
+        self._normals: NDArray[np.float64] | None = None  # of corners, in the world, if custom
+        self._corners: NDArray[np.int64] = np.empty(0, np.int64)  # the vertex of each
         self._notes: list[str] = []
+        self._remarks: list[str] = []
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Make sure that the result can be written."""
@@ -78,7 +83,14 @@ class WrapTransfer:
             if self._settings.result == "KEY":
                 check_writable(part)
                 check_keys_writable(part, self._names(other.name))
-            self._from_world.append(np.linalg.inv(world_matrix(context, part)))
+            self._from_world.append(np.linalg.inv(rest_matrix(part) or world_matrix(context, part)))
+        parts = parts_of(moved)
+        if self._settings.result == "OBJECT" and any(mesh_of(part).has_custom_normals for part in parts):
+            turned = zip(parts, self._from_world, strict=True)
+            self._normals = np.concatenate(
+                [read_corner_normals(mesh_of(part), np.linalg.inv(matrix[:3, :3])) for part, matrix in turned]
+            )
+            self._corners = read_faces(moved).corner_vertices
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the wrapped shape and those in between."""
@@ -90,6 +102,9 @@ class WrapTransfer:
         positions = wrapped.positions
         if self._settings.place == "OWN":
             positions = yield from within(called_steps(kept_in_place, pair.source, positions), 0.8, 0.8)
+        if self._normals is not None:
+            turning = called_steps(turned_normals, self._normals, self._corners, pair.source, positions)
+            self._normals = yield from within(turning, 0.8, 0.8)
         yield Progress(0.8, "Finding shapes in between")
         count = self._settings.in_betweens
         shapes = positions[None]
@@ -110,22 +125,32 @@ class WrapTransfer:
         """Write the shape keys."""
         moved, other = self._roles(source, target)
         names, made = self._names(other.name), []
-        plan = zip(parts_of(moved), vertex_ranges(moved), self._from_world, strict=True)
-        for part, own, matrix in plan:
+        plan = zip(parts_of(moved), vertex_ranges(moved), corner_ranges(moved), self._from_world, strict=True)
+        for part, own, corners, matrix in plan:
             written = part
+            shapes = self._shapes[:, own] @ matrix[:3, :3].T + matrix[:3, 3]
             if self._settings.result == "OBJECT":
                 written = _duplicate(context, part, f"{part.name} to {other.name}")
-            shapes = self._shapes[:, own] @ matrix[:3, :3].T + matrix[:3, 3]
+                if self._settings.place == "OTHER":
+                    hand_over(written, other)
+                if self._normals is not None and mesh_of(part).has_custom_normals:
+                    to_world = np.linalg.inv(matrix[:3, :3])
+                    write_corner_normals(mesh_of(written), self._normals[corners], to_world, shapes[0])
             add_keys(written, self._key_settings(written, names), _offsets(written, shapes))
             _drive(cast("bpy.types.Key", keys_of(written)), names)
             made.append(written.name)
+        if self._settings.result == "KEY" and any(mesh_of(part).has_custom_normals for part in parts_of(moved)):
+            self._remarks.append(
+                f'Custom normals of "{moved.name}" bend with the key only roughly along seams. With the result New '
+                "Object they fit the wrapped surface."
+            )
         key, first = names[0], made[0]
         done = [
             f'the shape key "{key}" on "{first}"' if len(made) == 1 else f'the shape key "{key}" on {len(made)} objects'
         ]
         if self._settings.result == "OBJECT":
             done.append("a new object" if len(made) == 1 else f"{len(made)} new objects")
-        return TransferReport(", ".join(done), tuple(self._notes))
+        return TransferReport(", ".join(done), tuple(self._notes), tuple(self._remarks))
 
     def _roles(self, source: Side, target: Side) -> tuple[Side, Side]:
         """Tell which one is laid onto which."""
@@ -156,7 +181,7 @@ def _offsets(made: bpy.types.Object, shapes: NDArray[np.float64]) -> NDArray[np.
 
 
 def _duplicate(context: bpy.types.Context, obj: bpy.types.Object, name: str) -> bpy.types.Object:
-    """Copy a mesh object with the rig it is bound to, but without its shape keys and what matches wrote.
+    """Copy a mesh object, bound to its rig, but without its shape keys and what matches wrote.
 
     Other modifiers, constraints and animation are not taken over.
     """

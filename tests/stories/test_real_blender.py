@@ -63,6 +63,16 @@ def test_installed_extension_is_listed_and_enabled(installed):
     assert "HierMatch" in listing
 
 
+def test_all_operators_and_panels_are_there(installed):
+    """Blender tells what it cannot register, but enables the extension all the same."""
+    missing = """
+import bpy, sys
+registration = sys.modules["bl_ext.user_default.hiermatch.hiermatch_addon.registration"]
+print("MISSING", [cls.__name__ for cls in registration.CLASSES if not getattr(cls, "is_registered", True)])
+"""
+    assert "MISSING []" in installed("--background", "--python-expr", missing)
+
+
 def test_operator_runs_in_the_background(installed, tmp_path):
     report = tmp_path / "report.json"
     installed("--background", "--python-exit-code", "1", "--python", SCRIPT, "--", report)

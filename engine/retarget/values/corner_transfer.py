@@ -7,19 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
 from ...runtime.errors import MatchError, MeshError
 from .charts import cut_into_sheets
+from .deformation_gradients import surface_frames
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ...mesh.polygons import Polygons
     from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
     from .face_correspondence import FacePlaces
 
-__all__ = ["carry_corner_values", "carry_normals", "carry_point_marks", "carry_point_values"]
+__all__ = ["carry_corner_values", "carry_normals", "carry_point_marks", "carry_point_values", "turned_normals"]
 
 _SAME = 1e-3
 """Values that differ by less than this part of their range are the same; a byte has steps four times as large."""
@@ -29,6 +31,10 @@ _SAME_DIRECTION = 0.02
 
 _CANCELLED = 1e-6
 """Length up to which a sum of unit vectors counts as none: they cancelled out."""
+
+
+_TURN_RADIUS = 0.01
+"""Over what distance the turn of a deformed surface is averaged for normals, in sqrt(area): as `wrapping` does."""
 
 
 def carry_corner_values(values: ArrayLike, source: Polygons, places: FacePlaces) -> NDArray[Any]:
@@ -138,6 +144,50 @@ def carry_normals(
     result = unit_vectors(np.einsum("lij,lj->li", whole[vertices], carried), _CANCELLED)
     # Where normals cancel out there is none; the target's own is as good as any.
     return np.where(result.any(axis=1, keepdims=True), result, target.vertex_normals[vertices])
+
+
+def turned_normals(
+    normals: NDArray[np.float64],
+    corner_vertices: NDArray[np.int64],
+    mesh: TriangleMesh,
+    positions: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Turn normals at the corners of faces as a deformation turns the surface.
+
+    As in `carry_normals`, what is kept is how they deviate from the smooth normals.  At seams that the mesh was cut
+    open at, both sides turn alike: what was shaded as one surface still is.
+
+    Parameters
+    ----------
+    normals : (l, 3) array of float
+        Unit normals at the corners.
+    corner_vertices : (l,) array of int
+        The vertex of each corner.
+    mesh : TriangleMesh
+        The surface.
+    positions : (n, 3) array of float
+        Its vertices when deformed.
+
+    Returns
+    -------
+    (l, 3) array of float
+        Unit normals of the deformed surface.
+
+    Raises
+    ------
+    MeshError
+        If there is not one normal for each corner.
+    """
+    if normals.shape != (len(corner_vertices), 3):
+        raise MeshError(f"There should be one normal for each of {len(corner_vertices)} corners, not {normals.shape}.")
+    parts = WeldedParts.of(mesh)
+    welded = parts.mean_over(np.ones(mesh.vertex_count, bool)) @ positions
+    rotations = surface_frames(parts.closed, welded, radius=_TURN_RADIUS).rotations
+    turned = np.einsum("nij,nj->ni", rotations, parts.closed.vertex_normals)
+    now = TriangleMesh(welded, parts.triangles).vertex_normals
+    whole = _shortest_rotations(unit_vectors(turned, _CANCELLED), now) @ rotations
+    homes = parts.welded[corner_vertices]
+    return unit_vectors(np.einsum("lij,lj->li", whole[homes], normals), _CANCELLED)
 
 
 def _interpolated(

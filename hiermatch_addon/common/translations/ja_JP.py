@@ -2451,6 +2451,11 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} of the vertices have no place on the other mesh and follow their surroundings.": (
         "頂点の{0}はもう一方のメッシュに対応する場所がなく、周囲に従います。"
     ),
+    'Custom normals of "{0}" bend with the key only roughly along seams. With the result New Object they fit the '
+    "wrapped surface.": (
+        "「{0}」のカスタム法線は、シームに沿ってはキーにおおよそしか従いません。結果を新規オブジェクトにすると、"
+        "ラップした表面に合います。"
+    ),
     "The wrapped surface is folded in places, {0} of it.": (
         "ラップした表面はところどころ折れ重なっています（全体の{0}）。"
     ),

@@ -1980,6 +1980,8 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} of the vertices have no place on the other mesh and follow their surroundings.": (
         "{0} 的顶点在另一个网格上没有对应位置，随周围移动。"
     ),
+    'Custom normals of "{0}" bend with the key only roughly along seams. With the result New Object they fit the '
+    "wrapped surface.": ("“{0}”的自定义法线沿缝合边只能大致跟随形态键。结果选“新物体”时，它们与包裹后的表面相符。"),
     "The wrapped surface is folded in places, {0} of it.": "包裹后的表面有些地方发生折叠，占其 {0}。",
     "{0} and {1} more": "{0} 等另外 {1} 个",
     'Carried to "{0}": {1}': "已传递到“{0}”：{1}",

@@ -25,3 +25,15 @@ def test_a_seam_is_no_end():
     vertices, triangles = cylinder()
     loose = TriangleMesh(vertices[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
     assert open_ends(loose) == 2
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_an_opening_that_another_piece_goes_into_is_no_end(turned):
+    """A ball in one end of a tube, as a neck in a collar; far away it fills nothing."""
+    (vertices, triangles), (ball, around) = cylinder(), icosphere(3)
+    top = vertices[vertices[:, 2] > vertices[:, 2].max() - 1e-9].mean(axis=0)
+    width = np.ptp(vertices, axis=0).min()
+    around = around[:, ::-1] if turned else around
+    for place, count in ((top, 1), (top + 20 * width * np.eye(3)[0], 2)):
+        both = np.concatenate([vertices, 0.3 * width * ball + place])
+        assert open_ends(TriangleMesh(both, np.concatenate([triangles, around + len(vertices)]))) == count

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import ClosestPoints, MatchError, SurfaceMap, TriangleMesh, run
-from engine.retarget.wrapping import kept_in_place, wrap_steps
+from engine.retarget.wrapping import _folded, _smoothed, _united, kept_in_place, wrap_steps
 from tests.shapes import creature, cut_open, icosphere, irregular, rotation
 
 TURN = rotation([1.0, 2.0, -1.0], 2.0)
@@ -86,6 +86,34 @@ def test_folds_of_a_map_are_opened():
     wrapped = run(wrap_steps(mesh, mesh, folded, SurfaceMap.identity(mesh)))
     assert wrapped.folded == 0
     assert np.abs(wrapped.positions - mesh.vertices).max() < 0.15
+
+
+def test_what_is_folded_at_the_end_is_smoothed():
+    mesh = TriangleMesh(*irregular(*icosphere(8), rounds=1))
+    positions = mesh.vertices.copy()
+    tip = mesh.triangles[40][0]
+    positions[tip] += 1.3 * (positions[mesh.triangles[40][1]] - positions[tip])  # over the edge of its ring
+    folded = _folded(mesh, positions)
+    assert folded.any()
+    smooth, still = _smoothed(mesh, positions, folded)
+    assert not still.any()
+    moved = np.linalg.norm(smooth - mesh.vertices, axis=1)
+    assert moved.max() < 0.1
+    assert (moved > 0).mean() < 0.1
+
+
+def test_an_edge_without_length_stays_closed():
+    """Both of its ends are whole around, so nothing says that they are one but their place."""
+    ball, triangles = irregular(*icosphere(5), rounds=1)
+    (one, other), apart = triangles[0][:2], np.linalg.norm(np.diff(ball[triangles[0][:2]], axis=0))
+    ball[other] = ball[one]
+    rest = TriangleMesh(ball, triangles)
+    moved = 2 * ball
+    moved[other] += [0.1 * apart, 0, 0]
+    together = _united(rest, moved)
+    np.testing.assert_array_equal(together[one], together[other])
+    moved[other] += [50 * apart, 0, 0]  # another place by now
+    np.testing.assert_array_equal(_united(rest, moved), moved)
 
 
 def test_parts_that_the_other_lacks_move_with_what_is_around_them():

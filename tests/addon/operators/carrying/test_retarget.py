@@ -5,11 +5,13 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
+from hiermatch.hiermatch_addon.jobs import job
 from hiermatch.hiermatch_addon.jobs.job import job_options
 from hiermatch.hiermatch_addon.jobs.transfer_job import TransferJob, TransferOptions
 from hiermatch.hiermatch_addon.operators.carrying import transfer_operator
 from hiermatch.hiermatch_addon.scene.armatures import find_armature
 from hiermatch.hiermatch_addon.scene.deform_layer import read_weights
+from hiermatch.hiermatch_addon.storage.linked_matches import kept_linked
 from hiermatch.hiermatch_addon.storage.stored_map import find_maps
 from hiermatch.hiermatch_addon.transfers.options.weights import WeightSettings
 from hiermatch.hiermatch_addon.transfers.weights import WeightTransfer
@@ -194,7 +196,9 @@ def test_several_targets_get_theirs_and_no_match_is_kept():
     assert len(bpy.context.scene.hiermatch_retarget.report.done.splitlines()) == 2
 
 
-def test_a_linked_source_is_carried_from_and_its_match_is_not_kept(tmp_path):
+@pytest.fixture
+def linked_source(tmp_path):
+    """A pair whose source is another file's."""
     source, _ = add_rigged(resolution=4)
     add_target(source, part=0.3)
     path = str(tmp_path / "library.blend")
@@ -206,13 +210,34 @@ def test_a_linked_source_is_carried_from_and_its_match_is_not_kept(tmp_path):
         bpy.context.scene.collection.objects.link(into.objects[0])
     bpy.context.view_layer.update()
     quick()
-    assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
-    source, target = bpy.data.objects["Source"], bpy.data.objects["Target"]
+    return bpy.data.objects["Source"], bpy.data.objects["Target"]
+
+
+def test_a_linked_source_is_carried_from_and_the_target_keeps_the_match(linked_source, monkeypatch, tmp_path):
+    source, target = linked_source
     assert source.library is not None
+    assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
     assert weight_error(source, target) < 0.3
     assert not target.data.attributes.get("HM Map Weights")
     with pytest.raises(RuntimeError, match="is linked from"):
         bpy.ops.hiermatch.match(source="Source", target="Target")
+    # It is used by whatever is carried next, also in another session, until a mesh is edited.
+    count = []
+    real = job.match_steps
+    monkeypatch.setattr(job, "match_steps", lambda *bodies, **names: count.append(1) or real(*bodies, **names))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "scene.blend"))
+    target = bpy.data.objects["Target"]
+    target.vertex_groups.clear()
+    assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=True) == {"FINISHED"}
+    assert "spine" in target.vertex_groups
+    assert not count
+    assert kept_linked(bpy.data.objects["Source"], target).stored.answer.refined
+    target.data.vertices[0].co.x += 0.01
+    assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
+    assert count == [1]
+    assert bpy.ops.hiermatch.clear(object="Target") == {"FINISHED"}
+    assert kept_linked(bpy.data.objects["Source"], target) is None
 
 
 def test_what_a_script_has_named_is_picked_if_nothing_is(pair):

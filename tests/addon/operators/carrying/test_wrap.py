@@ -9,6 +9,7 @@ import pytest
 from hiermatch.hiermatch_addon.transfers.wrap import wrap_key_name
 from scipy.spatial import cKDTree
 
+from tests.addon.characters import add_person, match_at_once
 from tests.addon.scenes import mesh_snapshot
 from tests.addon.shape_keys import positions
 
@@ -131,3 +132,95 @@ def test_shared_meshes_are_refused(pair):
     with pytest.raises(RuntimeError, match="shared with other objects"):
         wrap()
     assert source.data.shape_keys is None
+
+
+@pytest.fixture
+def people(monkeypatch):
+    """Two persons of two objects each, one standing otherwise, smoothly shaded across the border of their objects."""
+    match_at_once(monkeypatch)
+    rigs = add_person("Hero")[0], add_person("Other", hanging=True)[0]
+    for rig in rigs:
+        _shade_as_one(parts_of_person(rig))
+    bpy.context.view_layer.update()
+    return rigs
+
+
+def parts_of_person(rig):
+    return [bpy.data.objects[f"{rig.name} {part}"] for part in ("Body", "Head")]
+
+
+def _shade_as_one(parts):
+    """Give parts the custom normals of the surface that they are together."""
+    normals = np.concatenate([[vertex.normal for vertex in part.data.vertices] for part in parts])
+    where, place = np.unique(np.concatenate([positions(part) for part in parts]), axis=0, return_inverse=True)
+    sums = np.stack([np.bincount(place.ravel(), axis, len(where)) for axis in normals.T], axis=1)[place.ravel()]
+    sums /= np.linalg.norm(sums, axis=1, keepdims=True)
+    start = 0
+    for part in parts:
+        part.data.polygons.foreach_set("use_smooth", [True] * len(part.data.polygons))
+        own = sums[start : start + len(part.data.vertices)]
+        start += len(own)
+        part.data.normals_split_custom_set_from_vertices(own.tolist())
+
+
+def seam_of(parts):
+    """Gaps and angles, in degrees, between two parts as shown, where their meshes have vertices at one place."""
+    first, second = (positions(part) for part in parts)
+    found, other = cKDTree(first).query(second)
+    along = np.flatnonzero(found == 0)
+    assert len(along) > 20
+    graph = bpy.context.evaluated_depsgraph_get()
+    places, normals = [], []
+    for part, chosen in zip(parts, (other[along], along), strict=True):
+        mesh = part.evaluated_get(graph).data
+        places.append(np.array([mesh.vertices[number].co for number in chosen]))
+        corner = {loop.vertex_index: loop.index for loop in mesh.loops}
+        normals.append(np.array([mesh.corner_normals[corner[number]].vector for number in chosen]))
+    cosines = np.einsum("nd,nd->n", *normals).clip(-1, 1)
+    return np.linalg.norm(np.subtract(*places), axis=1), np.degrees(np.arccos(cosines))
+
+
+@pytest.mark.parametrize("result", ["KEY", "OBJECT"])
+def test_coincident_vertices_of_two_objects_stay_so(people, result):
+    assert wrap(source="Hero", target="Other", wrap_result=result) == {"FINISHED"}
+    parts = parts_of_person(people[0])
+    if result == "OBJECT":
+        parts = [bpy.data.objects[f"{part.name} to Other"] for part in parts]
+    for part in parts:
+        part.modifiers.clear()
+    bpy.context.view_layer.update()
+    gaps, angles = seam_of(parts)
+    assert gaps.max() < 1e-6
+    remarks = bpy.context.scene.hiermatch_retarget.report.remarks
+    assert ("Custom normals" in remarks) == (result == "KEY")
+    if result == "OBJECT":
+        assert angles.max() < 2
+
+
+def test_a_new_object_is_moved_by_the_rig_of_what_it_was_laid_onto(people):
+    source, target = people
+    assert wrap(source="Hero", target="Other", wrap_result="OBJECT") == {"FINISHED"}
+    for rig in people:
+        assert all(part.data.shape_keys is None for part in parts_of_person(rig))
+        assert all([one.object for one in part.modifiers] == [rig] for part in parts_of_person(rig))
+    made = [bpy.data.objects[f"{part.name} to Other"] for part in parts_of_person(source)]
+    for part in made:
+        assert [modifier.object for modifier in part.modifiers] == [target]
+        assert part.parent == target
+    for bone in ("thigh.L", "upper_arm.R"):
+        target.pose.bones[bone].rotation_mode = "QUATERNION"
+        target.pose.bones[bone].rotation_quaternion = (0.9, 0.3, 0.2, 0.25)
+    for part, model in zip(made, parts_of_person(target), strict=True):
+        np.testing.assert_allclose(shown(part), shown(model), atol=0.02)
+
+
+@pytest.mark.parametrize("kept", ["other bones", "own place"])
+def test_a_new_object_keeps_its_rig_where_the_other_has_none_for_it(people, kept):
+    source, target = people
+    if kept == "other bones":
+        target.data.bones["spine1"].name = "torso"
+    options = {"wrap_place": "OWN"} if kept == "own place" else {}
+    assert wrap(source="Hero", target="Other", wrap_result="OBJECT", **options) == {"FINISHED"}
+    made = bpy.data.objects["Hero Body to Other"]
+    assert [modifier.object for modifier in made.modifiers] == [source]
+    assert made.parent == source

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Matches with sources of other files, which cannot be written to: the target keeps all of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..common.access import mesh_of
+from ..common.errors import ObjectError
+from ..scene.character import parts_of, positions_of, topology_of, vertex_count
+from .match_file import MatchFile, packed_match, unpacked_match
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ..scene.character import Side
+    from .stored_match import StoredMatch
+    from .vertex_maps import StoredMaps
+
+__all__ = ["forget_linked", "keep_linked", "kept_linked", "linked_prefixes"]
+
+_PROPERTY = "hiermatch_linked"
+"""Custom property of the mesh of a target's first part: for each prefix a match, as an NPZ file would hold it."""
+
+
+def keep_linked(source: Side, target: Side, stored: StoredMatch, maps: StoredMaps, prefix: str) -> None:
+    """Keep a match on its target alone, in the place of one with the same prefix."""
+    packed = packed_match(MatchFile(stored, (vertex_count(source), vertex_count(target)), maps))
+    mesh: Any = mesh_of(parts_of(target)[0])
+    mesh[_PROPERTY] = _packed(parts_of(target)[0]) | {prefix: packed}
+
+
+def kept_linked(source: Side, target: Side, prefix: str = "") -> MatchFile | None:
+    """Return the match of two sides that the target keeps alone, if neither was edited since; None if there is none.
+
+    Parameters
+    ----------
+    source, target : bpy.types.Object or Character
+        The sides.
+    prefix : str
+        With which it was kept; empty for any.
+    """
+    topologies = topology_of(source), topology_of(target)
+    positions = positions_of(source), positions_of(target)
+    for name, packed in _packed(parts_of(target)[0]).items():
+        if prefix not in ("", name):
+            continue
+        try:
+            match = unpacked_match(packed)
+        except ObjectError:  # by a later version, or somebody has written there
+            continue
+        if (match.stored.topologies, match.stored.positions) == (topologies, positions) and match.maps is not None:
+            return match
+    return None
+
+
+def linked_prefixes(obj: bpy.types.Object) -> tuple[str, ...]:
+    """Return the prefixes of the matches that an object keeps alone."""
+    return tuple(_packed(obj))
+
+
+def forget_linked(obj: bpy.types.Object, prefix: str) -> None:
+    """Remove the match that an object keeps alone."""
+    mesh: Any = mesh_of(obj)
+    left = {name: packed for name, packed in _packed(obj).items() if name != prefix}
+    if left:
+        mesh[_PROPERTY] = left
+    else:
+        del mesh[_PROPERTY]
+
+
+def _packed(obj: bpy.types.Object) -> dict[str, bytes]:
+    """Return all that an object keeps."""
+    mesh: Any = mesh_of(obj)
+    found = mesh.get(_PROPERTY)
+    plain = {} if found is None else found.to_dict()
+    return {name: packed for name, packed in plain.items() if isinstance(packed, bytes)}
