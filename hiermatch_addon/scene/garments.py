@@ -13,7 +13,7 @@ from ..common.errors import ObjectError
 from .armatures import find_armature, moving_armatures
 from .character import parts_of
 from .garment_shape_io import mirror_axes
-from .key_drivers import counterparts
+from .key_drivers import counterparts, point_key_drivers
 from .pair import check_object
 from .shape_key_io import keys_of
 
@@ -134,7 +134,7 @@ def fitted_copy(
     *,
     motion: NDArray[np.float64],
     growth: float,
-) -> bpy.types.Object:
+) -> tuple[bpy.types.Object, list[str]]:
     """Copy an item with all that is on it, for another body; one that was fitted before is replaced.
 
     Its modifiers stay live: sizes of Solidify, Bevel and Displace grow with it, a Mirror turns with it, and what they
@@ -152,6 +152,13 @@ def fitted_copy(
         How the source turns and moves on the whole to become the target, in world space.
     growth : float
         How many times as large the item becomes.
+
+    Returns
+    -------
+    copy : bpy.types.Object
+        The copy.
+    kept : list of str
+        Names of what belongs to the source that drivers of its shape keys still read from.
     """
     before = made_copy(item, target)
     copy, mesh = item.copy(), mesh_of(item).copy()
@@ -180,7 +187,13 @@ def fitted_copy(
     for part in parts_of(source):
         places |= counterparts(part, largest, find_armature(source), find_armature(target))
     _point_to(copy, places, growth)
-    return copy
+    keys = keys_of(copy)
+    if keys is None:
+        return copy, []
+    theirs = [found for part in (largest, *parts_of(target)) if (found := keys_of(part)) is not None]
+    every = {mine: (other,) for mine, other in places.items()}
+    every |= {found: tuple(theirs) for part in parts_of(source) if (found := keys_of(part)) is not None}
+    return copy, point_key_drivers(keys, every)
 
 
 def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:
@@ -205,7 +218,7 @@ def _collection_of(context: bpy.types.Context, body: Side) -> bpy.types.Collecti
 
 
 def _point_to(copy: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.ID], growth: float) -> None:
-    """Let modifiers and drivers of a copy point to what belongs to the other body, and sizes grow."""
+    """Let modifiers of a copy point to what belongs to the other body, and sizes grow."""
     for modifier in copy.modifiers:
         changed: Any = modifier
         for member in _pointers(modifier):
@@ -214,13 +227,6 @@ def _point_to(copy: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.ID
                 setattr(changed, member, places[value])
         for member in _SIZES.get(modifier.type, ()):
             setattr(changed, member, growth * getattr(changed, member))
-    keys = keys_of(copy)
-    animation = None if keys is None else keys.animation_data
-    curves = [] if animation is None else list(animation.drivers)
-    for curve in curves:
-        for variable in cast("bpy.types.Driver", curve.driver).variables:
-            for target in cast("Any", variable).targets:
-                target.id = places.get(target.id, target.id)
 
 
 def _pointers(modifier: bpy.types.Modifier) -> list[str]:

@@ -78,6 +78,8 @@ class WornItem:
         Vertices of rigid pieces.
     find_rigid : bool
         Whether others are looked for.
+    pieces : (n,) array of int, optional
+        The rigid piece that each vertex belongs to, -1 where the item bends, if that is known: see `FittedItem`.
     tightness : (n,) array of float, optional
         From -1, loose, to 1, tight, at each vertex.
     left : (n,) array of bool, optional
@@ -91,6 +93,7 @@ class WornItem:
     fit: str = "AUTO"
     rigid: NDArray[np.bool_] | None = None
     find_rigid: bool = True
+    pieces: NDArray[np.int64] | None = None
     tightness: NDArray[np.float64] | None = None
     left: NDArray[np.bool_] | None = None
     margin: float = 0.0
@@ -235,8 +238,10 @@ def _carried(item: WornItem, motion: BodyMotion, skin: Surface, unit: float) -> 
     if item.fit == "LOOSE":
         reach = reach + 0.05 * unit
     moved = motion.move(item.mesh.vertices, reach, item.bones)
-    named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
-    pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
+    pieces = item.pieces
+    if pieces is None:
+        named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
+        pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
     return _Work(item, moved, distances, pieces, moved.positions)
 
 
