@@ -11,14 +11,14 @@ from mathutils import Matrix
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from .armatures import find_armature, moving_armatures
-from .character import parts_of
+from .character import joined, parts_of
 from .garment_shape_io import mirror_axes
 from .key_drivers import counterparts, point_key_drivers
 from .pair import check_object
 from .shape_key_io import keys_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
     import numpy as np
     from numpy.typing import NDArray
@@ -36,6 +36,7 @@ __all__ = [
     "fitted_to",
     "made_copy",
     "meshes_of",
+    "undressed",
 ]
 
 ITEM, BODY = "hiermatch_item", "hiermatch_body"
@@ -79,6 +80,12 @@ def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
     if not found:
         raise ObjectError(f'The collection "{name}" has no meshes that could be fitted.')
     return tuple(found)
+
+
+def undressed(body: Side, items: Collection[str]) -> Side:
+    """Leave items out of a character that they are parts of, as all that its armature moves is; not all of it."""
+    parts = [part for part in parts_of(body) if part.name not in items]
+    return joined(body.name, parts) if parts else body
 
 
 def fitted_to(body: Side) -> list[bpy.types.Object]:
