@@ -213,7 +213,7 @@ def wear_steps(
         works.append(_carried(item, motion, skin_before, unit))
         _elastic(works[-1], unit)
     for work in works:
-        _place_pieces(work, works, unit)
+        _place_pieces(work, works, motion, unit)
     order = sorted(range(len(works)), key=lambda number: (_height(works[number]), number))
     spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
     for done, number in enumerate(order):
@@ -271,8 +271,8 @@ def _elastic(work: _Work, unit: float) -> None:
     work.motion = replace(moved, rotations=rotations, scales=scales)
 
 
-def _place_pieces(work: _Work, works: Sequence[_Work], unit: float) -> None:
-    """Put rigid pieces where the skin takes them, or what they are fastened to."""
+def _place_pieces(work: _Work, works: Sequence[_Work], motion: BodyMotion, unit: float) -> None:
+    """Put rigid pieces where the skin takes them, or what they are fastened to, in the size of the skin around."""
     if work.pieces.max(initial=-1) < 0:
         return
     before = work.item.mesh.vertices
@@ -289,7 +289,7 @@ def _place_pieces(work: _Work, works: Sequence[_Work], unit: float) -> None:
             close = distances < _FASTENED * unit
             if close.any():
                 goal = goal + shifts[near[close]].mean(axis=0)
-        positions[inside] = placed_rigidly(before[inside], goal, float(work.motion.scales[inside].mean()))
+        positions[inside] = placed_rigidly(before[inside], goal, motion.growth_around(before[inside]))
     work.positions = positions
 
 
