@@ -39,6 +39,7 @@ from .retarget.values.face_transfer import carry_face_values
 from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
 from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
+from .retarget.wear.key_following import follow_keys_steps
 from .retarget.wear.pose_mending import MendedWeights, mend_weights_steps
 from .retarget.wear.wearing import FittedItem, WornItem, wear_steps
 from .retarget.weights.skin_weights import carried as carry_weights
@@ -126,6 +127,7 @@ __all__ = [
     "find_symmetry_steps",
     "fit_rig",
     "fit_rig_steps",
+    "follow_keys_steps",
     "in_between",
     "is_posed",
     "kept_in_place",

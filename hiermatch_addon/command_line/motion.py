@@ -76,4 +76,4 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         clips = [action for action in bpy.data.actions if action not in known]
         save_outputs(parsed, report, pair[1], console, clean=True, clips=clips)
 
-    return run_transfers(parsed, console, "retarget_action", start, finish)
+    return run_transfers(parsed, console, "retarget_action", start, finish=finish)

@@ -21,6 +21,9 @@ __all__ = ["Parser", "add_options", "chosen_options", "given_options", "option_n
 _OBJECTS = frozenset({"rna_type", "source", "target", "targets", "object"})
 """Properties that name objects: on the command line they are arguments."""
 
+_LISTS = frozenset({"items"})
+"""Collections of names: on the command line they are texts with commas between the names."""
+
 _YES, _NO = frozenset({"1", "true", "yes", "on"}), frozenset({"0", "false", "no", "off"})
 
 
@@ -100,7 +103,8 @@ def _properties(operator: str) -> list[Any]:
     operators: Any = bpy.ops
     described = getattr(operators.hiermatch, operator)
     properties = described.get_rna_type().properties
-    return [one for one in properties if one.identifier not in _OBJECTS and one.type != "COLLECTION"]
+    listed = [one for one in properties if one.type != "COLLECTION" or one.identifier in _LISTS]
+    return [one for one in listed if one.identifier not in _OBJECTS]
 
 
 def _flag(name: str) -> str:
@@ -108,6 +112,8 @@ def _flag(name: str) -> str:
 
 
 def _default(described: Any) -> Any:  # noqa: ANN401 - a property, and whatever its values are
+    if described.type == "COLLECTION":
+        return ()
     return set(described.default_flag) if getattr(described, "is_enum_flag", False) else described.default
 
 
@@ -122,6 +128,9 @@ def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
         words = [item.identifier.lower() for item in described.enum_items]
         about |= {"type": _word(described, words), "metavar": f"{{{','.join(words)}}}"}
         shown = described.default.lower()
+    elif described.type == "COLLECTION":
+        about |= {"type": _names, "metavar": "NAME,NAME,..."}
+        shown = ""
     elif described.type == "STRING":
         about |= {"type": _text(described.length_max), "metavar": "TEXT"}
         shown = f'"{described.default}"' if described.default else ""
@@ -152,6 +161,10 @@ def _text(longest: int) -> Callable[[str], str]:
         return text
 
     return parse
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
 
 
 def _number(described: Any) -> Callable[[str], float]:  # noqa: ANN401 - a property

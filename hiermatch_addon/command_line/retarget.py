@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from .console import Console
     from .reports import Report
 
-    _Start: TypeAlias = Callable[[Any, tuple[Side, Side], TransferOptions], TransferJob | MotionJob]
+    _Pair: TypeAlias = tuple[Side, Side]
+    _Start: TypeAlias = Callable[[Any, _Pair, TransferOptions], TransferJob | MotionJob]
 
 __all__ = ["NOT_OF_THE_MATCH", "add_commands", "run_transfers", "transferring"]
 
@@ -86,7 +87,9 @@ def run_transfers(
     console: Console,
     operator: str,
     start: _Start,
-    finish: Callable[[Report, tuple[Side, Side], list[Carried]], None] | None = None,
+    *,
+    finish: Callable[[Report, _Pair, list[Carried]], None] | None = None,
+    choose: Callable[[Any, _Pair], _Pair] | None = None,
 ) -> ExitCode:
     """Carry something over and write all files that are wanted.
 
@@ -102,6 +105,8 @@ def run_transfers(
         Starts the job: of the operator's options, for source and target, by some way between them.
     finish : callable, optional
         Writes the files in place of `save_results`, when all was carried over.
+    choose : callable, optional
+        Returns what of source and target is meant by the operator's options.
     """
     warn_if_nothing_is_written(parsed, console)
 
@@ -116,7 +121,8 @@ def run_transfers(
             accept_doubtful=options.accept_doubtful,
         )
         console.progress(0.0, "Reading files")
-        source, target = load_pair(parsed, report)
+        pair = load_pair(parsed, report)
+        source, target = pair if choose is None else choose(options, pair)
         context = bpy.context
         job = start(options, (source, target), settings)
         drive(job, context, console)

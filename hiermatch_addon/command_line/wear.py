@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..scene.character import parts_of
-from ..scene.garments import meshes_of
+from ..scene.garments import meshes_of, undressed
 from ..transfers.options.wear import wear_settings
 from ..transfers.wear import WearTransfer
 from .command import EXIT_CODES
@@ -32,8 +32,9 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         "wear",
         help="fit clothes, hair and accessories of one body to another",
         description="Match the source with the target if they carry no match yet, and fit what the source wears: the "
-        "objects of a collection, or else all that its armature moves. How each fits is kept on it.",
-        usage="%(prog)s SOURCE TARGET --output FILE [--collection NAME] [options]",
+        "objects that are named, or those of a collection, or else all that its armature moves. Of a source that is an "
+        "armature or a collection, what is not an item is the body. How each fits is kept on it.",
+        usage="%(prog)s SOURCE TARGET --output FILE [--items NAME,NAME,... | --collection NAME] [options]",
         epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
@@ -46,11 +47,18 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Fit and write."""
-    return run_transfers(parsed, console, "wear", transferring(_transfers, optional=False))
+    return run_transfers(parsed, console, "wear", transferring(_transfers, optional=False), choose=_undressed_pair)
 
 
-def _transfers(options: Any, pair: tuple[Side, Side]) -> list[Transfer]:  # noqa: ANN401 - stands for the operator
+def _undressed_pair(options: Any, pair: tuple[Side, Side]) -> tuple[Side, Side]:  # noqa: ANN401 - as below
+    """Find the items by name, and leave them out of a source of several objects."""
+    source, target = pair
+    if options.collection and not options.items:
+        bodies = [*parts_of(target), *(parts_of(source) if len(parts_of(source)) == 1 else ())]
+        options.items = meshes_of(options.collection, *bodies)
+    return undressed(source, options.items), target
+
+
+def _transfers(options: Any, _pair: tuple[Side, Side]) -> list[Transfer]:  # noqa: ANN401 - stands for the operator
     """Make the transfer of the options."""
-    bodies = [part for side in pair for part in parts_of(side)]
-    items = meshes_of(options.collection, *bodies) if options.collection else ()
-    return [WearTransfer(wear_settings(options, items))]
+    return [WearTransfer(wear_settings(options, options.items))]

@@ -11,14 +11,14 @@ from mathutils import Matrix
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from .armatures import find_armature, moving_armatures
-from .character import parts_of
+from .character import joined, parts_of
 from .garment_shape_io import mirror_axes
-from .key_drivers import counterparts
+from .key_drivers import counterparts, point_key_drivers
 from .pair import check_object
 from .shape_key_io import keys_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
     import numpy as np
     from numpy.typing import NDArray
@@ -36,6 +36,7 @@ __all__ = [
     "fitted_to",
     "made_copy",
     "meshes_of",
+    "undressed",
 ]
 
 ITEM, BODY = "hiermatch_item", "hiermatch_body"
@@ -79,6 +80,12 @@ def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
     if not found:
         raise ObjectError(f'The collection "{name}" has no meshes that could be fitted.')
     return tuple(found)
+
+
+def undressed(body: Side, items: Collection[str]) -> Side:
+    """Leave items out of a character that they are parts of, as all that its armature moves is; not all of it."""
+    parts = [part for part in parts_of(body) if part.name not in items]
+    return joined(body.name, parts) if parts else body
 
 
 def fitted_to(body: Side) -> list[bpy.types.Object]:
@@ -134,7 +141,7 @@ def fitted_copy(
     *,
     motion: NDArray[np.float64],
     growth: float,
-) -> bpy.types.Object:
+) -> tuple[bpy.types.Object, list[str]]:
     """Copy an item with all that is on it, for another body; one that was fitted before is replaced.
 
     Its modifiers stay live: sizes of Solidify, Bevel and Displace grow with it, a Mirror turns with it, and what they
@@ -152,6 +159,13 @@ def fitted_copy(
         How the source turns and moves on the whole to become the target, in world space.
     growth : float
         How many times as large the item becomes.
+
+    Returns
+    -------
+    copy : bpy.types.Object
+        The copy.
+    kept : list of str
+        Names of what belongs to the source that drivers of its shape keys still read from.
     """
     before = made_copy(item, target)
     copy, mesh = item.copy(), mesh_of(item).copy()
@@ -180,7 +194,13 @@ def fitted_copy(
     for part in parts_of(source):
         places |= counterparts(part, largest, find_armature(source), find_armature(target))
     _point_to(copy, places, growth)
-    return copy
+    keys = keys_of(copy)
+    if keys is None:
+        return copy, []
+    theirs = [found for part in (largest, *parts_of(target)) if (found := keys_of(part)) is not None]
+    every = {mine: (other,) for mine, other in places.items()}
+    every |= {found: tuple(theirs) for part in parts_of(source) if (found := keys_of(part)) is not None}
+    return copy, point_key_drivers(keys, every)
 
 
 def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:
@@ -205,7 +225,7 @@ def _collection_of(context: bpy.types.Context, body: Side) -> bpy.types.Collecti
 
 
 def _point_to(copy: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.ID], growth: float) -> None:
-    """Let modifiers and drivers of a copy point to what belongs to the other body, and sizes grow."""
+    """Let modifiers of a copy point to what belongs to the other body, and sizes grow."""
     for modifier in copy.modifiers:
         changed: Any = modifier
         for member in _pointers(modifier):
@@ -214,13 +234,6 @@ def _point_to(copy: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.ID
                 setattr(changed, member, places[value])
         for member in _SIZES.get(modifier.type, ()):
             setattr(changed, member, growth * getattr(changed, member))
-    keys = keys_of(copy)
-    animation = None if keys is None else keys.animation_data
-    curves = [] if animation is None else list(animation.drivers)
-    for curve in curves:
-        for variable in cast("bpy.types.Driver", curve.driver).variables:
-            for target in cast("Any", variable).targets:
-                target.id = places.get(target.id, target.id)
 
 
 def _pointers(modifier: bpy.types.Modifier) -> list[str]:

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drivers of shape keys, copied from one object to another that has the same keys."""
+"""Drivers of shape keys: copied to an object that has the same keys, or made to follow those of another."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .shape_key_io import keys_of
+from .shape_key_io import key_value_path, keys_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     import bpy
 
-__all__ = ["copy_key_drivers", "counterparts"]
+__all__ = ["copy_key_drivers", "counterparts", "drive_key", "point_key_drivers"]
 
 
 def counterparts(
@@ -67,3 +67,57 @@ def copy_key_drivers(
                 elif place.id is not None and place.id.id_type != "SCENE":
                     kept.add(place.id.name)
     return count, kept
+
+
+def drive_key(keys: bpy.types.Key, name: str, leader: bpy.types.Key) -> None:
+    """Let the value of a shape key be that of the key of the same name among those of another object."""
+    path = key_value_path(name)
+    keys.driver_remove(path)
+    driver: Any = keys.driver_add(path)
+    driver.driver.type = "AVERAGE"
+    variable = driver.driver.variables.new()
+    variable.name = "followed"
+    place = variable.targets[0]
+    place.id_type, place.id, place.data_path = "KEY", leader, path
+
+
+def point_key_drivers(keys: bpy.types.Key, places: Mapping[bpy.types.ID, Iterable[bpy.types.ID]]) -> list[str]:
+    """Let the drivers of shape keys that read from some things read from others.
+
+    Parameters
+    ----------
+    keys : bpy.types.Key
+        The keys.
+    places : mapping
+        What may take the place of what: the first that has what is read, a bone or another property.
+
+    Returns
+    -------
+    list of str
+        Names of those that they still read from, because nothing else has it.
+    """
+    kept = set()
+    for curve in keys.animation_data.drivers if keys.animation_data is not None else ():
+        driver: Any = curve.driver
+        for variable in driver.variables:
+            for place in variable.targets:
+                others = places.get(place.id)
+                if others is None:
+                    continue
+                found = next((other for other in others if _can_be_read(variable.type, place, other)), None)
+                if found is None:
+                    kept.add(place.id.name)
+                else:
+                    place.id = found
+    return sorted(kept)
+
+
+def _can_be_read(kind: str, place: Any, other: Any) -> bool:  # noqa: ANN401 - a target of a driver's variable
+    """Tell whether something has what a variable of such a kind reads."""
+    if kind != "SINGLE_PROP":
+        return not place.bone_target or (other.pose is not None and place.bone_target in other.pose.bones)
+    try:
+        other.path_resolve(place.data_path)
+    except ValueError:
+        return False
+    return True

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -16,6 +16,7 @@ from ...engine import (
     TriangleMesh,
     WornItem,
     carry_weights,
+    follow_keys_steps,
     kept_in_place,
     mend_weights_steps,
     row_sums,
@@ -42,6 +43,7 @@ from ..scene.mesh_io import add_colors, position_digest, read_mesh, topology
 from ..scene.pair import check_writable, named_object
 from ..scene.shape_key_io import KeySettings, add_keys, check_keys_writable, key_positions, keys_of, shape_key_names
 from .body_below import cover_body
+from .followed_keys import BodyKeys, read_body_keys, write_followed
 from .item_weights import ItemWeights, chosen_weights, in_columns, replaced
 from .options.rig import RigSettings
 from .options.weights import WeightSettings
@@ -116,6 +118,8 @@ class WearTransfer:
         self._old_bones: set[str] = set()
         self._weights: list[ItemWeights | None] = []
         self._mended: list[tuple[str, int]] = []
+        self._keys: BodyKeys | None = None
+        self._followed: list[NDArray[np.float64]] = []
         self._notes: list[str] = []
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
@@ -143,6 +147,9 @@ class WearTransfer:
             set() if mover is None else {bone.name for bone in armature_of(mover).bones if bone.use_deform}
         )
         body, other = (read_surface(side, depsgraph, use_modifiers=False) for side in (source, target))
+        if settings.keys and settings.result == "OBJECT":
+            self._keys = read_body_keys(context, target)
+            self._notes.extend(self._keys.notes)
         for item in chosen:
             self._items.append(self._read_item(depsgraph, item, source, names))
             around = body.vertices if self._items[-1].at_rest or self._posed is None else self._posed
@@ -193,23 +200,38 @@ class WearTransfer:
                 body = TriangleMesh(self._posed, body.triangles)
             worn = [self._items[number].worn for number in numbers]
             made = wear_steps(body, pair.target, there, registered, worn, bones=self._bones)
-            found = yield from within(made, start, 0.94)
+            found = yield from within(made, start, 0.9)
             for number, fitted in zip(numbers, found, strict=True):
                 self._fitted[number] = fitted
-            start = 0.94
+            start = 0.9
         self._weights = [None] * len(self._items)
         if self._settings.result == "OBJECT":
-            yield from within(self._weight_steps(passage), 0.95, 1.0)
+            yield from within(self._moving_steps(passage), 0.9, 1.0)
 
-    def _weight_steps(self, passage: Passage) -> Steps[None]:
-        """Find the weights of all items."""
-        rig = self._other
-        if rig is None and self._first and passage.rig is not None:
+    def _moving_steps(self, passage: Passage) -> Steps[None]:
+        """Find how all items are moved with the body: their weights and keys."""
+        other = self._other
+        if other is None and self._first and passage.rig is not None:
             weights = carry_weights(passage.rig.weights, passage.pair.target_to_source)
             skeleton = Skeleton(passage.rig.skeleton.parents, passage.rig.heads, passage.rig.tails)
-            rig = SourceRig("", passage.bone_names, skeleton, weights)
-        if rig is None:
-            return
+            other = SourceRig("", passage.bone_names, skeleton, weights)
+        if other is not None:
+            yield from within(self._weight_steps(passage, other), 0.0, 0.4)
+        if self._keys is not None and len(self._keys.settings):
+            yield from within(self._key_steps(passage.pair.target, self._keys, other), 0.4, 1.0)
+
+    def _key_steps(self, body: TriangleMesh, keys: BodyKeys, rig: SourceRig | None) -> Steps[None]:
+        """Find how the items follow the body's keys."""
+        worn = []
+        for item, fitted, weights in zip(self._items, self._fitted, self._weights, strict=True):
+            bones = None if rig is None or weights is None else in_columns(weights, rig.names)
+            mesh = TriangleMesh(fitted.positions, item.worn.mesh.triangles)
+            worn.append(replace(item.worn, mesh=mesh, bones=bones, pieces=fitted.pieces, margin=0.0))
+        on_skin = None if rig is None else rig.weights
+        self._followed = yield from follow_keys_steps(body, keys.offsets, worn, bones=on_skin)
+
+    def _weight_steps(self, passage: Passage, rig: SourceRig) -> Steps[None]:
+        """Find the weights of all items."""
         there = passage.pair.source_to_target
         spread = csr_array(
             (there.barycentric.ravel(), there.corners.ravel(), np.arange(0, 3 * len(there) + 1, 3)),
@@ -241,14 +263,18 @@ class WearTransfer:
         notes = [*self._notes, *(note for report in reports for note in report.notes)]
         remarks: list[str] = [remark for report in reports for remark in report.remarks]
         made: list[bpy.types.Object] = []
-        for item, obj, fitted, weights in zip(self._items, items, self._fitted, self._weights, strict=True):
+        for number, (item, obj, fitted) in enumerate(zip(self._items, items, self._fitted, strict=True)):
             if self._settings.result == "KEY":
                 self._write_key(obj, target, fitted)
                 made.append(obj)
             else:
-                copy, said = self._write_copy(context, obj, (source, target), fitted, weights)
+                copy, said = self._write_copy(context, obj, (source, target), fitted, self._weights[number])
                 made.append(copy)
                 notes.extend(note for note in said if note not in notes)
+                if self._keys is not None and self._followed:
+                    followed = len(write_followed(copy, target, self._keys, self._followed[number]))
+                    if followed:
+                        remarks.append(f'"{copy.name}" follows {counted(followed, "shape key")} of "{target.name}".')
             if self._settings.colors:
                 _write_colors(made[-1], fitted)
             remarks.append(_done(item.name, fitted))
@@ -364,7 +390,13 @@ class WearTransfer:
         """Write a fitted copy; return it, and what is to be known."""
         source, target = bodies
         notes: list[str] = []
-        copy = fitted_copy(context, item, source, target, motion=self._motion, growth=float(np.median(fitted.scales)))
+        growth = float(np.median(fitted.scales))
+        copy, kept = fitted_copy(context, item, source, target, motion=self._motion, growth=growth)
+        if kept:
+            notes.append(
+                f'Drivers of the shape keys of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
+                "what they need. Carry its shape keys or bones over by Retarget, and fit it again."
+            )
         write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])
         armature = find_armature(target)
         if armature is None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, vstack
 from scipy.spatial import cKDTree
+from scipy.spatial.distance import pdist
 
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
@@ -26,7 +27,14 @@ _TURN_RADIUS = 0.02
 """Over what distance rotations of the skin are averaged, in sqrt(area): about the breadth of a finger."""
 
 _SCALE_RADIUS = 0.08
-"""The same for scales: a button is as large as what is around it on the whole, not as the skin under it."""
+"""The same for scales: cloth is as large as what is around it on the whole, not as the skin under it."""
+
+_PIECE_RADIUS = 0.08
+"""Over what distance from a rigid piece, in sqrt(area), its size is that of the skin around it: some 11 cm on a human.
+With 0.04 to 0.16 ``python -m tests.benchmarks.outfits`` has nearly the same error of sizes, .03."""
+
+_MOST_PLACES = 400
+"""Places between which distances are measured for that, all with all."""
 
 _NEIGHBOURS = 48
 """Places on the skin that carry a point."""
@@ -164,6 +172,33 @@ class BodyMotion:
     def overall(self) -> float:
         """How many times as long lengths become on the whole."""
         return float(np.average(self._levels[0].scales, weights=self._levels[0].areas))
+
+    def growth_around(self, points: NDArray[np.float64]) -> float:
+        """Find how many times as far apart the skin around some points comes to be.
+
+        The median over pairs of places counts: unlike areas and edges it knows nothing of folds that the skin has on
+        one body alone, such as eye sockets, the mouth and ears, and little of a joint that is bent.
+
+        Parameters
+        ----------
+        points : (k, 3) array of float
+            Points around the body before, of one rigid piece.
+        """
+        radius = _PIECE_RADIUS * self._size
+        number = int(np.searchsorted([level.spacing for level in self._levels], radius / 2, side="right")) - 1
+        level = self._levels[max(number, 0)]
+        away = cKDTree(points).query(level.positions)[0]
+        near = np.argsort(away, kind="stable")[:_MOST_PLACES]
+        closeness = level.areas[near] * np.exp(-(away[near] ** 2 - away[near[0]] ** 2) / (2 * radius**2))
+        before, after = pdist(level.positions[near]), pdist(level.images[near])
+        one, other = np.triu_indices(len(near), 1)
+        weights = closeness[one] * closeness[other] * (before > 0)
+        if not weights.sum() > 0:
+            return self.overall
+        ratios = after / np.where(before > 0, before, 1.0)
+        order = np.argsort(ratios, kind="stable")
+        middle = np.searchsorted(np.cumsum(weights[order]), weights.sum() / 2)
+        return float(ratios[order][min(int(middle), len(order) - 1)])
 
     def move(self, points: NDArray[np.float64], distances: NDArray[np.float64], bones: csr_array | None) -> Motion:
         """Move points along.

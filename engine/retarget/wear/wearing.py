@@ -78,6 +78,8 @@ class WornItem:
         Vertices of rigid pieces.
     find_rigid : bool
         Whether others are looked for.
+    pieces : (n,) array of int, optional
+        The rigid piece that each vertex belongs to, -1 where the item bends, if that is known: see `FittedItem`.
     tightness : (n,) array of float, optional
         From -1, loose, to 1, tight, at each vertex.
     left : (n,) array of bool, optional
@@ -91,6 +93,7 @@ class WornItem:
     fit: str = "AUTO"
     rigid: NDArray[np.bool_] | None = None
     find_rigid: bool = True
+    pieces: NDArray[np.int64] | None = None
     tightness: NDArray[np.float64] | None = None
     left: NDArray[np.bool_] | None = None
     margin: float = 0.0
@@ -210,7 +213,7 @@ def wear_steps(
         works.append(_carried(item, motion, skin_before, unit))
         _elastic(works[-1], unit)
     for work in works:
-        _place_pieces(work, works, unit)
+        _place_pieces(work, works, motion, unit)
     order = sorted(range(len(works)), key=lambda number: (_height(works[number]), number))
     spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
     for done, number in enumerate(order):
@@ -235,8 +238,10 @@ def _carried(item: WornItem, motion: BodyMotion, skin: Surface, unit: float) -> 
     if item.fit == "LOOSE":
         reach = reach + 0.05 * unit
     moved = motion.move(item.mesh.vertices, reach, item.bones)
-    named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
-    pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
+    pieces = item.pieces
+    if pieces is None:
+        named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
+        pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
     return _Work(item, moved, distances, pieces, moved.positions)
 
 
@@ -266,8 +271,8 @@ def _elastic(work: _Work, unit: float) -> None:
     work.motion = replace(moved, rotations=rotations, scales=scales)
 
 
-def _place_pieces(work: _Work, works: Sequence[_Work], unit: float) -> None:
-    """Put rigid pieces where the skin takes them, or what they are fastened to."""
+def _place_pieces(work: _Work, works: Sequence[_Work], motion: BodyMotion, unit: float) -> None:
+    """Put rigid pieces where the skin takes them, or what they are fastened to, in the size of the skin around."""
     if work.pieces.max(initial=-1) < 0:
         return
     before = work.item.mesh.vertices
@@ -284,7 +289,7 @@ def _place_pieces(work: _Work, works: Sequence[_Work], unit: float) -> None:
             close = distances < _FASTENED * unit
             if close.any():
                 goal = goal + shifts[near[close]].mean(axis=0)
-        positions[inside] = placed_rigidly(before[inside], goal, float(work.motion.scales[inside].mean()))
+        positions[inside] = placed_rigidly(before[inside], goal, motion.growth_around(before[inside]))
     work.positions = positions
 
 

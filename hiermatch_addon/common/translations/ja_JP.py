@@ -1411,6 +1411,19 @@ MESSAGES: Final[dict[str, str]] = {
         "二つのメッシュを指定するか、選択してください。アクティブな方がソースです"
     ),
     "Measuring the matched points": "対応点を計測しています",
+    "Follow Shape Keys": "シェイプキーに従う",
+    "Give the fitted items the other body's shape keys that move it below them, driven by its own: they follow "
+    "a wide belly or a squat": (
+        "合わせたアイテムに、その下で相手のボディを動かすシェイプキーを与え、ボディのキーで駆動します。大きな腹やし"
+        "ゃがみに付いていきます"
+    ),
+    "Following shape keys": "シェイプキーに従わせています",
+    '"{0}" follows {1} of "{2}".': '"{0}"は"{2}"の{1}に従います。',
+    'Drivers of the shape keys of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape '
+    "keys or bones over by Retarget, and fit it again.": (
+        '"{0}"のシェイプキーのドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'
+        "プキーやボーンを移してから、もう一度合わせてください。"
+    ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin": (
         "相手のボディのリグの各関節を曲げてみて、肌がアイテムを突き抜けるところでは、ウェイトを肌のものに近づけます"

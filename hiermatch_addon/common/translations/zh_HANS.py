@@ -1167,6 +1167,17 @@ MESSAGES: Final[dict[str, str]] = {
     "Write": "写入",
     "Pick two meshes, or select them: the active one is the source": "选取两个网格，或直接选中它们：活动网格为源",
     "Measuring the matched points": "正在测量匹配点",
+    "Follow Shape Keys": "跟随形态键",
+    "Give the fitted items the other body's shape keys that move it below them, driven by its own: they follow "
+    "a wide belly or a squat": (
+        "为适配后的物品添加另一身体在其下方起作用的形态键，并由身体的形态键驱动：它们会跟随变大的腹部或下蹲"
+    ),
+    "Following shape keys": "正在跟随形态键",
+    '"{0}" follows {1} of "{2}".': '"{0}" 跟随 "{2}" 的 {1}。',
+    'Drivers of the shape keys of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape '
+    "keys or bones over by Retarget, and fit it again.": (
+        '"{0}" 的形态键驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
+    ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin": (
         "弯曲另一身体绑定的每个关节，若皮肤此时穿出物品，则使该处的权重更接近皮肤的权重"

@@ -10,15 +10,13 @@ import bpy
 
 from ...common.access import view_layer_of
 from ...properties.panel_state import picked, state_of
-from ...scene.character import joined, parts_of
-from ...scene.garments import BODY, meshes_of
+from ...scene.character import parts_of
+from ...scene.garments import BODY, meshes_of, undressed
 from ...transfers.options.wear import WearOptions, wear_settings
 from ...transfers.wear import WearTransfer
 from .transfer_operator import TransferOperator
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
     from ...jobs.transfer import Transfer
     from ...jobs.transfer_job import TransferJob
     from ...scene.character import Side
@@ -86,17 +84,11 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
             bodies = theirs if named and len(own) > 1 and not own <= selected else own | theirs
             chosen = (obj.name for obj in selected - bodies if _can_be_worn(obj))
             self._chosen = tuple(sorted(chosen))
-        return _undressed(source, self._chosen), targets
+        return undressed(source, self._chosen), targets
 
     def _transfers(self) -> list[Transfer]:
         options: Any = self
         return [WearTransfer(wear_settings(options, self._chosen))]
-
-
-def _undressed(body: Side, items: Collection[str]) -> Side:
-    """Leave items out of a character that they are parts of, as all that its armature moves is; not all of it."""
-    parts = [part for part in parts_of(body) if part.name not in items]
-    return joined(body.name, parts) if parts else body
 
 
 def _can_be_worn(obj: bpy.types.Object) -> bool:

@@ -61,6 +61,8 @@ class WearSettings:
         Whether color attributes show what was done.
     poses : bool
         Whether weights are mended that let the body poke through in test poses.
+    keys : bool
+        Whether they get the other body's shape keys that move it below them.
     """
 
     items: tuple[str, ...] = ()
@@ -73,6 +75,7 @@ class WearSettings:
     hide: str = "NONE"
     colors: bool = False
     poses: bool = True
+    keys: bool = True
 
 
 class WearOptions:
@@ -126,6 +129,12 @@ class WearOptions:
             "the weights there closer to those of the skin",
             default=True,
         ),
+        "wear_keys": _props.BoolProperty(
+            name="Follow Shape Keys",
+            description="Give the fitted items the other body's shape keys that move it below them, driven by its own: "
+            "they follow a wide belly or a squat",
+            default=True,
+        ),
         "wear_fit_rig": _props.BoolProperty(
             name="Fit Rig",
             description="If the other body has no armature, give it that of the first, with its weights, as Retarget "
@@ -157,6 +166,7 @@ class WearOptions:
         wear_limit: int
         wear_normalise: bool
         wear_poses: bool
+        wear_keys: bool
         wear_fit_rig: bool
         wear_hide: str
         wear_colors: bool
@@ -175,4 +185,5 @@ def wear_settings(options: WearOptions, items: tuple[str, ...]) -> WearSettings:
         hide=options.wear_hide,
         colors=options.wear_colors,
         poses=options.wear_poses,
+        keys=options.wear_keys,
     )

@@ -105,6 +105,75 @@ def test_keys_of_an_item_go_along(pair):
     assert lengths.max() < 0.4
 
 
+def add_belly(body, name="Belly"):
+    """Add a key that moves one end of a body outwards; return which of its vertices."""
+    if body.data.shape_keys is None:
+        body.shape_key_add(name="Basis")
+    key = body.shape_key_add(name=name, from_mix=False)
+    key.value = 0
+    points = positions(body)
+    chosen = points[:, 0] > np.quantile(points[:, 0], 0.8)
+    normals = np.array([vertex.normal for vertex in body.data.vertices])
+    key.data.foreach_set("co", (points + 0.1 * chosen[:, None] * normals).astype(np.float32).ravel())
+    return chosen
+
+
+def evaluated(obj):
+    bpy.context.view_layer.update()
+    made = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    matrix = np.array(made.matrix_world)
+    return np.array([vertex.co for vertex in made.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def test_items_follow_the_keys_of_the_body(pair):
+    _, target, *_ = pair
+    add_belly(target)
+    target.data.shape_keys.key_blocks["Belly"].slider_max = 2
+    target.shape_key_add(name="Nothing", from_mix=False)
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    for name in ("Shirt", "Coat"):
+        copy = fitted(name)
+        assert copy.data.shape_keys.key_blocks.keys() == ["Basis", "Belly"]
+        assert copy.data.shape_keys.key_blocks["Belly"].slider_max == 2
+        before = evaluated(copy)
+        target.data.shape_keys.key_blocks["Belly"].value = 1
+        moved = np.linalg.norm(evaluated(copy) - before, axis=1)
+        target.data.shape_keys.key_blocks["Belly"].value = 0
+        assert moved.max() > 0.05
+        assert (moved == 0).any()
+    assert 'follows 1 shape key of "Target"' in bpy.context.scene.hiermatch_retarget.report.remarks
+    assert wear("Shirt", wear_keys=False) == {"FINISHED"}
+    assert fitted("Shirt").data.shape_keys is None
+
+
+def drive(obj, name, body, leader):
+    """Let a key of an object be driven by one of a body's."""
+    driver = obj.data.shape_keys.driver_add(f'key_blocks["{name}"].value').driver
+    driver.type = "AVERAGE"
+    place = driver.variables.new().targets[0]
+    place.id_type, place.id = "KEY", body.data.shape_keys
+    place.data_path = f'key_blocks["{leader}"].value'
+
+
+def test_keys_of_an_item_that_the_body_drives_are_driven_by_the_other_body(pair):
+    source, target, shirt, _ = pair
+    for body in (source, target):
+        add_belly(body)
+    add_belly(source, "Tail")
+    for name in ("Belly", "Tail"):
+        add_belly(shirt, name)
+        drive(shirt, name, source, name)
+    assert wear("Shirt") == {"FINISHED"}
+    keys = fitted("Shirt").data.shape_keys
+    assert keys.key_blocks.keys() == ["Basis", "Belly", "Tail"]
+    read = {curve.data_path: curve.driver.variables[0].targets[0].id for curve in keys.animation_data.drivers}
+    assert read == {
+        'key_blocks["Belly"].value': target.data.shape_keys,
+        'key_blocks["Tail"].value': source.data.shape_keys,
+    }
+    assert f'still read from "{source.data.shape_keys.name}"' in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 def test_selected_items_and_those_of_a_collection(pair):
     _, _, shirt, coat = pair
     shirt.select_set(state=True)

@@ -149,3 +149,17 @@ def test_a_hole_in_the_body_does_no_harm():
 def test_meshes_that_do_not_belong_together_are_refused():
     with pytest.raises(MeshError, match="Match them again"):
         run(wear_steps(BODY, BODY, SurfaceMap.identity(BODY), BODY.vertices[:-1], [WornItem(SHIRT)]))
+
+
+def test_folds_that_one_body_has_alone_do_not_shrink_a_rigid_piece():
+    """As where eye sockets and a mouth are closed on the other body: skin goes together, the head is as large."""
+    glasses = ball(2, 0.06, (0.0, -1.1, 0.0))
+    front = np.linalg.norm(BODY.vertices - [0.0, -1.0, 0.0], axis=1)
+    pocket = front < 0.25
+    inwards = BODY.vertices * (1 - 0.6 * np.where(pocket, 1 - front / 0.25, 0.0))[:, None]
+    source = TriangleMesh(inwards, BODY.triangles)
+    (fitted,) = run(wear_steps(source, BODY, SurfaceMap.identity(BODY), BODY.vertices, [WornItem(glasses)]))
+    assert (fitted.pieces == 0).all()
+    error = abs(similarity_error(glasses.vertices, fitted.positions)[1] - 1)
+    assert error < 0.04
+    assert error < 0.5 * abs(fitted.scales.mean() - 1)
