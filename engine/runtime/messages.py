@@ -6,10 +6,8 @@ from __future__ import annotations
 import io
 import pickle
 import weakref
-from typing import IO, TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from collections.abc import Mapping
+from typing import IO, Any
 
 __all__ = ["PACKAGE", "SentObjects", "pack", "unpack"]
 

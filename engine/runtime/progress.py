@@ -9,11 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from .arrays import Floats
 
 __all__ = ["Preview", "Progress", "Steps", "run", "within"]
 
@@ -30,8 +28,8 @@ class Preview:
         Corresponding places of two surfaces, in the space of either.
     """
 
-    source: NDArray[np.float64]
-    target: NDArray[np.float64]
+    source: Floats
+    target: Floats
 
     def __repr__(self) -> str:
         return f"<Preview: {len(self.source)} places>"

@@ -9,16 +9,13 @@ import time
 import traceback
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from .blas_threads import one_thread
 from .errors import HierMatchError
 from .messages import pack, unpack
 from .pipes import can_take, has_more, receive, send
-from .progress import run
-
-if TYPE_CHECKING:
-    from .progress import Preview, Steps
+from .progress import Preview, Steps, run
 
 __all__ = ["READY", "serve"]
 

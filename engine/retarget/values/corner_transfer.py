@@ -3,21 +3,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from ...mesh.polygons import Polygons
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
+from ...runtime.arrays import Floats
 from ...runtime.errors import MatchError, MeshError
 from .charts import cut_into_sheets
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ...mesh.polygons import Polygons
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .face_correspondence import FacePlaces
+from .face_correspondence import FacePlaces
 
 __all__ = ["carry_corner_values", "carry_normals", "carry_point_marks", "carry_point_values"]
 
@@ -81,7 +79,7 @@ def carry_point_values(values: ArrayLike, target_to_source: SurfaceMap) -> NDArr
     return target_to_source.transfer(array)
 
 
-def carry_point_marks(values: NDArray[np.float64], source_to_target: SurfaceMap) -> NDArray[np.float64]:
+def carry_point_marks(values: Floats, source_to_target: SurfaceMap) -> Floats:
     """Carry numbers that mark single vertices of the source, (n_x,), such as creases, to single ones of the target.
 
     Each goes to the vertex nearest to its place; of several that meet there the largest counts.  All others are zero.
@@ -93,12 +91,8 @@ def carry_point_marks(values: NDArray[np.float64], source_to_target: SurfaceMap)
 
 
 def carry_normals(
-    normals: NDArray[np.float64],
-    source: Polygons,
-    places: FacePlaces,
-    target: TriangleMesh,
-    rotations: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    normals: Floats, source: Polygons, places: FacePlaces, target: TriangleMesh, rotations: Floats
+) -> Floats:
     """Carry normals at the corners of faces that differ from those of the surface.
 
     What is carried is how they deviate from the smooth normals of the source: where they do not, the target gets its
@@ -140,16 +134,14 @@ def carry_normals(
     return np.where(result.any(axis=1, keepdims=True), result, target.vertex_normals[vertices])
 
 
-def _interpolated(
-    values: NDArray[np.float64], source: Polygons, places: FacePlaces, tolerance: float
-) -> NDArray[np.float64]:
+def _interpolated(values: Floats, source: Polygons, places: FacePlaces, tolerance: float) -> Floats:
     """Carry real values (l_x, d), interpolated on the sheets on which they are continuous."""
     sheets = cut_into_sheets(places.image, source, values, tolerance)
     found = places.on_sheets(sheets)
     return sheets.at(found.triangles, found.barycentric)
 
 
-def _shortest_rotations(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+def _shortest_rotations(start: Floats, end: Floats) -> Floats:
     """Rotations that turn unit vectors (n, 3) into others by the least angle; none where these are opposite."""
     axis, cosine = np.cross(start, end), np.einsum("nd,nd->n", start, end)
     zero = np.zeros(len(axis))
