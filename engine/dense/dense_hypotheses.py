@@ -31,20 +31,6 @@ from .map_energies import curvature_terms, distance_term, map_orientation, rigid
 from .rigid_maps import rigid_maps
 from .spectral_domain import MapDomain
 
-__all__ = [
-    "USUAL",
-    "LandmarkStart",
-    "MapHypothesis",
-    "Selection",
-    "assessed_everywhere",
-    "hypothesis_of",
-    "map_domains",
-    "map_hypotheses_steps",
-    "refined_hypothesis_steps",
-    "unrefined_hypotheses_steps",
-    "unrefined_hypothesis",
-]
-
 _FINE_SIZES = spectral_sizes(15, 80, 9)
 _SMOOTH = 25  # eigenfunctions that maps between coarse samples are carried over with
 _SMOOTHED = 110  # eigenfunctions that patches are smoothed by before they are compared as rigid bodies

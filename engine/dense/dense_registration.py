@@ -22,8 +22,6 @@ from .landmark_selection import steered_hypotheses_steps
 from .proposers import PROPOSERS, Contest, are_distinct, contenders
 from .registered_hypotheses import Candidate, CloseFit, Follower, at_vertices
 
-__all__ = ["EIGENPAIRS", "RegisteredPair", "registered_pair_steps"]
-
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""
 

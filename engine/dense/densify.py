@@ -35,8 +35,6 @@ from .dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_step
 from .functional_maps import nearest_both_ways
 from .quality import MatchQuality, assess_maps, with_alternatives, with_pieces
 
-__all__ = ["MEASURED", "DenseMatch", "dense_match_steps", "densify", "densify_steps"]
-
 _SAMPLES = 512
 """Samples of each surface that hypotheses are compared at."""
 

@@ -10,8 +10,6 @@ import numpy as np
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
 
-__all__ = ["BeamMatchings", "beam_matchings"]
-
 
 class BeamMatchings(NamedTuple):
     """Injective matchings of the points of X to points of Y, best first.

@@ -15,18 +15,6 @@ from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, run
 from ..runtime.small_products import product
 
-__all__ = [
-    "FunctionalMaps",
-    "PointMaps",
-    "SampledBasis",
-    "fit_functional_maps",
-    "nearest_both_ways",
-    "points_from_functions",
-    "points_from_functions_steps",
-    "refine_bijective_steps",
-    "spectral_sizes",
-]
-
 _INDEPENDENT = 0.3
 """Part of a function at the samples that those before it must leave unexplained; less is aliasing."""
 

@@ -20,8 +20,6 @@ from .lifted_matchings import LiftedMatchings
 from .map_energies import map_orientation, spectral_terms
 from .spectral_domain import MapDomain
 
-__all__ = ["MapLead", "RoughSearch", "distinct_leads", "fitting_maps_steps", "rough_maps_steps"]
-
 Own = TypeVar("Own")
 
 # How many matchings are offered, by the distances between what is matched.

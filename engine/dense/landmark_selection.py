@@ -13,8 +13,6 @@ from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
 from .dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps
 
-__all__ = ["Steered", "agrees", "landmark_distance", "steered_hypotheses_steps"]
-
 _PENALTY = 20.0
 """What a map's score rises by for each sqrt(area) that the images of landmarks are from their partners."""
 

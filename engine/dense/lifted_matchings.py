@@ -12,8 +12,6 @@ from ..runtime.arrays import Floats, Ints
 from .functional_maps import PointMaps, nearest_both_ways
 from .spectral_domain import MapDomain
 
-__all__ = ["LiftedMatchings", "squared_differences"]
-
 _SIGNED_WEIGHT, _RELATIVE_SIGNED_WEIGHT = 1.0, 2.0
 """Of signed areas beside distances, and beside relative distances."""
 

@@ -15,8 +15,6 @@ from ..shapes.surface_distances import measured_steps
 from .dense_hypotheses import LandmarkStart
 from .functional_maps import PointMaps
 
-__all__ = ["exchanged_limbs", "repaired_start_steps"]
-
 _CENTRAL = 0.5
 """Part of the samples that make up the middle of the body: those least far from all others."""
 

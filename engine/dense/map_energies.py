@@ -10,8 +10,6 @@ from ..runtime.arrays import Floats, Ints
 from .functional_maps import FunctionalMaps, PointMaps
 from .spectral_domain import MapDomain
 
-__all__ = ["curvature_terms", "distance_term", "map_orientation", "rigidity_term", "spectral_terms"]
-
 _BOUNDING = 200  # samples whose distances bound other ones
 _RIGID = 1e-3  # rigid defects below this are all the same
 _POINT = 1e-12  # squared radius, in units of the area, of what is no more than a point

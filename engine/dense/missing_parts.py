@@ -13,8 +13,6 @@ from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["round_trips", "with_partner"]
-
 _SPACINGS, _LEAST_TRIP = 3.0, 0.03
 """Length of a round trip from which on it does not lead home: vertex spacings, and a part of sqrt(area)."""
 

@@ -24,8 +24,6 @@ from .landmark_selection import agrees
 from .limb_sides import exchanged_limbs, repaired_start_steps
 from .registered_hypotheses import Candidate, Follower
 
-__all__ = ["PROPOSERS", "Contest", "Proposer", "are_distinct", "contenders"]
-
 _CONTRADICTED = 4.0
 """Difference of scores up to which a map whose limbs are where they belong is preferred to one that exchanges them as
 seen from both surfaces."""

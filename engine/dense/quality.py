@@ -15,17 +15,6 @@ from ..runtime.arrays import Bools, Floats
 from .credibility import EVEN, is_clear_choice, is_less_alike, probability_chosen, probability_right
 from .missing_parts import round_trips, with_partner
 
-__all__ = [
-    "MatchQuality",
-    "assess_maps",
-    "map_confidence",
-    "of_covered_part",
-    "overlap_sentence",
-    "trip_confidence",
-    "with_alternatives",
-    "with_pieces",
-]
-
 _TRUSTED_ROUND_TRIP = 0.02
 """Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
 

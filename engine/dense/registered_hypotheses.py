@@ -43,8 +43,6 @@ from .spectral_domain import MapDomain
 _Common = tuple["Follower", MapDomain, MapDomain]
 Trips = tuple[Floats, Floats]
 
-__all__ = ["Candidate", "CloseFit", "Follower", "Settling", "at_vertices"]
-
 _SMOOTH = 40
 """Eigenfunctions that the source is placed by before it is registered."""
 

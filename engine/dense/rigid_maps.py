@@ -17,8 +17,6 @@ from ..runtime.arrays import Floats, Ints
 from .functional_maps import PointMaps
 from .spectral_domain import MapDomain
 
-__all__ = ["rigid_maps"]
-
 _TURNS = Rotation.create_group("I").as_matrix()
 """Rotations of an icosahedron, (60, 3, 3): any rotation is at most 45 degrees from one.  They contain those that turn
 principal axes over, so that it does not matter which way round these are taken."""

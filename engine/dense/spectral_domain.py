@@ -16,8 +16,6 @@ from ..runtime.arrays import Floats, Ints
 from ..shapes.shape import Shape
 from .functional_maps import PointMaps, SampledBasis
 
-__all__ = ["MapDomain"]
-
 _COARSE = 512  # samples on which many hypotheses are compared
 _FINE = 800  # samples on which few are refined
 _ORIENTING = 30  # eigenfunctions whose gradients tell the orientation

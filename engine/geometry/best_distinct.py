@@ -7,8 +7,6 @@ from collections.abc import Callable, Collection, Iterable
 from itertools import chain
 from typing import TypeVar
 
-__all__ = ["best_distinct"]
-
 Item = TypeVar("Item")
 
 

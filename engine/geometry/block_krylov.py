@@ -13,8 +13,6 @@ from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps, within
 from .schur_elimination import ShiftedFactor, elimination_order
 
-__all__ = ["EigenPairs", "lowest_eigenpairs_steps"]
-
 _DENSE = 300
 """Rows up to which the matrix is simply solved as a dense one."""
 

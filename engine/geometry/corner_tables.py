@@ -11,8 +11,6 @@ from scipy.sparse import coo_array, csr_array
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["CornerTables", "corner_tables"]
-
 # Lengths below this part of the largest length of a triangle count as this part: keeps triangles without area finite.
 _FLAT = 1e-8
 

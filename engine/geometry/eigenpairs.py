@@ -16,8 +16,6 @@ from ..runtime.progress import Progress, Steps, run, within
 from .block_krylov import EigenPairs, lowest_eigenpairs_steps
 from .laplacian import LaplaceBeltrami, laplace_beltrami
 
-__all__ = ["Spectrum", "eigenpairs", "eigenpairs_steps"]
-
 _MARGIN = 10
 """Pairs more than its share by area that are first computed of a part of a surface."""
 

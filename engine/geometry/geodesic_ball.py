@@ -10,8 +10,6 @@ from scipy.sparse.csgraph import dijkstra
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints
 
-__all__ = ["distances_to_others", "vicinity"]
-
 
 def vicinity(mesh: TriangleMesh, vertex: int, radius: float) -> tuple[Ints, Floats]:
     """Find the vertices near to one, by the lengths of paths along edges.

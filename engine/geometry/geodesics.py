@@ -15,8 +15,6 @@ from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from .corner_tables import corner_tables
 
-__all__ = ["GeodesicSolver", "geodesic_distances"]
-
 # Lengths are in units of the mean edge length.  Those that are compared with distances are no simple fractions, so
 # that on regular grids no distance falls on a limit, where rounding would decide.
 

@@ -15,8 +15,6 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Ints
 from ..runtime.progress import Progress, Steps
 
-__all__ = ["genus", "shortest_handle_loop_steps"]
-
 _ROOTS = 256
 """Most vertices of the first loops that shorter ones are looked for at."""
 

@@ -12,8 +12,6 @@ from scipy.sparse.csgraph import connected_components
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["IntrinsicTriangulation", "corner_cotangents", "intrinsic_delaunay", "mollified_lengths", "triangle_lengths"]
-
 _SLACK = 1e-6
 """By how much two sides of a triangle are at least longer than the third, in mean edge lengths."""
 

@@ -16,8 +16,6 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints
 from .intrinsic_delaunay import corner_cotangents, intrinsic_delaunay
 
-__all__ = ["LaplaceBeltrami", "laplace_beltrami"]
-
 _LEAST_MASS = 1e-9
 """Least mass of a vertex with triangles, as a part of the mean."""
 

@@ -8,8 +8,6 @@ import numpy as np
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats
 
-__all__ = ["smoothed_mean_curvature"]
-
 
 def smoothed_mean_curvature(mesh: TriangleMesh, distances: Floats, radius: float) -> Floats:
     r"""Estimate the mean curvature of a surface that was smoothed within a radius.

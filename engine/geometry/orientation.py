@@ -9,8 +9,6 @@ from scipy.sparse import csr_array
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints
 
-__all__ = ["orientation_agreement", "signed_areas", "tangent_gradient"]
-
 
 def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
     """Build the operator that takes the gradient of a function at some vertices, in a tangent frame.

@@ -7,8 +7,6 @@ import numpy as np
 
 from ..runtime.arrays import Bools, Floats
 
-__all__ = ["nearest_rotations"]
-
 _TURNS = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], np.float64)
 """No turn and the half turns around the axes: after one of them any rotation is less than 121 degrees from none."""
 

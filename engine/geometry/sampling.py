@@ -12,8 +12,6 @@ from scipy.sparse.csgraph import dijkstra
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
 
-__all__ = ["FarthestPointSampler", "farthest_point_sampling"]
-
 
 class FarthestPointSampler:
     r"""Take one farthest point after the other, on the vertices of a weighted graph.

@@ -10,8 +10,6 @@ from scipy.sparse.csgraph import dijkstra
 from ..runtime.arrays import Bools, Floats, Ints
 from .symmetric_factor import symmetric_factor
 
-__all__ = ["ShiftedFactor", "elimination_order", "nested_dissection"]
-
 _LARGE = 45_000
 """Rows from which on nested dissection is used: minimum degree is better below, and on some meshes very slow above."""
 

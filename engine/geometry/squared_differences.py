@@ -7,8 +7,6 @@ import numpy as np
 
 from ..runtime.arrays import Floats
 
-__all__ = ["squared_differences"]
-
 
 def squared_differences(first: Floats, second: Floats) -> Floats:
     """Squared Euclidean distance of every row of `first` (n, d) from every row of `second` (m, d): (n, m)."""

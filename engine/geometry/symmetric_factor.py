@@ -6,8 +6,6 @@ from __future__ import annotations
 from scipy.sparse import csc_array, sparray
 from scipy.sparse.linalg import SuperLU, splu
 
-__all__ = ["symmetric_factor"]
-
 
 def symmetric_factor(matrix: sparray, *, ordered: bool = False) -> SuperLU:
     """Factor a matrix, to solve with it many times.

@@ -12,8 +12,6 @@ from ..runtime.arrays import Ints
 from ..runtime.errors import MeshError
 from .geodesics import GeodesicSolver
 
-__all__ = ["NO_REGION", "nearest_regions"]
-
 NO_REGION = -1
 """The region of a vertex that no point has a path to."""
 

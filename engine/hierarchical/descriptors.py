@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from ..runtime.arrays import Floats
 
-__all__ = ["bin_difference", "distance_histograms", "earth_movers_distance", "weighted_correlation"]
-
 
 def distance_histograms(distances: Floats, weights: Floats, bins: int, reach: float) -> Floats:
     """Histogram the distances from each point to the rest of its surface.

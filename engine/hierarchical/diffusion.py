@@ -12,8 +12,6 @@ from ..geometry.eigenpairs import Spectrum
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError, SettingsError
 
-__all__ = ["DiffusionMetric", "automatic_time", "diffusion_distances", "heat_kernel"]
-
 _MODES = 8.0
 """How many eigenfunctions, each counted by its weight, make up diffusion distances at the automatic time.
 

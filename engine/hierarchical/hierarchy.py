@@ -14,8 +14,6 @@ from .problem import MatchingProblem
 from .relaxation import RelaxedMatching, descend, project
 from .sampled_pair import Pair
 
-__all__ = ["Refined", "level_sizes", "refine_steps"]
-
 _MAX_ITERATIONS = 8
 
 

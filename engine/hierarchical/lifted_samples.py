@@ -13,8 +13,6 @@ from ..runtime.arrays import Floats, Ints
 from ..shapes.shape import Shape
 from .descriptors import weighted_correlation
 
-__all__ = ["CURVATURE_WEIGHT", "Misfits", "curvature_agreement", "mean_orientation", "sample_misfits"]
-
 CURVATURE_WEIGHT = 6.0
 """How much the agreement of curvatures counts beside the logarithm of the squared change of distances."""
 

@@ -10,8 +10,6 @@ import numpy as np
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
 
-__all__ = ["MatchingProblem", "forbidding_cost"]
-
 
 @dataclass(frozen=True, eq=False)
 class MatchingProblem:

@@ -11,8 +11,6 @@ from ..runtime.arrays import Floats
 
 Objective = Callable[[Floats], tuple[float, Floats]]
 
-__all__ = ["minimize_lbfgs"]
-
 _MEMORY = 10
 _ARMIJO, _CURVATURE = 1e-4, 0.9
 _SEARCHES = 20

@@ -17,8 +17,6 @@ from ..runtime.small_products import product
 from .problem import MatchingProblem
 from .quasi_newton import minimize_lbfgs
 
-__all__ = ["RelaxedMatching", "descend", "project"]
-
 
 @dataclass(frozen=True, eq=False)
 class RelaxedMatching:

@@ -19,8 +19,6 @@ from .settings import MatchSettings
 from .sign_sequences import SignSequence, consistent_sequences
 from .spectral_descriptors import eigenfunction_descriptor, heat_kernel_signatures, multiplets, wave_kernel_signatures
 
-__all__ = ["Pair"]
-
 # Weight of the orientation term beside the descriptors.  Its mean square difference of signed areas is about 0.5
 # between unrelated places, the descriptors' earth mover's distance some hundredths.
 _ORIENTATION_WEIGHT = 0.1

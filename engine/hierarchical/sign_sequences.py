@@ -11,8 +11,6 @@ import numpy as np
 
 from ..runtime.arrays import Floats, Ints
 
-__all__ = ["SignSequence", "consistent_sequences"]
-
 _CLUSTER = 12  # candidates that look most alike, among which a point's true and mirrored images should be
 _PLACES = 200  # so many points vote
 _SMALL_GROUP = 3

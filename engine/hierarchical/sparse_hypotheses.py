@@ -22,8 +22,6 @@ from .hierarchy import Refined, level_sizes, refine_steps
 from .lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from .sampled_pair import Pair
 
-__all__ = ["Coarse", "Hypothesis", "assess", "choose_steps", "coarse_candidates", "coarse_steps", "two_answers"]
-
 Result = TypeVar("Result")
 
 _DISTINCT = 0.2  # two coarse matchings are distinct if half the points lie farther apart than this, in sqrt(area)

@@ -21,8 +21,6 @@ from .sampled_pair import Pair
 from .sparse_hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
 from .sparse_result import Level
 
-__all__ = ["Answer", "at_samples", "moved", "solve_steps"]
-
 
 @dataclass(frozen=True, eq=False)
 class Answer:

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.arrays import Ints
 
-__all__ = ["CoarseMatch", "Level"]
-
 
 @dataclass(frozen=True, eq=False)
 class CoarseMatch:

@@ -10,15 +10,6 @@ from ..geometry.eigenpairs import Spectrum
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import SettingsError
 
-__all__ = [
-    "automatic_energies",
-    "automatic_times",
-    "eigenfunction_descriptor",
-    "heat_kernel_signatures",
-    "multiplets",
-    "wave_kernel_signatures",
-]
-
 _TIMES = 0.004, 1.0
 """First and last automatic time, in units of area: heat spreads over some hundredths, and over all of a surface."""
 

@@ -10,8 +10,6 @@ import numpy as np
 from ..runtime.arrays import Floats, Ints
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["AreaSamples", "area_samples", "even_samples"]
-
 _FIRST, _SECOND = 0.7548776662466927, 0.5698402909980532
 """Steps of a sequence that fills a square evenly from its first point on: the inverse of the real root of x^3 = x + 1,
 and its square [1]_."""

@@ -16,8 +16,6 @@ from ..runtime.errors import MeshError
 from ..runtime.worker import search_threads
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["ClosestPoints", "FoundPoints", "closest_in_triangles", "facing"]
-
 _BLOCK = 10_000
 """Points that are searched side by side; the last steps, of few points each, are then shared by many."""
 

@@ -8,8 +8,6 @@ import numpy as np
 from ..runtime.arrays import Ints
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["split_longest_edges"]
-
 _PIECES = (
     ((0, 1, 2),),
     ((0, 3, 2), (3, 1, 2)),

@@ -14,8 +14,6 @@ from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["Polygons", "from_faces"]
-
 
 @dataclass(frozen=True, eq=False)
 class Polygons:

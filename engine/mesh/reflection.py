@@ -7,8 +7,6 @@ from ..runtime.arrays import Floats
 from .surface_points import SurfacePoints
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["reflected_mesh", "reflected_points", "reflected_positions"]
-
 
 def reflected_mesh(mesh: TriangleMesh) -> TriangleMesh:
     """Reflect a mesh; its normals still point outwards, because the last two corners of triangles are exchanged."""

@@ -16,8 +16,6 @@ from .closest_points import ClosestPoints
 from .surface_points import SurfacePoints
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["SurfaceMap"]
-
 _CHUNK = 100_000
 """Rows computed at once, which bounds the memory of what is gathered for them."""
 

@@ -11,8 +11,6 @@ from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
 from .triangle_mesh import TriangleMesh
 
-__all__ = ["SurfacePoints"]
-
 
 @dataclass(frozen=True, eq=False)
 class SurfacePoints:

@@ -17,8 +17,6 @@ from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from .unit_vectors import unit_vectors
 
-__all__ = ["TriangleMesh"]
-
 _FARTHEST = 1e75
 """Coordinate, in any unit, up to which the squares of areas are numbers: their fourth powers are below 1e308."""
 

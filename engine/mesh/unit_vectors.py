@@ -7,8 +7,6 @@ import numpy as np
 
 from ..runtime.arrays import Floats
 
-__all__ = ["unit_vectors"]
-
 
 def unit_vectors(vectors: Floats, least: float = 0.0) -> Floats:
     """Scale vectors (n, d) to length one; those that are no longer than `least` become zero."""

@@ -14,8 +14,6 @@ from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
 from ..mesh.unit_vectors import unit_vectors
 from ..runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["seam_partners"]
-
 _SMALLEST = 0.01
 """Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""
 

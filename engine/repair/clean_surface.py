@@ -15,8 +15,6 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 from .cleaning_notes import CleaningCounts
 
-__all__ = ["CleanSurface", "StandIn", "SurfacePart"]
-
 
 @dataclass(frozen=True, eq=False)
 class SurfacePart:

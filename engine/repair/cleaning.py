@@ -21,8 +21,6 @@ from .hole_filling import fill_holes, small_holes
 from .pinched_gaps import pinched_gaps
 from .spikes import find_spikes, pulled_in
 
-__all__ = ["clean"]
-
 _MOST_OPEN = 1.0
 """Length of its open borders, in the root of its area, from which on a part counts as if it were half as large."""
 

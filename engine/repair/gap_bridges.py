@@ -10,8 +10,6 @@ from scipy.spatial import cKDTree
 
 from ..runtime.arrays import Ints
 
-__all__ = ["bridged"]
-
 _LEAST = 0.002
 """Part of all of the inside that a solid must have to be joined to others: half a finger of a person."""
 

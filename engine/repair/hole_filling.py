@@ -12,8 +12,6 @@ from ..mesh.connectivity.boundary_loops import BoundaryLoops
 from ..mesh.unit_vectors import unit_vectors
 from ..runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["fill_holes", "small_holes"]
-
 _LARGEST_HOLE = 0.01
 """Area of the largest hole in a sheet that is filled, as a part of the surface."""
 

@@ -11,8 +11,6 @@ from ..mesh.connectivity.nonmanifold_vertices import several_fans
 from ..runtime.arrays import Bools, Floats, Ints
 from .hole_filling import small_holes
 
-__all__ = ["pinched_gaps"]
-
 
 def pinched_gaps(vertices: Floats, triangles: Ints, twins: Ints, area: float) -> tuple[Ints, Ints]:
     """Find the gaps of one triangle that meet other gaps in a vertex.

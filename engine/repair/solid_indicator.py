@@ -14,8 +14,6 @@ from ..mesh.area_samples import area_samples
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats
 
-__all__ = ["SolidIndicator", "solid_indicator"]
-
 _MARGIN = 8
 """Places of the grid around the surfaces: the grid goes on at its other side, as Fourier transforms see it."""
 

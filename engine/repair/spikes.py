@@ -7,8 +7,6 @@ import numpy as np
 
 from ..runtime.arrays import Floats, Ints
 
-__all__ = ["find_spikes", "pulled_in"]
-
 _SLENDER = 1.0
 """Length of the shortest edge of a spike by the length of the ring around its foot: a horn is broader at its tip."""
 

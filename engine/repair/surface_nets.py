@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from ..runtime.arrays import Floats, Ints
 
-__all__ = ["surface_net"]
-
 _RING = (0, 0), (-1, 0), (-1, -1), (0, -1)
 """Cells around an edge of the grid, by their offsets along the two other axes."""
 

@@ -15,8 +15,6 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints
 from .values.deformation_gradients import surface_frames
 
-__all__ = ["in_between"]
-
 _LEAST_WEIGHT = 1e-4
 """Least weight of an edge, as in `elastic`."""
 

@@ -11,8 +11,6 @@ from scipy.sparse.csgraph import connected_components
 
 from ..mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["open_ends"]
-
 _COINCIDENT: Final = 1e-6
 """Vertices closer than this part of the diagonal of the bounding box are one: meshes are split at UV seams."""
 

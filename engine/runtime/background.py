@@ -16,8 +16,6 @@ from .errors import HierMatchError
 from .progress import Progress, Steps
 from .worker import Helper, Task, call_background
 
-__all__ = ["Background", "called_steps", "can_go_beside"]
-
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 

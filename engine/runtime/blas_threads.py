@@ -15,8 +15,6 @@ import scipy
 
 from .progress import Steps
 
-__all__ = ["Library", "libraries", "on_one_thread", "one_thread", "thread_counts"]
-
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 

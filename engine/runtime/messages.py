@@ -9,8 +9,6 @@ import weakref
 from collections.abc import Mapping
 from typing import IO, Any
 
-__all__ = ["PACKAGE", "SentObjects", "pack", "unpack"]
-
 PACKAGE = __name__.rsplit(".", 2)[0]
 """What the engine is called here: another program may have it inside of a package."""
 

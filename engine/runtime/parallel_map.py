@@ -13,8 +13,6 @@ from .errors import HierMatchError
 from .progress import Progress, Steps, within
 from .worker import Helper, Task, present_helpers
 
-__all__ = ["MOST_SENT", "beside_steps", "here_steps", "shared_steps"]
-
 Common = TypeVar("Common")
 Item = TypeVar("Item")
 Result = TypeVar("Result")

@@ -8,8 +8,6 @@ import select
 import time
 from collections.abc import Iterator
 
-__all__ = ["Inbox", "can_take", "has_more", "receive", "send", "sent_in_parts"]
-
 _LENGTH = 8
 """Bytes that say how long a message is."""
 

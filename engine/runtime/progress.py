@@ -13,8 +13,6 @@ from typing import TypeVar
 
 from .arrays import Floats
 
-__all__ = ["Preview", "Progress", "Steps", "run", "within"]
-
 Result = TypeVar("Result")
 
 

@@ -7,8 +7,6 @@ import numpy as np
 
 from .arrays import Floats
 
-__all__ = ["product"]
-
 # OpenBLAS, which NumPy carries, leaves products of at most so many multiplications to the calling thread.
 _SERIAL_MATRIX, _SERIAL_VECTOR = 250_000, 9_000
 

@@ -26,17 +26,6 @@ from .pipes import Inbox, has_more, send, sent_in_parts
 from .progress import Progress, Steps
 from .worker_main import READY
 
-__all__ = [
-    "Helper",
-    "Task",
-    "call_background",
-    "call_helpers",
-    "close_helpers",
-    "present_helpers",
-    "search_threads",
-    "use_processes",
-]
-
 _VARIABLE = "HIERMATCH_PROCESSES"
 """Environment variable that says how many processes may be at work, this one counted."""
 

@@ -17,8 +17,6 @@ from .messages import pack, unpack
 from .pipes import can_take, has_more, receive, send
 from .progress import Preview, Steps, run
 
-__all__ = ["READY", "serve"]
-
 READY = b"A helper of HierMatch is ready.\n"
 """What is written before the first reply."""
 

@@ -27,8 +27,6 @@ from ..runtime.progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
 
-__all__ = ["joined_shapes_steps", "joined_steps", "separate_limbs", "with_limbs_steps"]
-
 _BESIDE = 0.02
 """How far from what is known already, in sqrt(area), a piece goes on beyond it: eyes, teeth and clothes do not."""
 

@@ -9,8 +9,6 @@ from ..geometry.best_distinct import best_distinct
 from ..runtime.arrays import Floats, Ints
 from .shape import Shape
 
-__all__ = ["limb_tips", "mean_distances", "spread_extremities"]
-
 _REACH = 0.15
 """Distance, in sqrt(area), in which a tip is farther from the rest of the surface than all else."""
 

@@ -21,8 +21,6 @@ from ..runtime.progress import Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
 
-__all__ = ["cut_along", "evened_steps"]
-
 _MOST = 6
 """Handles that are cut at most: a surface that has so many more, such as chain mail, has them on purpose."""
 

@@ -14,8 +14,6 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools
 from .shape import Shape
 
-__all__ = ["KnownShapes"]
-
 _LIMIT = 500
 """Megabytes by default: some ten bodies of 5,000 vertices, or one pair of a million."""
 

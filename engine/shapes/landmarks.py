@@ -16,8 +16,6 @@ from ..runtime.errors import MatchError
 from .prepared_surface import PreparedSurface
 from .shape import Shape
 
-__all__ = ["LandmarkPlaces", "Landmarks", "landmark_pairs", "locate_landmarks", "placed_at_vertices"]
-
 
 @dataclass(frozen=True, eq=False)
 class LandmarkPlaces:

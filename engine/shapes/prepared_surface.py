@@ -19,8 +19,6 @@ from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
 
-__all__ = ["PreparedSurface", "prepared_steps"]
-
 
 @dataclass(frozen=True, eq=False)
 class PreparedSurface:

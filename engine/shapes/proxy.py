@@ -22,8 +22,6 @@ from .remeshing.dual_triangulation import manifold_part
 from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
 from .remeshing.voronoi_regions import VoronoiRegions, spread_regions_steps
 
-__all__ = ["Proxy", "proxy_steps"]
-
 _LARGE = 1.6  # times as many vertices as wanted: meshes with fewer stand for themselves
 _CELLS = 20.0  # cells for each vertex of the proxy: some where it is densest, and none ever joins two fingers
 _CELL_SIZE = 0.85  # of sqrt(area / cells); a cube cuts more from a slanted surface than its side squared

@@ -19,8 +19,6 @@ from .prepared_surface import PreparedSurface, prepared_steps
 from .proxy import Proxy
 from .surface_samples import SurfaceSampler, SurfaceSamples
 
-__all__ = ["Shape"]
-
 _FEW = 0.4
 """Part of the vertices wanted from which on a surface gains little by more where it is registered."""
 

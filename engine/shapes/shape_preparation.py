@@ -12,8 +12,6 @@ from ..runtime.progress import Steps
 from .shape import Shape
 from .surface_samples import SurfaceSampler
 
-__all__ = ["Wanted", "finer_shapes", "finer_shapes_steps", "prepared_shapes_steps"]
-
 
 class Wanted(NamedTuple):
     """What is wanted of shapes.

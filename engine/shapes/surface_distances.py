@@ -19,17 +19,6 @@ from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run, within
 from .shape import Shape
 
-__all__ = [
-    "EmbeddedDistances",
-    "PointDistances",
-    "SurfaceDistances",
-    "distances_to_vertices_steps",
-    "measured_steps",
-    "squared_offsets",
-    "symmetric_roots",
-    "to_all_vertices_steps",
-]
-
 _MEMORY = 256_000_000  # bytes of rows that are kept
 _PARTED = 32  # sources from which on distances are computed in two parts, one of them by a helper if there is one
 

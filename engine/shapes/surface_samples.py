@@ -18,8 +18,6 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps
 
-__all__ = ["SurfaceSampler", "SurfaceSamples"]
-
 _CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fingers wide
 
 _TAKEN_TOGETHER, _FOLLOWED_TOGETHER = 100, 40

@@ -20,8 +20,6 @@ from ...runtime.progress import Steps, within
 from .component_pairs import PartPair
 from .similarity_field import Surroundings
 
-__all__ = ["laid_onto_steps"]
-
 _NORMAL_LENGTH = 0.25
 """How many radii a unit of difference of the normals counts: it tells the two sides of a thin part from each other."""
 

@@ -21,8 +21,6 @@ from .component_alignment import laid_onto_steps
 from .component_pairs import Contact, contact_with, paired_parts
 from .similarity_field import Surroundings
 
-__all__ = ["FollowedMap", "follow_steps"]
-
 _TRUSTED_DISTANCE = 0.05
 """Distance from what is followed at which confidence is halved, in units of the root of the main part's area."""
 

@@ -17,8 +17,6 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from .similarity_field import Surroundings
 
-__all__ = ["Contact", "PartPair", "contact_with", "paired_parts"]
-
 _LARGEST_OFFSET = 1.5
 """How far from where it is expected a partner may be, in sums of the two radii."""
 

@@ -16,8 +16,6 @@ from ..missing_parts import round_trips
 from ..quality import map_confidence, trip_confidence
 from .component_maps import FollowedMap, follow_steps
 
-__all__ = ["WholeMap", "WholeMaps", "whole_maps_steps"]
-
 
 @dataclass(frozen=True, eq=False)
 class WholeMap:

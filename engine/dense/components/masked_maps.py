@@ -11,8 +11,6 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Ints
 from ..quality import MatchQuality, of_covered_part
 
-__all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]
-
 
 class _HasMaps(Protocol):
     """A dataclass with the maps of a match, such as `DenseMatch`."""

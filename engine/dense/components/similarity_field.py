@@ -15,8 +15,6 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
 from ...runtime.arrays import Floats, Ints
 
-__all__ = ["Similarities", "Surroundings"]
-
 _NEIGHBOURS = 32
 """Places on the surface that a similarity is fitted to."""
 

@@ -10,8 +10,6 @@ from ...runtime.progress import Steps
 from ..exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
 from ..sampled_pair import Pair
 
-__all__ = ["flat_candidates", "flat_steps"]
-
 _PAIRS = 5000  # of a point and a candidate: what an exact search takes
 
 

@@ -24,8 +24,6 @@ from ..relaxation import descend
 from .stress_descent import Settled, Stress, joined, settle_steps
 from .vertex_stress import PairStress
 
-__all__ = ["GmdsLevel", "GmdsResult", "Norm", "gmds_steps"]
-
 Norm = Literal["L2", "Linf"]
 """What is minimised: the sum of the squared differences of distances, or the largest difference."""
 

@@ -17,8 +17,6 @@ from ...runtime.progress import Progress, Steps
 from ...shapes.surface_distances import PointDistances, symmetric_roots
 from .vertex_stress import LocalStress, PairStress
 
-__all__ = ["Settled", "Stress", "joined", "settle_steps"]
-
 _TRIANGLES = 6  # around a point in which it is minimised: as many as a regular vertex has
 _BLOCK = 500_000  # distances from a point to a triangle that are handled at once
 _PASSES = 5

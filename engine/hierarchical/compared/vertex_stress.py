@@ -10,8 +10,6 @@ import numpy as np
 from ...runtime.arrays import Floats, Ints
 from ...shapes.surface_distances import squared_offsets
 
-__all__ = ["LocalStress", "PairStress", "minimum_in_triangle"]
-
 _NEWTON_STEPS = 3
 _RIDGE = 1e-9  # of the curvature, added in all directions so that a flat direction can be divided by
 _LARGEST = 100.0  # difference in units; the product of two of its powers must not be too large for a number

@@ -18,17 +18,8 @@ from .dual_ascent import PairModel, dual_ascent_steps, pair_model
 from .enumeration import Enumeration
 from .exclusion import Exclusion
 from .gilmore_lawler import gilmore_lawler_steps
-from .incumbent import TOLERANCE, Incumbent
+from .incumbent import Incumbent
 from .local_search import beam_search
-
-__all__ = [
-    "TOLERANCE",
-    "BoundedMatching",
-    "Exclusion",
-    "branch_and_bound",
-    "branch_and_bound_steps",
-    "distinct_matchings_steps",
-]
 
 Method = Literal["auto", "dual ascent", "gilmore-lawler"]
 """How a search bounds its nodes."""
@@ -55,7 +46,7 @@ class BoundedMatching:
     lower_bound : float
         No matching that keeps to the exclusions costs less; equal to `cost` when proven.
     proven : bool
-        Whether no matching costs less than ``(1 - TOLERANCE) * cost``.
+        Whether no matching costs less than ``(1 - TOLERANCE) * cost``, see `incumbent`.
     nodes : int
         Nodes of the search tree visited.
     """
@@ -129,8 +120,8 @@ def branch_and_bound_steps(
     fewest labels left, each node being bounded by the cheapest label of each open point.  Where that takes too long,
     the subtree is split at its top and each part is bounded anew by dual ascent.
 
-    A proof holds up to `TOLERANCE`, relative to the cost.  Memory peaks at about four times the table of all pairs of
-    pairs, (n m)^2 numbers.
+    A proof holds up to `incumbent.TOLERANCE`, relative to the cost.  Memory peaks at about four times the table of all
+    pairs of pairs, (n m)^2 numbers.
     """
     _check(problem)
     feasible = _feasible_matchings(problem, exclusions)

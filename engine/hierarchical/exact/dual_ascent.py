@@ -14,8 +14,6 @@ from ...runtime.progress import Progress, Steps
 from ..problem import MatchingProblem, forbidding_cost
 from .exclusion import Exclusion
 
-__all__ = ["PairModel", "assignment_duals", "dual_ascent_steps", "pair_model"]
-
 
 @dataclass(eq=False)
 class PairModel:

@@ -12,8 +12,6 @@ from ...runtime.arrays import Bools, Floats, Ints
 from .dual_ascent import PairModel
 from .exclusion import exclusion_surcharge
 
-__all__ = ["Enumeration"]
-
 _BATCH = 200_000  # numbers in the tables of a batch of nodes: some milliseconds of work
 
 

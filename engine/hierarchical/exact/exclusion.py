@@ -9,8 +9,6 @@ import numpy as np
 
 from ...runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["Exclusion", "exclusion_surcharge"]
-
 
 @dataclass(frozen=True, eq=False)
 class Exclusion:

@@ -14,8 +14,6 @@ from .dual_ascent import assignment_duals
 from .exclusion import Exclusion
 from .incumbent import Incumbent
 
-__all__ = ["gilmore_lawler_bound", "gilmore_lawler_steps"]
-
 _NODES_PER_STEP = 128
 
 

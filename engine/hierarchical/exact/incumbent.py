@@ -12,8 +12,6 @@ from ..problem import MatchingProblem, forbidding_cost
 from .exclusion import Exclusion
 from .local_search import improve_matching
 
-__all__ = ["TOLERANCE", "Incumbent"]
-
 TOLERANCE = 1e-7
 """Relative tolerance of a proof: no matching costs less than ``(1 - TOLERANCE)`` times a proven one."""
 

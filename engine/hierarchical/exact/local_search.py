@@ -12,8 +12,6 @@ from ..problem import MatchingProblem
 from .dual_ascent import PairModel
 from .exclusion import Exclusion, exclusion_surcharge
 
-__all__ = ["beam_search", "improve_matching"]
-
 
 def beam_search(model: PairModel, width: int) -> Ints:
     """Match point after point, keeping the most promising partial matchings.

@@ -9,8 +9,6 @@ from scipy.sparse import coo_array, csr_array
 from ...runtime.arrays import Floats
 from ..triangle_mesh import TriangleMesh
 
-__all__ = ["neighbour_means", "vertex_adjacency"]
-
 
 def vertex_adjacency(mesh: TriangleMesh) -> csr_array:
     """Return the matrix (n, n) of a mesh with n vertices that is one where an edge joins them, and else zero."""

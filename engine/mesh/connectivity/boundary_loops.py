@@ -14,8 +14,6 @@ from scipy.sparse.csgraph import connected_components
 from ...runtime.arrays import Floats, Ints
 from .halfedges import triangle_slots
 
-__all__ = ["BoundaryLoops", "boundary_loops"]
-
 
 @dataclass(frozen=True, eq=False)
 class BoundaryLoops:

@@ -7,8 +7,6 @@ import numpy as np
 
 from ...runtime.arrays import Ints
 
-__all__ = ["edge_chains"]
-
 
 def edge_chains(edges: Ints) -> list[tuple[list[int], list[int]]]:
     """Join edges to chains.

@@ -12,8 +12,6 @@ from ...runtime.arrays import Bools, Floats, Ints
 from ..unit_vectors import unit_vectors
 from .triangle_components import triangle_components
 
-__all__ = ["EdgeGroups", "following", "group_half_edges", "pair_half_edges", "repeated_triangles", "triangle_slots"]
-
 _MOST_TRIANGLES = 64
 """An edge of more triangles than this is left open: each of its triangles could only be paired by chance."""
 

@@ -12,8 +12,6 @@ from ...runtime.arrays import Bools, Floats, Ints
 from .boundary_loops import BoundaryLoops, boundary_loops
 from .triangle_components import neighbour_graph, symmetric_components, triangle_components, triangle_neighbours
 
-__all__ = ["Orientation", "enclosed_volumes", "inward_components", "orient_consistently", "turn_triangles"]
-
 
 @dataclass(frozen=True, eq=False)
 class Orientation:

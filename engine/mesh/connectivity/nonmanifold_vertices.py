@@ -10,8 +10,6 @@ from scipy.sparse.csgraph import connected_components
 from ...runtime.arrays import Bools, Ints
 from .halfedges import following
 
-__all__ = ["several_fans", "split_fans"]
-
 _LONGEST_WALK = 1000
 """Most steps around a vertex: longer ones, at the hub of thousands of triangles, cost more than they save."""
 

@@ -9,8 +9,6 @@ from scipy.sparse.csgraph import connected_components
 
 from ...runtime.arrays import Ints
 
-__all__ = ["neighbour_graph", "symmetric_components", "triangle_components", "triangle_neighbours"]
-
 
 def triangle_components(twins: Ints) -> Ints:
     """Find the components of triangles that hang together across paired half-edges.

@@ -11,8 +11,6 @@ from scipy.spatial import cKDTree
 from ...runtime.arrays import Bools, Floats, Ints
 from .halfedges import EdgeGroups, triangle_slots
 
-__all__ = ["weld_boundaries"]
-
 _TOLERANCE = 0.01
 """How far apart two vertices may be to be one, as a part of the shortest edge at either."""
 

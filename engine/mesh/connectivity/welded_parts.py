@@ -15,8 +15,6 @@ from ..triangle_mesh import TriangleMesh
 from .halfedges import group_half_edges
 from .vertex_welding import weld_boundaries
 
-__all__ = ["WeldedParts"]
-
 _SMALL = 0.1
 """Size of the largest part that counts as small, in units of the root of the area of the whole surface."""
 

@@ -21,8 +21,6 @@ from .edge_tracing import nearest_edge_values, trace_edges_steps
 from .face_correspondence import FacePlaces
 from .face_transfer import carry_face_values
 
-__all__ = ["CarriedValues", "Crossing", "Domain", "carry_values_steps"]
-
 Domain = Literal["POINT", "EDGE", "FACE", "CORNER"]
 """What has the values."""
 

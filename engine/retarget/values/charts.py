@@ -18,8 +18,6 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MeshError
 
-__all__ = ["CornerSheets", "cut_into_sheets"]
-
 
 @dataclass(frozen=True, eq=False)
 class CornerSheets:

@@ -17,8 +17,6 @@ from ...runtime.errors import MatchError, MeshError
 from .charts import cut_into_sheets
 from .face_correspondence import FacePlaces
 
-__all__ = ["carry_corner_values", "carry_normals", "carry_point_marks", "carry_point_values"]
-
 _SAME = 1e-3
 """Values that differ by less than this part of their range are the same; a byte has steps four times as large."""
 

@@ -10,8 +10,6 @@ from scipy.sparse.csgraph import connected_components
 from ...mesh.polygons import Polygons
 from ...runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["groups_of", "jumps", "weld"]
-
 _WELD = 0.25
 """Corners that meet on the same sheet belong together if they differ by less than this part of the edge there."""
 

@@ -17,8 +17,6 @@ from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MeshError
 from ..rig.fitted_rig import FittedRig
 
-__all__ = ["LocalFrames", "bone_frames", "surface_frames"]
-
 _RADIUS = 0.1
 """Over what distance Jacobians are averaged, in sqrt(area): about the size of a face, which turns as a whole."""
 

@@ -20,8 +20,6 @@ from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
 
-__all__ = ["TracedEdges", "nearest_edge_values", "trace_edges_steps"]
-
 _PIECE = 8.0
 """Length of the pieces that a line is traced in, in edges of the target: short enough that no piece has a short cut
 from one end of a bend to the other, long enough that the ends do not matter."""

@@ -17,8 +17,6 @@ from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError
 from .charts import CornerSheets
 
-__all__ = ["CornerPlaces", "FacePlaces", "FaceSamples", "FaceSeats"]
-
 _TOWARDS_CORNER = 2 / 3
 """How far from the centre of a face towards each corner it is sampled: about the middle of what lies nearest there."""
 

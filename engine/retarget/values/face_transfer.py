@@ -13,8 +13,6 @@ from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MatchError
 from .face_correspondence import FacePlaces, FaceSamples
 
-__all__ = ["carry_face_values", "majority"]
-
 
 def carry_face_values(values: ArrayLike, source: Polygons, places: FacePlaces) -> NDArray[Any]:
     """Carry a value of each face of the source to the faces of the target.

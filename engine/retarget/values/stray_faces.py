@@ -9,8 +9,6 @@ from ...mesh.polygons import Polygons
 from ...runtime.arrays import Bools, Floats, Ints
 from .corner_welding import groups_of
 
-__all__ = ["splinters", "teeth"]
-
 _SPLINTER = 0.005
 """Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
 

@@ -16,8 +16,6 @@ from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError
 from .deformation_gradients import LocalFrames, surface_frames
 
-__all__ = ["Symmetriser"]
-
 _LEAST_CONFIDENCE = 0.02
 """Places where the map to the mirror image is trusted less keep what they have."""
 

@@ -18,8 +18,6 @@ from .corner_welding import jumps, weld
 from .face_correspondence import CornerPlaces, FacePlaces
 from .stray_faces import splinters, teeth
 
-__all__ = ["CarriedUVs", "carry_uvs_steps"]
-
 _SAME = 1e-5
 """UVs that differ by less than this part of the extent of the layer are the same; Blender's own rule for a layer that
 fills the unit square is ten times as generous."""

@@ -11,8 +11,6 @@ from ...mesh.surface_map import SurfaceMap
 from ...runtime.arrays import Bools, Floats, Ints
 from .skin_weights import with_rows
 
-__all__ = ["with_rigid_parts", "with_single_bones"]
-
 _ALIKE = 1e-3
 """Rows of weights that differ by less than this in each entry are the same."""
 

@@ -16,8 +16,6 @@ from ...mesh.surface_map import SurfaceMap
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError, RigError
 
-__all__ = ["carried", "limited", "mixed", "normalised", "pruned", "row_differences", "row_sums", "with_rows"]
-
 _STEEPNESS = 4
 """How steeply weights fade that come close to the first one that is cut off."""
 

@@ -15,8 +15,6 @@ from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MeshError, RigError
 from .skin_weights import with_rows
 
-__all__ = ["filled"]
-
 _LEAST_WEIGHT = 1e-7
 """Weights below this, which is what rounding leaves of a zero, are dropped."""
 

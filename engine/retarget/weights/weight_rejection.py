@@ -13,8 +13,6 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Ints
 from .skin_weights import row_differences
 
-__all__ = ["torn_vertices"]
-
 _STRETCH = 3.0
 """An edge that a map stretches by more may be torn."""
 

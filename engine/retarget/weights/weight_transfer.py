@@ -20,8 +20,6 @@ from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums,
 from .weight_filling import filled
 from .weight_rejection import torn_vertices
 
-__all__ = ["CarriedWeights", "Columns", "carry_weights_steps", "put_in"]
-
 _ROUNDING = 1e-9
 
 

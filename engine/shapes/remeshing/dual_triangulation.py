@@ -12,8 +12,6 @@ from scipy.sparse.csgraph import connected_components
 from ...runtime.arrays import Bools, Ints
 from .surface_cells import SurfaceCells
 
-__all__ = ["DualTriangulation", "dual_triangulation", "manifold_part"]
-
 
 @dataclass(frozen=True, eq=False)
 class DualTriangulation:

@@ -10,8 +10,6 @@ from ...mesh.unit_vectors import unit_vectors
 from ...runtime.arrays import Floats
 from .surface_cells import SurfaceCells
 
-__all__ = ["vertex_density"]
-
 _BY_CURVATURE = 0.75
 """Share of the vertices that go where the surface bends; the others are spread evenly."""
 

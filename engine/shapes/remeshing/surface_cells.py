@@ -15,8 +15,6 @@ from scipy.sparse.csgraph import connected_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 
-__all__ = ["SurfaceCells", "grid_labels", "nearest_members"]
-
 _LEAST_LENGTH = 1e-9  # of sqrt(area): an edge of length zero is no edge for a sparse graph
 _ASIDE = (1e-5, 3e-5, 2e-5)  # of sqrt(area): any direction that edges of a mesh are unlikely to have
 

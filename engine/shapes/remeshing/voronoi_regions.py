@@ -16,8 +16,6 @@ from .dual_triangulation import DualTriangulation, dual_triangulation
 from .sizing_field import vertex_density
 from .surface_cells import SurfaceCells, nearest_members
 
-__all__ = ["VoronoiRegions", "spread_regions_steps"]
-
 _LABEL = "Simplifying the mesh"
 _SPACING = 0.75  # least distance of seeds, in units of sqrt(area / vertices)
 _CANDIDATES = 8.0  # cells that may become seeds, for each one that will
