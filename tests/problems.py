@@ -13,7 +13,7 @@ from engine.hierarchical.problem import MatchingProblem
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from engine.hierarchical.exact.branch_and_bound import Exclusion
+    from engine.hierarchical.exact.exclusion import Exclusion
 
 
 def random_distances(rng: np.random.Generator, count: int, kind: str = "table") -> NDArray[np.float64]:

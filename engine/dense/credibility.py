@@ -24,32 +24,10 @@ References
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.special import expit, logit
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-
-__all__ = [
-    "ALL_ALIKE",
-    "CREDIBLE",
-    "EVEN",
-    "FAILED",
-    "MUCH_ALIKE",
-    "RISE",
-    "closeness",
-    "is_clear_choice",
-    "is_less_alike",
-    "likeness",
-    "map_score",
-    "probability_chosen",
-    "probability_right",
-    "registered_score",
-    "vertex_credibility",
-]
 
 _WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
 """Of the logarithms of the terms of a map.  Rigidity is the strongest cue against half turns; in distances and spectra

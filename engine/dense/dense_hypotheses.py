@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..runtime.arrays import Ints
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run, within
+from ..shapes.shape import Shape
 from .credibility import map_score
 from .functional_maps import (
     FunctionalMaps,
@@ -26,27 +30,6 @@ from .initial_maps import MapLead, RoughSearch, distinct_leads, fitting_maps_ste
 from .map_energies import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
 from .rigid_maps import rigid_maps
 from .spectral_domain import MapDomain
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ..shapes.shape import Shape
-
-__all__ = [
-    "USUAL",
-    "LandmarkStart",
-    "MapHypothesis",
-    "Selection",
-    "assessed_everywhere",
-    "hypothesis_of",
-    "map_domains",
-    "map_hypotheses_steps",
-    "refined_hypothesis_steps",
-    "unrefined_hypotheses_steps",
-    "unrefined_hypothesis",
-]
 
 _FINE_SIZES = spectral_sizes(15, 80, 9)
 _SMOOTH = 25  # eigenfunctions that maps between coarse samples are carried over with
@@ -155,12 +138,12 @@ class MapHypothesis(MapLead):
         return self.extension.steps(self.domains, self.points)
 
     @property
-    def images_on_y(self) -> NDArray[np.int64]:
+    def images_on_y(self) -> Ints:
         """For each vertex of X, the vertex of Y it is taken to, (n,)."""
         return self.images.on_y
 
     @property
-    def images_on_x(self) -> NDArray[np.int64]:
+    def images_on_x(self) -> Ints:
         """For each vertex of Y, the vertex of X it is taken to, (n',)."""
         return self.images.on_x
 

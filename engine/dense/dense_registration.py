@@ -3,35 +3,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from operator import itemgetter
-from typing import TYPE_CHECKING
 
+from ..mesh.closest_points import FoundPoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
-from ..registration.registration import points_at
+from ..registration.registration import Registration, points_at
+from ..runtime.arrays import Floats
 from ..runtime.errors import MatchError
 from ..runtime.progress import Preview, Progress, Steps, within
+from ..shapes.landmarks import Landmarks
+from ..shapes.shape import Shape
 from .credibility import EVEN, RISE, is_clear_choice
-from .dense_hypotheses import USUAL, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
+from .dense_hypotheses import USUAL, LandmarkStart, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
+from .initial_maps import RoughSearch
 from .landmark_selection import steered_hypotheses_steps
 from .proposers import PROPOSERS, Contest, are_distinct, contenders
 from .registered_hypotheses import Candidate, CloseFit, Follower, at_vertices
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ..mesh.closest_points import FoundPoints
-    from ..registration.registration import Registration
-    from ..shapes.landmarks import Landmarks
-    from ..shapes.shape import Shape
-    from .dense_hypotheses import LandmarkStart
-    from .initial_maps import RoughSearch
-
-__all__ = ["EIGENPAIRS", "RegisteredPair", "registered_pair_steps"]
 
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""
@@ -77,7 +67,7 @@ class RegisteredPair:
     margin: float | None
     landmarks: Landmarks | None = None
     mirrored: bool = False
-    trips: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+    trips: tuple[Floats, Floats] | None = None
     alternatives: tuple[FoundPoints, ...] = ()
 
     @property
@@ -200,11 +190,7 @@ def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[
 
 
 def _rivals(
-    best: Candidate,
-    others: list[Candidate],
-    fits: list[CloseFit],
-    untried: Sequence[MapHypothesis],
-    areas: NDArray[np.float64],
+    best: Candidate, others: list[Candidate], fits: list[CloseFit], untried: Sequence[MapHypothesis], areas: Floats
 ) -> list[tuple[float, Registration | MapHypothesis]]:
     """List other maps, and by how much each is less credible, by its own score if it was not registered."""
     # Starts that differ in a limb may lead to the same place at last.

@@ -4,17 +4,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..mesh.reflection import reflected_mesh, reflected_points
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..registration.deformable import DeformableSurface
 from ..registration.fine_registration import Polish, finer_surfaces_steps
 from ..registration.landmark_snapping import pinned
 from ..registration.prolongation import lift_steps
-from ..registration.registration import POLISH
+from ..registration.registration import POLISH, Registration, Stage
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, run, within
@@ -22,27 +24,16 @@ from ..runtime.worker import call_helpers
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.genus_reduction import evened_steps
 from ..shapes.landmarks import placed_at_vertices
+from ..shapes.prepared_surface import PreparedSurface
 from ..shapes.shape import Shape
 from ..shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
-from .components.extended_maps import whole_maps_steps
+from .components.extended_maps import WholeMap, whole_maps_steps
 from .components.masked_maps import piece_of, with_pieces_only
 from .credibility import vertex_credibility
 from .dense_hypotheses import LandmarkStart
-from .dense_registration import EIGENPAIRS, registered_pair_steps
+from .dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from .functional_maps import nearest_both_ways
 from .quality import MatchQuality, assess_maps, with_alternatives, with_pieces
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..registration.deformable import DeformableSurface
-    from ..registration.registration import Registration, Stage
-    from ..shapes.prepared_surface import PreparedSurface
-    from .components.extended_maps import WholeMap
-    from .dense_registration import RegisteredPair
-
-__all__ = ["MEASURED", "DenseMatch", "dense_match_steps", "densify", "densify_steps"]
 
 _SAMPLES = 512
 """Samples of each surface that hypotheses are compared at."""
@@ -160,15 +151,13 @@ def densify_steps(
     return with_pieces_only(dense, (x.original, y.original), covered)
 
 
-def _piece_of(
-    surface: TriangleMesh | Shape, found: SurfaceMap | None, points: SurfacePoints
-) -> NDArray[np.bool_] | None:
+def _piece_of(surface: TriangleMesh | Shape, found: SurfaceMap | None, points: SurfacePoints) -> Bools | None:
     """Tell which vertices of a mesh have a partner by an earlier map; a shape is taken as it is."""
     return None if isinstance(surface, Shape) else piece_of(surface, found, points.nearest_vertices)
 
 
 def _shape_steps(
-    surface: TriangleMesh | Shape, name: str, covered: NDArray[np.bool_] | None, points: SurfacePoints
+    surface: TriangleMesh | Shape, name: str, covered: Bools | None, points: SurfacePoints
 ) -> Steps[Shape]:
     """Prepare what is covered of a mesh, so that points lie on it, or return a shape as it is."""
     if isinstance(surface, Shape):
@@ -177,10 +166,9 @@ def _shape_steps(
     return (yield from within(with_limbs_steps(shape, name, points.nearest_vertices), 0.7, 1.0))
 
 
-def _rows(shape: Shape, points: SurfacePoints) -> NDArray[np.float64]:
+def _rows(shape: Shape, points: SurfacePoints) -> Floats:
     """Distances from the vertices nearest to points (k,) to all vertices, in sqrt(area), (k, n)."""
-    rows: NDArray[np.float64] = shape.solver.distances(shape.surface.on_mesh(points).nearest_vertices) / shape.scale
-    return rows
+    return shape.solver.distances(shape.surface.on_mesh(points).nearest_vertices) / shape.scale
 
 
 def _seen_directly(to_reflection: SurfaceMap, source: TriangleMesh) -> SurfaceMap:
@@ -188,9 +176,7 @@ def _seen_directly(to_reflection: SurfaceMap, source: TriangleMesh) -> SurfaceMa
     return replace(to_reflection, points=reflected_points(source, to_reflection.points))
 
 
-def _at_landmarks(
-    found: SurfaceMap, image: TriangleMesh, vertices: NDArray[np.int64], partners: NDArray[np.int64]
-) -> SurfaceMap:
+def _at_landmarks(found: SurfaceMap, image: TriangleMesh, vertices: Ints, partners: Ints) -> SurfaceMap:
     """Name the images of landmarks by the very vertices that were given, and trust them."""
     confidence, has_partner = found.confidence.copy(), found.has_partner.copy()
     confidence[vertices], has_partner[vertices] = 1, True
@@ -258,7 +244,7 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     return DenseMatch(forward, backward, quality)
 
 
-def _doubts(pair: RegisteredPair) -> tuple[NDArray[np.float64] | float, NDArray[np.float64] | float]:
+def _doubts(pair: RegisteredPair) -> tuple[Floats | float, Floats | float]:
     """Say how far images of vertices of the main parts may err, (n,) and (n',), beside their ways there and back."""
     if pair.trips is None:
         return 0.0, 0.0

@@ -3,16 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["BeamMatchings", "beam_matchings"]
 
 
 class BeamMatchings(NamedTuple):
@@ -26,18 +22,12 @@ class BeamMatchings(NamedTuple):
         Smaller is better.
     """
 
-    images: NDArray[np.int64]
-    costs: NDArray[np.float64]
+    images: Ints
+    costs: Floats
 
 
 def beam_matchings(
-    distances_x: NDArray[np.float64],
-    distances_y: NDArray[np.float64],
-    dissimilarity: NDArray[np.float64],
-    *,
-    kept: int,
-    width: int = 400,
-    weight: float = 0.3,
+    distances_x: Floats, distances_y: Floats, dissimilarity: Floats, *, kept: int, width: int = 400, weight: float = 0.3
 ) -> BeamMatchings:
     r"""Match points one after the other, keeping the best partial matchings only.
 

@@ -3,31 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, run
 from ..runtime.small_products import product
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-__all__ = [
-    "FunctionalMaps",
-    "PointMaps",
-    "SampledBasis",
-    "fit_functional_maps",
-    "nearest_both_ways",
-    "points_from_functions",
-    "points_from_functions_steps",
-    "refine_bijective_steps",
-    "spectral_sizes",
-]
 
 _INDEPENDENT = 0.3
 """Part of a function at the samples that those before it must leave unexplained; less is aliasing."""
@@ -50,8 +36,8 @@ class PointMaps(NamedTuple):
         For each point of Y, the number of its image among the points of X.
     """
 
-    on_y: NDArray[np.int64]
-    on_x: NDArray[np.int64]
+    on_y: Ints
+    on_x: Ints
 
 
 class FunctionalMaps(NamedTuple):
@@ -65,8 +51,8 @@ class FunctionalMaps(NamedTuple):
         Takes the coefficients of a function on X to those of its pullback, a function on Y.
     """
 
-    onto_x: NDArray[np.float64]
-    onto_y: NDArray[np.float64]
+    onto_x: Floats
+    onto_y: Floats
 
 
 class SampledBasis:
@@ -85,7 +71,7 @@ class SampledBasis:
         How many leading functions the samples can tell apart; no fit should use more.
     """
 
-    def __init__(self, functions: NDArray[np.float64]) -> None:
+    def __init__(self, functions: Floats) -> None:
         self.functions = functions
         # The factors of the first columns are the first columns of the factors: one decomposition serves every size.
         # Not by a library's QR: its threads make it a hundred times slower where other programs use the cores.
@@ -95,12 +81,12 @@ class SampledBasis:
         self._inverse = solve_triangular(triangular, np.eye(self.size), check_finite=False)
         self._orthogonal = product(functions[:, : self.size], self._inverse)
 
-    def coefficients(self, values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
+    def coefficients(self, values: Floats, size: int) -> Floats:
         """Fit functions given at the samples, (p, d), by the first basis functions: coefficients (size, d)."""
         return product(self._inverse[:size, :size], product(self._orthogonal[:, :size].T, values))
 
 
-def _leading_cholesky(gram: NDArray[np.float64]) -> NDArray[np.float64]:
+def _leading_cholesky(gram: Floats) -> Floats:
     """Factor the leading part of a Gram matrix, up to the first function that those before it nearly explain.
 
     Returns the upper triangular factor of that part, whose squared diagonal is what is left unexplained of each.
@@ -167,9 +153,7 @@ def fit_functional_maps(x: SampledBasis, y: SampledBasis, maps: PointMaps, size:
     )
 
 
-def points_from_functions(
-    maps: FunctionalMaps, functions_x: NDArray[np.float64], functions_y: NDArray[np.float64]
-) -> PointMaps:
+def points_from_functions(maps: FunctionalMaps, functions_x: Floats, functions_y: Floats) -> PointMaps:
     r"""Find point maps in both directions that agree best with functional maps in both directions.
 
     The image of a point a of X is the point b of Y with the least
@@ -201,9 +185,7 @@ def points_from_functions(
     return run(points_from_functions_steps(maps, functions_x, functions_y))
 
 
-def points_from_functions_steps(
-    maps: FunctionalMaps, functions_x: NDArray[np.float64], functions_y: NDArray[np.float64]
-) -> Steps[PointMaps]:
+def points_from_functions_steps(maps: FunctionalMaps, functions_x: Floats, functions_y: Floats) -> Steps[PointMaps]:
     """Find point maps that agree best with functional maps, in short steps; see `points_from_functions`."""
     size = len(maps.onto_x)
     here, there = functions_x[:, :size], functions_y[:, :size]
@@ -213,7 +195,7 @@ def points_from_functions_steps(
     return (yield from _nearest_steps(2.0 * product(here, maps.onto_x + maps.onto_y.T), there, squares_x, squares_y))
 
 
-def nearest_both_ways(rows_x: NDArray[np.float64], rows_y: NDArray[np.float64]) -> PointMaps:
+def nearest_both_ways(rows_x: Floats, rows_y: Floats) -> PointMaps:
     """Find for each row of either array the nearest row of the other, in the Euclidean sense.
 
     Parameters
@@ -271,16 +253,11 @@ def refine_bijective_steps(x: SampledBasis, y: SampledBasis, maps: PointMaps, si
     return maps
 
 
-def _squared_lengths(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def _squared_lengths(rows: Floats) -> Floats:
     return np.einsum("pd,pd->p", rows, rows)
 
 
-def _nearest_steps(
-    left: NDArray[np.float64],
-    right: NDArray[np.float64],
-    squares_x: NDArray[np.float64],
-    squares_y: NDArray[np.float64],
-) -> Steps[PointMaps]:
+def _nearest_steps(left: Floats, right: Floats, squares_x: Floats, squares_y: Floats) -> Steps[PointMaps]:
     """Find the largest entry of each row and column of left right^T - squares_x - squares_y^T.
 
     The squares ride along as two more columns of the factors.  float32 is twice as fast and, with values of order one,
@@ -308,7 +285,7 @@ def _blocks(m: int, n: int) -> Iterator[tuple[int, int]]:
         yield first, min(first + step, m)
 
 
-def _largest_of_columns(product: NDArray[np.float32]) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+def _largest_of_columns(product: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
     """Row and value of the largest entry of each column, first in chunks of rows: many times faster than argmax."""
     m, n = product.shape
     whole = m // _CHUNK * _CHUNK

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
+from ..runtime.arrays import Floats, Ints
 from ..runtime.parallel_map import beside_steps, shared_steps
 from ..runtime.progress import Progress, Steps, within
 from ..shapes.extremities import spread_extremities
@@ -16,15 +18,7 @@ from .extremity_search import beam_matchings
 from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
 from .lifted_matchings import LiftedMatchings
 from .map_energies import map_orientation, spectral_terms
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import NDArray
-
-    from .spectral_domain import MapDomain
-
-__all__ = ["MapLead", "RoughSearch", "distinct_leads", "fitting_maps_steps", "rough_maps_steps"]
+from .spectral_domain import MapDomain
 
 Own = TypeVar("Own")
 
@@ -82,8 +76,8 @@ class MapLead:
 class _Search(NamedTuple):
     """Samples of X by number, (m,), samples of Y to match them to, (n,), and how many matchings are followed up."""
 
-    of_x: NDArray[np.int64]
-    of_y: NDArray[np.int64]
+    of_x: Ints
+    of_y: Ints
     kept: Mapping[int, int]
 
     def possible(self, count_x: int, count_y: int) -> _Search:
@@ -238,7 +232,7 @@ def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLe
     return leads
 
 
-def _matchings(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.int64]:
+def _matchings(x: MapDomain, y: MapDomain, of_x: Ints, of_y: Ints) -> Ints:
     """Match coarse samples (m,) to coarse samples (n,) in the best ways: positions of images (r, m)."""
     distances_x, distances_y = (d.shape.sample_distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
     return beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=_OFFERED).images
@@ -320,7 +314,7 @@ def _refined_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[MapLe
     return MapLead(points, score, orientation, terms, "extremities")
 
 
-def _dissimilarity(x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64]) -> NDArray[np.float64]:
+def _dissimilarity(x: MapDomain, y: MapDomain, of_x: Ints, of_y: Ints) -> Floats:
     """Compare the descriptors of samples given by number, (m,) and (n,): (m, n), in units of the median."""
     difference = x.extremity_descriptors(of_x)[:, None] - y.extremity_descriptors(of_y)
     root = np.sqrt(np.square(difference).mean(axis=2))

@@ -3,21 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..runtime.progress import Steps, within
+from ..shapes.landmarks import Landmarks
+from ..shapes.shape import Shape
 from .dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..shapes.landmarks import Landmarks
-    from ..shapes.shape import Shape
-
-__all__ = ["Steered", "agrees", "landmark_distance", "steered_hypotheses_steps"]
 
 _PENALTY = 20.0
 """What a map's score rises by for each sqrt(area) that the images of landmarks are from their partners."""

@@ -3,20 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import signed_areas
+from ..runtime.arrays import Floats, Ints
 from .functional_maps import PointMaps, nearest_both_ways
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .spectral_domain import MapDomain
-
-__all__ = ["LiftedMatchings", "squared_differences"]
+from .spectral_domain import MapDomain
 
 _SIGNED_WEIGHT, _RELATIVE_SIGNED_WEIGHT = 1.0, 2.0
 """Of signed areas beside distances, and beside relative distances."""
@@ -51,9 +45,7 @@ class LiftedMatchings:
         different kinds of bodies, limbs are of different lengths.
     """
 
-    def __init__(
-        self, x: MapDomain, y: MapDomain, of_x: NDArray[np.int64], of_y: NDArray[np.int64], *, relative: bool = False
-    ) -> None:
+    def __init__(self, x: MapDomain, y: MapDomain, of_x: Ints, of_y: Ints, *, relative: bool = False) -> None:
         self._apart = y.shape.sample_distances
         here, there = (d.shape.sample_distances[:, of] for d, of in ((x, of_x), (y, of_y)))
         self._distances = _in_means(there) if relative else there
@@ -65,7 +57,7 @@ class LiftedMatchings:
         self._sides[:, second, first] = -self._sides[:, first, second]
         self._rows_x = self._rows(_in_means(here) if relative else here, signed_areas(x.directions(of_x)))
 
-    def maps(self, images: NDArray[np.int64], sign: int) -> PointMaps:
+    def maps(self, images: Ints, sign: int) -> PointMaps:
         """Carry a matching over both surfaces.
 
         Parameters
@@ -77,7 +69,7 @@ class LiftedMatchings:
         """
         return nearest_both_ways(self._rows_x, self._rows_y(images, sign))
 
-    def best(self, matchings: NDArray[np.int64], sign: int, most: int) -> NDArray[np.int64]:
+    def best(self, matchings: Ints, sign: int, most: int) -> Ints:
         """Choose those that fit best and say different things.
 
         Parameters
@@ -102,7 +94,7 @@ class LiftedMatchings:
 
         return matchings[best_distinct(np.argsort(misfits, kind="stable").tolist(), differ, most)]
 
-    def improved(self, images: NDArray[np.int64], sign: int) -> NDArray[np.int64]:
+    def improved(self, images: Ints, sign: int) -> Ints:
         """Exchange two images of a matching, or one for another sample, as often as it fits better then.
 
         Always the change that helps the most is made.  Of limbs that are alike, as the arms of an octopus, there are
@@ -129,7 +121,7 @@ class LiftedMatchings:
             images, least = offered[misfits.argmin()], misfits.min()
         return images
 
-    def _changed(self, images: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _changed(self, images: Ints) -> Ints:
         """All matchings that differ from one in one image, or in two that are exchanged, (r, m)."""
         m = len(images)
         first, second = np.triu_indices(m, 1)
@@ -142,7 +134,7 @@ class LiftedMatchings:
         replaced[np.arange(len(changed)), changed] = taken
         return np.concatenate([exchanged, replaced])
 
-    def _assessed(self, matchings: NDArray[np.int64], sign: int) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    def _assessed(self, matchings: Ints, sign: int) -> tuple[NDArray[np.float32], Ints]:
         """Mean squared difference of descriptions of scouts and of what they go to, (r,), and where those of X go."""
         rows_x = self._rows_x.astype(np.float32)
         misfits = np.empty(len(matchings), np.float32)
@@ -155,11 +147,11 @@ class LiftedMatchings:
             misfits[number] = there.min(axis=1).mean() + back.min(axis=1).mean()
         return misfits, landings
 
-    def _rows_y(self, images: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
+    def _rows_y(self, images: Ints, sign: int) -> Floats:
         first, second = np.triu_indices(len(images), 1)
         return self._rows(self._distances[:, images], sign * self._sides[:, images[first], images[second]])
 
-    def _rows(self, distances: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _rows(self, distances: Floats, sides: Floats) -> Floats:
         """Describe points by their distances (k, m) to samples, and by the signed areas (k, m (m - 1) / 2)."""
         columns = [distances / np.sqrt(max(distances.shape[1], 1))]
         if sides.shape[1]:
@@ -167,7 +159,7 @@ class LiftedMatchings:
         return np.column_stack(columns)
 
 
-def _in_means(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+def _in_means(distances: Floats) -> Floats:
     """Distances (k, m) of points from samples in units of the mean from each sample."""
     means = distances.mean(axis=0)
     return np.divide(distances, means, out=np.zeros_like(distances, np.float64), where=means > 0)

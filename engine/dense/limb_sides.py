@@ -3,24 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
+from ..runtime.arrays import Floats, Ints
 from ..runtime.parallel_map import shared_steps
+from ..runtime.progress import Steps
 from ..shapes.extremities import limb_tips, mean_distances
+from ..shapes.shape import Shape
 from ..shapes.surface_distances import measured_steps
 from .dense_hypotheses import LandmarkStart
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..runtime.progress import Steps
-    from ..shapes.shape import Shape
-    from .functional_maps import PointMaps
-
-__all__ = ["exchanged_limbs", "repaired_start_steps"]
+from .functional_maps import PointMaps
 
 _CENTRAL = 0.5
 """Part of the samples that make up the middle of the body: those least far from all others."""
@@ -85,15 +78,10 @@ def exchanged_limbs(x: Shape, y: Shape, maps: PointMaps) -> tuple[bool, bool]:
 
     Seen from one alone, a true map may seem to, about once in thirty times; hardly ever from both.
     """
-    return (
-        _exchange(x, y, maps.on_y, maps.on_x) is not None,
-        _exchange(y, x, maps.on_x, maps.on_y) is not None,
-    )
+    return (_exchange(x, y, maps.on_y, maps.on_x) is not None, _exchange(y, x, maps.on_x, maps.on_y) is not None)
 
 
-def _exchange(
-    x: Shape, y: Shape, there: NDArray[np.int64], back: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
+def _exchange(x: Shape, y: Shape, there: Ints, back: Ints) -> tuple[Ints, Ints] | None:
     """Find vertices of X and where they belong on Y, if the tips of X have got each other's images."""
     middle = _trusted_middle(x, there, back)
     if len(middle) < _FEWEST:
@@ -115,25 +103,20 @@ def _exchange(
     return vertices, np.concatenate([images[order], there[x.samples[known]]])
 
 
-def _told_apart(
-    x: Shape, tips: NDArray[np.int64], middle: NDArray[np.int64], weights: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _told_apart(x: Shape, tips: Ints, middle: Ints, weights: Floats) -> Ints:
     """Keep one tip of each limb: those that lie differently to the middle of the body than all before them."""
     sides = _from_mean(_sides(x.sample_distances[np.ix_(tips, middle)]), weights)
     clear = np.square(sides) @ weights > _TOLD_APART**2
     return tips[best_distinct(range(len(tips)), lambda tip, other: bool(clear[tip, other]))]
 
 
-def _sides(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+def _sides(distances: Floats) -> Floats:
     """By how much each place is nearer to the second of two tips than most places, (k, k, c), from distances (k, c)."""
     differences = distances[:, None] - distances
-    sides: NDArray[np.float64] = differences - np.median(differences, axis=2, keepdims=True)
-    return sides
+    return differences - np.median(differences, axis=2, keepdims=True)
 
 
-def _best_order(
-    here: NDArray[np.float64], there: NDArray[np.float64], weights: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _best_order(here: Floats, there: Floats, weights: Floats) -> Ints:
     """Exchange images of tips that are at each other's place, the clearest first, no two tips twice.
 
     Parameters
@@ -160,9 +143,7 @@ def _best_order(
     return order
 
 
-def _correlations(
-    here: NDArray[np.float64], there: NDArray[np.float64], weights: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _correlations(here: Floats, there: Floats, weights: Floats) -> Floats:
     """Correlate sides (k, k, c) seen from each two tips and from their images, (k, k); 1 where they say too little."""
     u, v = _from_mean(here, weights), _from_mean(there, weights)
     both, own, other = (np.einsum("ijc,ijc,c->ij", a, b, weights) for a, b in ((u, v), (u, u), (v, v)))
@@ -170,13 +151,13 @@ def _correlations(
     return np.where(clear, both / np.sqrt(np.where(clear, own * other, 1.0)), 1.0)
 
 
-def _from_mean(sides: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+def _from_mean(sides: Floats, weights: Floats) -> Floats:
     """Bound the sides of places, and take them from their weighted mean, (k, k, c)."""
     bounded = sides.clip(-_SIDE, _SIDE)
     return bounded - (bounded @ weights)[..., None]
 
 
-def _trusted_middle(x: Shape, there: NDArray[np.int64], back: NDArray[np.int64]) -> NDArray[np.int64]:
+def _trusted_middle(x: Shape, there: Ints, back: Ints) -> Ints:
     """Choose the samples in the middle of the body that both maps agree on."""
     means = mean_distances(x)
     middle = np.argsort(means, kind="stable")[: max(round(_CENTRAL * len(means)), 1)]
@@ -184,7 +165,7 @@ def _trusted_middle(x: Shape, there: NDArray[np.int64], back: NDArray[np.int64])
     return middle[x.sample_rows[middle, returned] < _TRUSTED]
 
 
-def _distances_between(shape: Shape, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.float64]:
+def _distances_between(shape: Shape, first: Ints, second: Ints) -> Floats:
     """Distances between vertices (k,) and (c,), from the samples nearest to the first, (k, c)."""
     nearest = shape.sample_rows[:, first].argmin(axis=0)
     return shape.sample_rows[np.ix_(nearest, second)].astype(np.float64)

@@ -3,19 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .functional_maps import FunctionalMaps, PointMaps
-    from .spectral_domain import MapDomain
-
-__all__ = ["curvature_terms", "distance_term", "map_orientation", "rigidity_term", "spectral_terms"]
+from ..runtime.arrays import Floats, Ints
+from .functional_maps import FunctionalMaps, PointMaps
+from .spectral_domain import MapDomain
 
 _BOUNDING = 200  # samples whose distances bound other ones
 _RIGID = 1e-3  # rigid defects below this are all the same
@@ -49,7 +42,7 @@ def spectral_terms(x: MapDomain, y: MapDomain, maps: FunctionalMaps) -> dict[str
 
 def map_orientation(
     x: MapDomain, y: MapDomain, points: PointMaps, maps: FunctionalMaps
-) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[float, Floats, Floats]:
     r"""Measure whether a map keeps or mirrors the surface, by the sign of its Jacobian.
 
     The gradients of the first eigenfunctions of Y at the image of a point, and those of their pullbacks at the point,
@@ -76,9 +69,7 @@ def map_orientation(
     return float(np.sign(at_x).mean() + np.sign(at_y).mean()) / 2, at_x, at_y
 
 
-def _agreement(
-    here: NDArray[np.float64], there: NDArray[np.float64], images: NDArray[np.int64], pullback: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _agreement(here: Floats, there: Floats, images: Ints, pullback: Floats) -> Floats:
     """Agreement of orientation at points, (p,), whose images have gradients that are pulled back."""
     count = min(here.shape[1], there.shape[1], len(pullback))
     pulled = np.einsum("psf,sl->plf", here[: len(images), :count], pullback[:count, :count], optimize=True)
@@ -155,13 +146,7 @@ def rigidity_term(x: MapDomain, y: MapDomain, points: PointMaps, size: int) -> f
     return float(np.exp(np.mean(logarithms)))
 
 
-def _rigid_defects(
-    weights: NDArray[np.float64],
-    places: NDArray[np.float64],
-    normals: NDArray[np.float64],
-    images: NDArray[np.float64],
-    image_normals: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _rigid_defects(weights: Floats, places: Floats, normals: Floats, images: Floats, image_normals: Floats) -> Floats:
     """Compare weighted patches (c, p) of points with normals (p, 3) and of their images: 0 for similar ones; (c,)."""
     means, image_means = weights @ places, weights @ images
     kept = _correlation(weights, places, images, means, image_means)
@@ -172,12 +157,12 @@ def _rigid_defects(
 
 
 def _correlation(
-    weights: NDArray[np.float64],
-    first: NDArray[np.float64],
-    second: NDArray[np.float64],
-    first_means: NDArray[np.float64] | None = None,
-    second_means: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    weights: Floats,
+    first: Floats,
+    second: Floats,
+    first_means: Floats | None = None,
+    second_means: Floats | None = None,
+) -> Floats:
     """Correlate vectors (p, 3) in weighted patches (c, p), from means (c, 3) or from zero: (c, 3, 3)."""
     products = np.einsum("pi,pj->pij", first, second).reshape(-1, 9)
     squares = np.stack([np.square(first).sum(axis=1), np.square(second).sum(axis=1)], axis=1)
@@ -190,7 +175,7 @@ def _correlation(
     return np.divide(covariance, size, out=np.zeros_like(covariance), where=size > _POINT)
 
 
-def _distances_between(domain: MapDomain, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+def _distances_between(domain: MapDomain, vertices: Ints) -> Floats:
     """Distances between vertices, (k, k), half-way between the bounds of the triangle inequality over samples."""
     rows = domain.shape.sample_rows[:_BOUNDING, vertices]  # (s, k)
     lower = np.zeros((len(vertices), len(vertices)), np.float32)

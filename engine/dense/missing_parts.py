@@ -3,22 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..mesh.connectivity.adjacency import neighbour_means
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.surface_points import SurfacePoints
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["round_trips", "with_partner"]
+from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 
 _SPACINGS, _LEAST_TRIP = 3.0, 0.03
 """Length of a round trip from which on it does not lead home: vertex spacings, and a part of sqrt(area)."""
@@ -40,7 +33,7 @@ _LEAST_CORE = 0.001
 """Least area that is not reached, as a part of the surface, for something to be missing: half a finger of a person."""
 
 
-def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> NDArray[np.float64]:
+def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> Floats:
     """Distance between each vertex of the source and where two maps bring it, there and back, (n,).
 
     `there` holds a point of the target for each vertex of the source, `back` one of the source for each of the target.
@@ -49,9 +42,7 @@ def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints)
     return np.linalg.norm(returned - source.vertices, axis=1)
 
 
-def with_partner(
-    source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints
-) -> NDArray[np.bool_]:
+def with_partner(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> Bools:
     """Tell which vertices of the source have a partner on the target, by a pair of maps.
 
     Parameters
@@ -89,7 +80,7 @@ def _least_gap(target: TriangleMesh) -> float:
     return max(_OTHER_SPACINGS / np.sqrt(target.vertex_count), _LEAST_GAP)
 
 
-def _gaps(places: NDArray[np.float64], target: TriangleMesh, back: SurfacePoints) -> NDArray[np.float64]:
+def _gaps(places: Floats, target: TriangleMesh, back: SurfacePoints) -> Floats:
     """Distances from places (k, 3) to what the target is mapped to, (k,): its vertices and its triangles' middles."""
     if not len(places):
         return np.empty(0)
@@ -97,17 +88,16 @@ def _gaps(places: NDArray[np.float64], target: TriangleMesh, back: SurfacePoints
     if len(reached) < _DENSE:
         reached = np.concatenate([reached, reached[target.triangles].mean(axis=1)])
     tree = cKDTree(reached, balanced_tree=False, compact_nodes=False)
-    distances: NDArray[np.float64] = tree.query(places)[0]
-    return distances
+    return tree.query(places)[0]
 
 
-def _parts(mesh: TriangleMesh, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _parts(mesh: TriangleMesh, chosen: Bools) -> Ints:
     """Find the connected parts of the chosen vertices (n,): the number of each one's part, (n,); others are alone."""
     n, (a, b) = mesh.vertex_count, mesh.edges[chosen[mesh.edges].all(axis=1)].T
     graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(n, n))
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
-def _mostly(mesh: TriangleMesh, marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _mostly(mesh: TriangleMesh, marked: Bools) -> Bools:
     """Tell whether the larger part of each vertex and its neighbours is marked, (n,)."""
     return neighbour_means(mesh, marked.astype(np.float64)) > _MOSTLY

@@ -12,23 +12,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import compress
 from operator import is_
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
+from ..runtime.arrays import Floats
 from ..runtime.progress import Steps, within
+from ..shapes.landmarks import Landmarks
 from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
 from .limb_sides import exchanged_limbs, repaired_start_steps
 from .registered_hypotheses import Candidate, Follower
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..shapes.landmarks import Landmarks
-
-__all__ = ["PROPOSERS", "Contest", "Proposer", "are_distinct", "contenders"]
 
 _CONTRADICTED = 4.0
 """Difference of scores up to which a map whose limbs are where they belong is preferred to one that exchanges them as
@@ -66,7 +60,7 @@ class Contest:
 Proposer = Callable[[Contest, list[Candidate]], Steps[list[Candidate]]]
 
 
-def are_distinct(first: NDArray[np.float64], second: NDArray[np.float64], areas: NDArray[np.float64]) -> bool:
+def are_distinct(first: Floats, second: Floats, areas: Floats) -> bool:
     """Say whether two registrations are different maps, as a whole or in where they take a limb.
 
     Parameters

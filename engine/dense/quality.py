@@ -4,31 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..mesh.connectivity.adjacency import neighbour_means
 from ..mesh.surface_map import SurfaceMap
+from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats
 from .credibility import EVEN, is_clear_choice, is_less_alike, probability_chosen, probability_right
 from .missing_parts import round_trips, with_partner
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.surface_points import SurfacePoints
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = [
-    "MatchQuality",
-    "assess_maps",
-    "map_confidence",
-    "of_covered_part",
-    "overlap_sentence",
-    "trip_confidence",
-    "with_alternatives",
-    "with_pieces",
-]
 
 _TRUSTED_ROUND_TRIP = 0.02
 """Distance, in sqrt(area), between a point and where both maps bring it at which its confidence is halved."""
@@ -104,8 +89,8 @@ def map_confidence(
     back: SurfacePoints,
     *,
     credibility: float = 1.0,
-    doubt: NDArray[np.float64] | float = 0.0,
-) -> NDArray[np.float64]:
+    doubt: Floats | float = 0.0,
+) -> Floats:
     """Judge each vertex's image by whether the way back leads home, and by how much the surface is stretched there.
 
     Parameters
@@ -131,31 +116,23 @@ def map_confidence(
     return _confidence(source, target, there, known, trips) * credibility
 
 
-def trip_confidence(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+def trip_confidence(distances: Floats) -> Floats:
     """Trust points, 0 to 1, by how far (k,) they are from where two maps bring them, there and back, in sqrt(area)."""
-    confidence: NDArray[np.float64] = 1 / (1 + np.square(distances / _TRUSTED_ROUND_TRIP))
-    return confidence
+    return 1 / (1 + np.square(distances / _TRUSTED_ROUND_TRIP))
 
 
 def _confidence(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    there: SurfacePoints,
-    known: NDArray[np.bool_],
-    trips: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, known: Bools, trips: Floats
+) -> Floats:
     """Judge images, (n,), by where vertices are known to have a partner, (n,), and how far they may err, (n,)."""
     stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
     confidence = trip_confidence(trips) / (1 + np.square(stretch / _TRUSTED_STRETCH))
     return np.clip(neighbour_means(source, confidence), 0, 1) * known
 
 
-def _trips(
-    source: TriangleMesh, there: SurfacePoints, back: SurfacePoints, doubt: NDArray[np.float64] | float
-) -> NDArray[np.float64]:
+def _trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints, doubt: Floats | float) -> Floats:
     """Say how far images may err, (n,), in sqrt(area): by ways there and back, or more."""
-    longer: NDArray[np.float64] = np.maximum(round_trips(source, there, back) / np.sqrt(source.area), doubt)
-    return longer
+    return np.maximum(round_trips(source, there, back) / np.sqrt(source.area), doubt)
 
 
 def assess_maps(
@@ -166,7 +143,7 @@ def assess_maps(
     margin: float | None,
     *,
     likeness: float | None = None,
-    doubt: NDArray[np.float64] | float = 0.0,
+    doubt: Floats | float = 0.0,
 ) -> MatchQuality:
     """Measure a pair of maps between two surfaces.
 
@@ -291,7 +268,7 @@ def _percentage(part: float) -> str:
     return f"{part:.0%}" if part < _ROUNDED else f"{part:.1%}"
 
 
-def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> NDArray[np.float64]:
+def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> Floats:
     """Logarithm of mapped over original length of each edge, both in units of sqrt(area), (e,)."""
     first, second = source.edges.T
     mapped = np.linalg.norm(there.positions[first] - there.positions[second], axis=1) / np.sqrt(target.area)
@@ -301,7 +278,7 @@ def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoint
     return np.log(np.maximum(mapped, least) / np.maximum(own, least))
 
 
-def _vertex_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _vertex_means(mesh: TriangleMesh, values: Floats) -> Floats:
     """Mean of values per edge (e,) over the edges at each vertex, (n,)."""
     ends, n = mesh.edges.ravel(), mesh.vertex_count
     return np.bincount(ends, np.repeat(values, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)

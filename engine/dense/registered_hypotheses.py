@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from ..mesh.closest_points import FoundPoints
 from ..mesh.surface_points import SurfacePoints
 from ..registration.axial_twists import rolled_back, untwisted
 from ..registration.axial_windings import wound_steps
+from ..registration.deformable import DeformableSurface
+from ..registration.positional_constraints import Ties
 from ..registration.registration import (
     AGAIN,
     CLOSE,
@@ -21,33 +24,24 @@ from ..registration.registration import (
     LAST,
     SOFT,
     Registration,
+    Stage,
     points_at,
     register_steps,
     restarted_steps,
     smooth_start,
 )
+from ..runtime.arrays import Floats, Ints
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
+from ..shapes.shape import Shape
 from .credibility import likeness, registered_score
 from .dense_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
 from .functional_maps import PointMaps
 from .initial_maps import MapLead
+from .spectral_domain import MapDomain
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from ..registration.deformable import DeformableSurface
-    from ..registration.positional_constraints import Ties
-    from ..registration.registration import Stage
-    from ..shapes.shape import Shape
-    from .spectral_domain import MapDomain
-
-    _Common = tuple["Follower", MapDomain, MapDomain]
-    Trips = tuple[NDArray[np.float64], NDArray[np.float64]]
-
-__all__ = ["Candidate", "CloseFit", "Follower", "Settling", "at_vertices"]
+_Common = tuple["Follower", MapDomain, MapDomain]
+Trips = tuple[Floats, Floats]
 
 _SMOOTH = 40
 """Eigenfunctions that the source is placed by before it is registered."""
@@ -166,12 +160,12 @@ class Follower:
     is_sent_once: ClassVar[bool] = True
 
     @cached_property
-    def _smooth(self) -> NDArray[np.float64]:
+    def _smooth(self) -> Floats:
         """Functions that the source is placed by before it is registered, (n_x, k)."""
         return self._functions[:, :_SMOOTH]
 
     @cached_property
-    def _functions(self) -> NDArray[np.float64]:
+    def _functions(self) -> Floats:
         """All functions of the source, (n_x, k)."""
         return self.x.unit_functions()
 
@@ -219,9 +213,9 @@ class Follower:
             found.append(lying)
         return sorted(found, key=lambda candidate: candidate.score)
 
-    def _turned_back_steps(self, candidate: Candidate) -> Steps[tuple[Candidate, list[NDArray[np.float64]]]]:
+    def _turned_back_steps(self, candidate: Candidate) -> Steps[tuple[Candidate, list[Floats]]]:
         """Turn parts of a long body back while that is more credible; and say how else all of it might be placed."""
-        ways: list[NDArray[np.float64]] = []
+        ways: list[Floats] = []
         for number in range(_ROLLS):
             positions = candidate.registration.positions
             turned, otherwise = rolled_back(self.x, self.source, self.target, positions)
@@ -235,7 +229,7 @@ class Follower:
             candidate = rolled
         return candidate, ways
 
-    def _registered_again_steps(self, candidate: Candidate, positions: NDArray[np.float64]) -> Steps[Candidate]:
+    def _registered_again_steps(self, candidate: Candidate, positions: Floats) -> Steps[Candidate]:
         """Follow a candidate's hypothesis from other positions."""
         registration = yield from register_steps(self.source, self.target, positions, (GUIDED, SOFT))
         return self._judged(candidate.hypothesis, registration)
@@ -259,7 +253,7 @@ class Follower:
         source, target = self.source, self.target
         positions, isometry = candidate.registration.positions, candidate.isometry
 
-        def register_all_steps(starts: list[NDArray[np.float64]], stage: Stage = FINE) -> Steps[list[Registration]]:
+        def register_all_steps(starts: list[Floats], stage: Stage = FINE) -> Steps[list[Registration]]:
             """Register from several positions."""
             items = [(start, stage, isometry) for start in starts]
             return (yield from shared_steps(_registered_steps, (self, *candidate.hypothesis.domains), items))
@@ -334,11 +328,11 @@ class Follower:
         lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
         return registered_score(lead.score, registration.gaps), lead.terms
 
-    def start(self, images: PointMaps) -> NDArray[np.float64]:
+    def start(self, images: PointMaps) -> Floats:
         """Place the source where a map between all vertices puts it, smoothly."""
         return smooth_start(self.source, self.target, images.on_y, self._smooth)
 
-    def apart(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    def apart(self, first: Floats, second: Floats) -> float:
         """Mean distance, in sqrt(area), between two ways to place the source."""
         areas = self.source.mass
         return float(areas @ np.linalg.norm(first - second, axis=1) / areas.sum())
@@ -351,7 +345,7 @@ class Follower:
         likeness = candidate.likeness + was.score - hypothesis.score
         return replace(candidate, hypothesis=hypothesis, likeness=likeness)
 
-    def _guides(self, hypothesis: MapHypothesis, images: PointMaps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _guides(self, hypothesis: MapHypothesis, images: PointMaps) -> tuple[Floats, Floats]:
         """Take the lowest eigenfunctions of the target to both surfaces: a tail is far from a leg in them, in any pose.
 
         The higher ones count less, by the root of their eigenvalues: they err more, and say less about limbs.
@@ -394,14 +388,14 @@ def _closely_followed_steps(
     return found.registration, found.reverse, found.score
 
 
-def _registered_steps(common: _Common, item: tuple[NDArray[np.float64], Stage, float]) -> Steps[Registration]:
+def _registered_steps(common: _Common, item: tuple[Floats, Stage, float]) -> Steps[Registration]:
     """Register the source from some positions."""
     follow, (start, stage, isometry) = common[0], item
     steps = register_steps(follow.source, follow.target, start, (stage,), isometry=isometry, ties=follow.ties)
     return (yield from steps)
 
 
-def at_vertices(surface: DeformableSurface, vertices: NDArray[np.int64]) -> FoundPoints:
+def at_vertices(surface: DeformableSurface, vertices: Ints) -> FoundPoints:
     """Name vertices of a surface as points on it."""
     points = SurfacePoints.at_vertices(surface.mesh, vertices)
     return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -13,14 +13,9 @@ from scipy.spatial.transform import Rotation
 
 from ..geometry.best_distinct import best_distinct
 from ..geometry.procrustes import nearest_rotations
+from ..runtime.arrays import Floats, Ints
 from .functional_maps import PointMaps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .spectral_domain import MapDomain
-
-__all__ = ["rigid_maps"]
+from .spectral_domain import MapDomain
 
 _TURNS = Rotation.create_group("I").as_matrix()
 """Rotations of an icosahedron, (60, 3, 3): any rotation is at most 45 degrees from one.  They contain those that turn
@@ -53,23 +48,22 @@ _DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct
 class _Motions(NamedTuple):
     """Ways to lay X onto Y: rotations (r, 3, 3), scales (r,), and translations (r, 3)."""
 
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
-    translations: NDArray[np.float64]
+    rotations: Floats
+    scales: Floats
+    translations: Floats
 
-    def of(self, numbers: NDArray[np.int64]) -> _Motions:
+    def of(self, numbers: Ints) -> _Motions:
         """Take some of them."""
         return _Motions(*(values[numbers] for values in self))
 
-    def there(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    def there(self, places: Floats) -> Floats:
         """Take places of X, (k, 3), to Y, (r, k, 3)."""
         turned = places @ self.rotations.transpose(0, 2, 1)
-        found: NDArray[np.float64] = self.scales[:, None, None] * turned + self.translations[:, None]
-        return found
+        return self.scales[:, None, None] * turned + self.translations[:, None]
 
-    def back(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    def back(self, places: Floats) -> Floats:
         """Take places of Y, (k, 3), to X, (r, k, 3)."""
-        found: NDArray[np.float64] = (places - self.translations[:, None]) @ self.rotations
+        found: Floats = (places - self.translations[:, None]) @ self.rotations
         return found / self.scales[:, None, None]
 
 
@@ -87,24 +81,24 @@ class _Matches:
         How far they are.
     """
 
-    on_y: NDArray[np.int64]
-    on_x: NDArray[np.int64]
-    lengths: tuple[NDArray[np.float64], NDArray[np.float64]]
+    on_y: Ints
+    on_x: Ints
+    lengths: tuple[Floats, Floats]
 
     @cached_property
-    def weights(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def weights(self) -> tuple[Floats, Floats]:
         """Equal weights of those of either surface that are near, (r, k) and (r, l); of both they sum to one."""
         first, second = (_nearest(lengths) for lengths in self.lengths)
         return first / 2, second / 2
 
     @cached_property
-    def mean_lengths(self) -> NDArray[np.float64]:
+    def mean_lengths(self) -> Floats:
         """How far those are apart that are near, (r,)."""
         first, second = (np.einsum("rk,rk->r", *pair) for pair in zip(self.weights, self.lengths, strict=True))
         return first + second
 
     @property
-    def order(self) -> NDArray[np.int64]:
+    def order(self) -> Ints:
         """Numbers of the ways, (r,), the one in which the surfaces are nearest to each other first."""
         return np.argsort(self.mean_lengths, kind="stable")
 
@@ -151,9 +145,7 @@ class _RigidPair:
         turned = np.einsum("rde,re->rd", rotations, middles[0])
         return _Motions(rotations, scales, middles[1] - scales[:, None] * turned)
 
-    def _along_normals(
-        self, motions: _Motions, on_y: NDArray[np.int64], on_x: NDArray[np.int64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _along_normals(self, motions: _Motions, on_y: Ints, on_x: Ints) -> tuple[Floats, Floats]:
         """Distances of all samples from planes that touch the other surface in those closest to them, (r, k) each."""
         x, y = self._x, self._y
         there, back = motions.there(x.places) - y.places[on_y], motions.back(y.places) - x.places[on_x]
@@ -197,24 +189,21 @@ def rigid_maps(x: MapDomain, y: MapDomain) -> list[PointMaps]:
     return best_distinct(rigid, lambda points, other: y.apart(points, other) > _DISTINCT, _MOST)
 
 
-def _nearest(lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+def _nearest(lengths: Floats) -> Floats:
     """Give equal weights to the shortest of lengths (r, k); each row sums to one."""
     last = int(_MET * lengths.shape[1])
     near = lengths <= np.partition(lengths, last, axis=1)[:, last, None]
-    weights: NDArray[np.float64] = near / near.sum(axis=1, keepdims=True)
-    return weights
+    return near / near.sum(axis=1, keepdims=True)
 
 
-def _features(
-    places: NDArray[np.float64], normals: NDArray[np.float64], curvatures: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _features(places: Floats, normals: Floats, curvatures: Floats) -> Floats:
     """Join places (..., k, 3), normals (..., k, 3) and mean curvatures (k,), (..., k, 7)."""
     bent = np.broadcast_to(_CURVATURE * curvatures[:, None], (*places.shape[:-1], 1))
     return np.concatenate([places, _NORMAL * normals, bent], axis=-1)
 
 
-def _axes(domain: MapDomain) -> NDArray[np.float64]:
+def _axes(domain: MapDomain) -> Floats:
     """Principal axes of the samples, in columns, right-handed."""
-    axes: NDArray[np.float64] = np.linalg.svd(domain.places, full_matrices=False)[2].T
+    axes: Floats = np.linalg.svd(domain.places, full_matrices=False)[2].T
     axes[:, 2] *= np.sign(np.linalg.det(axes))
     return axes

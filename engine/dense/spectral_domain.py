@@ -5,22 +5,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.orientation import tangent_gradient
 from ..hierarchical.spectral_descriptors import automatic_energies, wave_kernel_signatures
-from .functional_maps import SampledBasis
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..shapes.shape import Shape
-    from .functional_maps import PointMaps
-
-__all__ = ["MapDomain"]
+from ..runtime.arrays import Floats, Ints
+from ..shapes.shape import Shape
+from .functional_maps import PointMaps, SampledBasis
 
 _COARSE = 512  # samples on which many hypotheses are compared
 _FINE = 800  # samples on which few are refined
@@ -92,14 +86,14 @@ class MapDomain:
         return SampledBasis(self.functions[self.vertices])
 
     @cached_property
-    def gradients(self) -> NDArray[np.float64]:
+    def gradients(self) -> Floats:
         """Gradients of the first eigenfunctions at the fine samples, less of higher ones, (p, g, 2)."""
         count = min(_ORIENTING, self.functions.shape[1])
         gradients = tangent_gradient(self.shape.mesh, self.vertices) @ self.functions[:, :count]
         gradients *= self.shape.scale
         return gradients.reshape(len(self.vertices), 2, count).transpose(0, 2, 1)
 
-    def directions(self, samples: NDArray[np.int64]) -> NDArray[np.float64]:
+    def directions(self, samples: Ints) -> Floats:
         """Take the unit directions at the coarse samples away from the given ones (m,), (coarse, m, 2)."""
         operator = tangent_gradient(self.shape.mesh, self.shape.samples)
         gradients = operator @ self.shape.sample_rows[samples].T.astype(np.float64)
@@ -108,7 +102,7 @@ class MapDomain:
         return np.divide(planar, lengths, out=np.zeros_like(planar), where=lengths > 0)
 
     @cached_property
-    def places(self) -> NDArray[np.float64]:
+    def places(self) -> Floats:
         """Positions of the fine samples, (p, 3); their mean is the origin."""
         places = self.shape.mesh.vertices[self.vertices] / self.shape.scale
         return places - places.mean(axis=0)
@@ -117,26 +111,25 @@ class MapDomain:
         """Mean distance in space between the images of samples by two maps to this surface."""
         return float(np.linalg.norm(self.places[first.on_y] - self.places[second.on_y], axis=1).mean())
 
-    def nearest_samples(self, vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+    def nearest_samples(self, vertices: Ints) -> Ints:
         """Numbers of the fine samples nearest, in space, to vertices (k,), (k,)."""
         positions = self.shape.mesh.vertices
-        nearest: NDArray[np.int64] = cKDTree(positions[self.vertices]).query(positions[vertices])[1]
-        return nearest
+        return cKDTree(positions[self.vertices]).query(positions[vertices])[1]
 
     @cached_property
-    def normals(self) -> NDArray[np.float64]:
+    def normals(self) -> Floats:
         """Unit normals at the fine samples, (p, 3)."""
         return self.shape.mesh.vertex_normals[self.vertices]
 
     @cached_property
-    def patches(self) -> NDArray[np.float64]:
+    def patches(self) -> Floats:
         """Weights of the fine samples in a Gaussian patch around each coarse sample, (coarse, p); rows sum to one."""
         distances = self.shape.sample_rows[:, self.vertices].astype(np.float64)
         weights = np.exp(-np.square(distances / _PATCH) / 2)
         return weights / weights.sum(axis=1, keepdims=True)
 
     @cached_property
-    def curvature(self) -> NDArray[np.float64]:
+    def curvature(self) -> Floats:
         r"""Mean curvature after some heat flow, at the fine samples, (p,); its mean square is one.
 
         The gradient of the area by the place of a vertex is its mean curvature, integrated over its cell, along its
@@ -156,25 +149,25 @@ class MapDomain:
         return self.functions[self.vertices] @ coefficients / max(size, np.finfo(float).tiny)
 
     @cached_property
-    def signatures(self) -> NDArray[np.float64]:
+    def signatures(self) -> Floats:
         """Logarithms of wave kernel signatures at the fine samples, each of unit spread, (p, d)."""
         return self._log_signatures(len(self.values), _ENERGIES, self.vertices)
 
-    def extremity_descriptors(self, samples: NDArray[np.int64]) -> NDArray[np.float64]:
+    def extremity_descriptors(self, samples: Ints) -> Floats:
         """Describe some coarse samples, given by number (m,), by low waves, (m, d)."""
         pairs = min(_EXTREMITY_PAIRS, len(self.values))
         signatures = self._log_signatures(pairs, _EXTREMITY_ENERGIES, self.shape.samples)[samples]
         means = self.shape.sample_distances @ self.shape.cell_areas
         return np.column_stack([signatures, 3 * means[samples] / (self.shape.cell_areas @ means)])
 
-    def _log_signatures(self, pairs: int, count: int, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def _log_signatures(self, pairs: int, count: int, vertices: Ints) -> Floats:
         spectrum = self.shape.spectrum
         spectrum = replace(spectrum, values=spectrum.values[:pairs], functions=spectrum.functions[vertices, :pairs])
         logarithms = np.log(wave_kernel_signatures(spectrum, automatic_energies(pairs, count)) + _LEAST_SIGNATURE)
         return logarithms / np.maximum(logarithms.std(axis=0), np.finfo(float).tiny)
 
 
-def _filled_up(points: NDArray[np.float64], samples: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _filled_up(points: Floats, samples: Ints, count: int) -> Ints:
     """Add farthest points, by the distance in space, to samples until there are `count` (at most all vertices)."""
     count = min(count, len(points))
     chosen = np.empty(max(count, len(samples)), np.int64)

@@ -3,13 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Iterable
 from itertools import chain
-from typing import TYPE_CHECKING, TypeVar
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
-
-__all__ = ["best_distinct"]
+from typing import TypeVar
 
 Item = TypeVar("Item")
 

@@ -3,19 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag, eigh, qr
+from scipy.sparse import csr_array
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps, within
 from .schur_elimination import ShiftedFactor, elimination_order
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-__all__ = ["EigenPairs", "lowest_eigenpairs_steps"]
 
 _DENSE = 300
 """Rows up to which the matrix is simply solved as a dense one."""
@@ -59,8 +55,8 @@ class EigenPairs(NamedTuple):
         Whether counting has proved that no smaller eigenvalue is missing.
     """
 
-    values: NDArray[np.float64]
-    vectors: NDArray[np.float64]
+    values: Floats
+    vectors: Floats
     complete: bool
 
 
@@ -81,16 +77,14 @@ class _Ritz(NamedTuple):
         Whether they are as exact as they should be.
     """
 
-    values: NDArray[np.float64]
-    basis: NDArray[np.float64]
-    coefficients: NDArray[np.float64]
+    values: Floats
+    basis: Floats
+    coefficients: Floats
     end: float
     converged: bool
 
 
-def lowest_eigenpairs_steps(
-    matrix: csr_array, null: NDArray[np.float64], count: int, guess: float
-) -> Steps[EigenPairs]:
+def lowest_eigenpairs_steps(matrix: csr_array, null: Floats, count: int, guess: float) -> Steps[EigenPairs]:
     r"""Compute the lowest eigenpairs of a matrix, in steps.
 
     Parameters
@@ -162,7 +156,7 @@ def lowest_eigenpairs_steps(
     return EigenPairs(ritz.values[:count], vectors, complete)
 
 
-def _count_below(matrix: csr_array, shift: float, order: NDArray[np.int64] | None) -> int | None:
+def _count_below(matrix: csr_array, shift: float, order: Ints | None) -> int | None:
     """Count the eigenvalues below a number; None if it cannot be told."""
     try:
         return ShiftedFactor(matrix, shift, order).negative_count
@@ -171,7 +165,7 @@ def _count_below(matrix: csr_array, shift: float, order: NDArray[np.int64] | Non
 
 
 def _interior_shift_steps(
-    matrix: csr_array, guess: float, wanted: int, order: NDArray[np.int64] | None
+    matrix: csr_array, guess: float, wanted: int, order: Ints | None
 ) -> Steps[ShiftedFactor | None]:
     """Find a shift with about half of the wanted eigenvalues below it; None if none of some is good.
 
@@ -194,7 +188,7 @@ def _interior_shift_steps(
     return None
 
 
-def _krylov_steps(factor: ShiftedFactor, null: NDArray[np.float64], wanted: int, block: int, seed: int) -> Steps[_Ritz]:
+def _krylov_steps(factor: ShiftedFactor, null: Floats, wanted: int, block: int, seed: int) -> Steps[_Ritz]:
     """Extend a Krylov space until the wanted pairs have converged, or its limit is reached."""
     n = factor.size
     columns = min(n, int(2.6 * wanted) + 5 * block)
@@ -225,16 +219,14 @@ def _krylov_steps(factor: ShiftedFactor, null: NDArray[np.float64], wanted: int,
         yield Progress(min(end / (2.5 * wanted + 4 * block), 1), _LABEL)
 
 
-def _grown(array: NDArray[np.float64], shape: tuple[int, int], used: int) -> NDArray[np.float64]:
+def _grown(array: Floats, shape: tuple[int, int], used: int) -> Floats:
     """Copy the used columns to a larger array, zero where the new rows and columns are."""
     larger = np.zeros(shape, order="F")
     larger[: len(array), :used] = array[:, :used]
     return larger
 
 
-def _orthogonalised(
-    image: NDArray[np.float64], basis: NDArray[np.float64], near: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _orthogonalised(image: Floats, basis: Floats, near: int) -> tuple[Floats, Floats, Floats]:
     """Split a block into what is in the span of a basis and the rest: image = basis row + new rest.
 
     Parameters
@@ -272,7 +264,7 @@ def _orthogonalised(
     return row, new, rest
 
 
-def _cholesky_qr(columns: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _cholesky_qr(columns: Floats) -> tuple[Floats, Floats]:
     """QR decomposition of a tall array by matrix products, twice for full accuracy.
 
     Raises
@@ -291,13 +283,7 @@ def _cholesky_qr(columns: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDA
     return columns, rest
 
 
-def _rayleigh_ritz(
-    factor: ShiftedFactor,
-    wanted: int,
-    basis: NDArray[np.float64],
-    projected: NDArray[np.float64],
-    rest: NDArray[np.float64],
-) -> _Ritz:
+def _rayleigh_ritz(factor: ShiftedFactor, wanted: int, basis: Floats, projected: Floats, rest: Floats) -> _Ritz:
     """Find the best approximate eigenpairs in a Krylov space, and judge them.
 
     The last columns of the basis are the block that comes next, to which the inverted matrix leads out of the space.

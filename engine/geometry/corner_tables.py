@@ -4,17 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["CornerTables", "corner_tables"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 
 # Lengths below this part of the largest length of a triangle count as this part: keeps triangles without area finite.
 _FLAT = 1e-8
@@ -51,15 +46,15 @@ class CornerTables:
     """
 
     unit: float
-    c: NDArray[np.int64]
-    a: NDArray[np.int64]
-    b: NDArray[np.int64]
-    slope: NDArray[np.float64]
-    height: NDArray[np.float64]
-    along: NDArray[np.float64]
-    bend: NDArray[np.float64]
-    length_a: NDArray[np.float64]
-    length_b: NDArray[np.float64]
+    c: Ints
+    a: Ints
+    b: Ints
+    slope: Floats
+    height: Floats
+    along: Floats
+    bend: Floats
+    length_a: Floats
+    length_b: Floats
     graph: csr_array
 
 
@@ -67,17 +62,17 @@ class CornerTables:
 class _Corners:
     """Corners in the plane: a at the origin, b at (l, 0), c at (x, y)."""
 
-    c: NDArray[np.int64]
-    a: NDArray[np.int64]
-    b: NDArray[np.int64]
-    l: NDArray[np.float64]  # noqa: E741 -- the letter of the formulas
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
+    c: Ints
+    a: Ints
+    b: Ints
+    l: Floats  # noqa: E741 -- the letter of the formulas
+    x: Floats
+    y: Floats
 
-    def __getitem__(self, index: NDArray[np.int64] | NDArray[np.bool_]) -> _Corners:
+    def __getitem__(self, index: Ints | Bools) -> _Corners:
         return _Corners(self.c[index], self.a[index], self.b[index], self.l[index], self.x[index], self.y[index])
 
-    def is_obtuse(self) -> NDArray[np.bool_]:
+    def is_obtuse(self) -> Bools:
         """Say of each corner whether its angle exceeds a right one."""
         # The slack puts right angles, the rule on regular grids, on one side whatever the rounding.
         return self.x * (self.x - self.l) + self.y**2 < 1e-9 * self.l**2
@@ -140,12 +135,7 @@ def _corners(mesh: TriangleMesh, unit: float) -> _Corners:
     return _laid_out((c, a, b), positions[c], positions[a], positions[b])
 
 
-def _laid_out(
-    vertices: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
-    at_c: NDArray[np.float64],
-    at_a: NDArray[np.float64],
-    at_b: NDArray[np.float64],
-) -> _Corners:
+def _laid_out(vertices: tuple[Ints, Ints, Ints], at_c: Floats, at_a: Floats, at_b: Floats) -> _Corners:
     """Lay triangles of the vertices c, a and b, (k,) each, at positions (k, d) out in the plane."""
     ab, ac = at_b - at_a, at_c - at_a
     ab_square, ac_square = (np.einsum("kd,kd->k", side, side) for side in (ab, ac))
@@ -157,7 +147,7 @@ def _laid_out(
     return _Corners(*vertices, length, x, np.maximum(y, smallest))
 
 
-def _behind(corners: _Corners) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+def _behind(corners: _Corners) -> tuple[Ints, Floats, Floats]:
     """For each corner, the vertex d across a b and its position (x, y) in the plane of the corner; d = -1 if none.
 
     There is none at the boundary and at edges of more than two triangles.
@@ -175,16 +165,14 @@ def _behind(corners: _Corners) -> tuple[NDArray[np.int64], NDArray[np.float64], 
     return np.where(behind >= 0, there.c, -1), x, -there.y
 
 
-def _crossing_inside(corners: _Corners, dx: NDArray[np.float64], dy: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _crossing_inside(corners: _Corners, dx: Floats, dy: Floats) -> Bools:
     """Whether the straight line from c to d crosses the inside of a b."""
     depth = corners.y - dy
     crossing = corners.x * -dy + dx * corners.y
     return (crossing > 0) & (crossing < corners.l * depth)
 
 
-def _graph(
-    mesh: TriangleMesh, unit: float, c: NDArray[np.int64], d: NDArray[np.int64], flip_lengths: NDArray[np.float64]
-) -> csr_array:
+def _graph(mesh: TriangleMesh, unit: float, c: Ints, d: Ints, flip_lengths: Floats) -> csr_array:
     """Join the edges of the mesh and the lines c d into one symmetric graph; the shorter counts where both exist."""
     n = mesh.vertex_count
     tail = np.concatenate([mesh.edges[:, 0], mesh.edges[:, 1], c])

@@ -5,22 +5,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
 
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import SettingsError
 from ..runtime.progress import Progress, Steps, run, within
 from .block_krylov import EigenPairs, lowest_eigenpairs_steps
 from .laplacian import LaplaceBeltrami, laplace_beltrami
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["Spectrum", "eigenpairs", "eigenpairs_steps"]
 
 _MARGIN = 10
 """Pairs more than its share by area that are first computed of a part of a surface."""
@@ -55,9 +49,9 @@ class Spectrum:
     that are antisymmetric under a symmetry of the surface, so that the first of the largest values is positive.
     """
 
-    values: NDArray[np.float64]
-    functions: NDArray[np.float64]
-    mass: NDArray[np.float64]
+    values: Floats
+    functions: Floats
+    mass: Floats
     complete: bool
 
     @cached_property
@@ -145,7 +139,7 @@ def _normalised(operator: LaplaceBeltrami) -> csr_array:
     return matrix
 
 
-def _block(matrix: csr_array, part: NDArray[np.int64]) -> csr_array:
+def _block(matrix: csr_array, part: Ints) -> csr_array:
     """Rows and columns of a part of the surface."""
     return matrix if len(part) == matrix.shape[0] else csr_array(matrix[part][:, part])
 
@@ -176,7 +170,7 @@ def _merged(operator: LaplaceBeltrami, found: dict[int, EigenPairs], count: int)
     return Spectrum(values[order], _signed(functions, operator.mass), operator.mass, complete)
 
 
-def _signed(functions: NDArray[np.float64], mass: NDArray[np.float64]) -> NDArray[np.float64]:
+def _signed(functions: Floats, mass: Floats) -> Floats:
     """Turn each function in place to the sign that `Spectrum` describes."""
     moments, sizes = np.zeros((2, functions.shape[1]))
     for first in range(0, len(functions), _ROWS):

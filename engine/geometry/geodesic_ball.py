@@ -3,21 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["distances_to_others", "vicinity"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 
 
-def vicinity(mesh: TriangleMesh, vertex: int, radius: float) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def vicinity(mesh: TriangleMesh, vertex: int, radius: float) -> tuple[Ints, Floats]:
     """Find the vertices near to one, by the lengths of paths along edges.
 
     Parameters
@@ -50,9 +44,8 @@ def vicinity(mesh: TriangleMesh, vertex: int, radius: float) -> tuple[NDArray[np
     return members[near], distances[near]
 
 
-def distances_to_others(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def distances_to_others(points: Floats) -> Floats:
     """Distance from each of some points (k, 3) to the nearest other one, (k,): inf for a single one."""
     distances = np.linalg.norm(points[:, None] - points, axis=2)
     np.fill_diagonal(distances, np.inf)
-    nearest: NDArray[np.float64] = distances.min(axis=1)
-    return nearest
+    return distances.min(axis=1)

@@ -3,23 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import dijkstra
 
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from .corner_tables import corner_tables
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["GeodesicSolver", "geodesic_distances"]
 
 # Lengths are in units of the mean edge length.  Those that are compared with distances are no simple fractions, so
 # that on regular grids no distance falls on a limit, where rounding would decide.
@@ -115,7 +109,7 @@ class GeodesicSolver:
             [tables.slope, tables.height, tables.along, tables.bend, tables.length_a, tables.length_b]
         )
 
-    def distances(self, sources: ArrayLike) -> NDArray[np.float64]:
+    def distances(self, sources: ArrayLike) -> Floats:
         """Compute the distances from each source to every vertex.
 
         Parameters
@@ -139,7 +133,7 @@ class GeodesicSolver:
             result[first : first + len(block)] = block
         return result
 
-    def distances_in_blocks(self, sources: ArrayLike) -> Generator[tuple[int, NDArray[np.float64]], None, None]:
+    def distances_in_blocks(self, sources: ArrayLike) -> Generator[tuple[int, Floats], None, None]:
         """Compute the distances from each source to every vertex, a few sources at a time.
 
         Parameters
@@ -173,7 +167,7 @@ class GeodesicSolver:
                     break
                 yield first, nothing
 
-    def path_lengths(self, sources: ArrayLike) -> NDArray[np.float64]:
+    def path_lengths(self, sources: ArrayLike) -> Floats:
         """Compute the lengths of shortest paths in `graph` from each source to every vertex.
 
         These are upper bounds of the distances, a few percent too long, and take a fraction of the time.
@@ -193,10 +187,10 @@ class GeodesicSolver:
         MeshError
             If a source is not a vertex of the mesh.
         """
-        lengths: NDArray[np.float64] = dijkstra(self.graph, indices=self._checked(sources))
+        lengths: Floats = dijkstra(self.graph, indices=self._checked(sources))
         return lengths * self._unit
 
-    def _checked(self, sources: ArrayLike) -> NDArray[np.int64]:
+    def _checked(self, sources: ArrayLike) -> Ints:
         array = np.asarray(sources)
         if array.ndim != 1 or not (np.issubdtype(array.dtype, np.integer) or array.size == 0):
             raise MeshError(
@@ -211,9 +205,9 @@ class GeodesicSolver:
             )
         return array.astype(np.int64)
 
-    def _march(self, sources: NDArray[np.int64]) -> Generator[None, None, NDArray[np.float64]]:
+    def _march(self, sources: Ints) -> Generator[None, None, Floats]:
         """Compute the distances (s, n) of one block of sources, in some steps."""
-        distances: NDArray[np.float64] = dijkstra(self.graph, indices=sources)
+        distances: Floats = dijkstra(self.graph, indices=sources)
         yield
         squares = np.square(distances)
         corner, pair, ends = self._in_order(distances)
@@ -232,9 +226,7 @@ class GeodesicSolver:
         distances *= self._unit
         return distances
 
-    def _in_order(
-        self, distances: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    def _in_order(self, distances: Floats) -> tuple[Ints, Ints, Ints]:
         """List the updates that can matter, by bands.
 
         Returns
@@ -282,14 +274,7 @@ class GeodesicSolver:
         ends = np.append(0, np.cumsum(np.bincount(key)))
         return np.concatenate(corners).take(order), np.concatenate(pairs).take(order), ends
 
-    def _relax(
-        self,
-        squares: NDArray[np.float64],
-        corner: NDArray[np.int64],
-        pair: NDArray[np.int64],
-        changed: NDArray[np.bool_],
-        memory: NDArray[np.float64],
-    ) -> None:
+    def _relax(self, squares: Floats, corner: Ints, pair: Ints, changed: Bools, memory: Floats) -> None:
         """Lower squared distances (s n,) of `pair` by updates through `corner`, until nothing that they use changes.
 
         `changed` is (s n,) of False, and is left so; `memory` has room for the geometry of the corners.
@@ -319,7 +304,7 @@ class GeodesicSolver:
                 return
             inputs, geometry, pair = inputs.take(again, axis=1), geometry.take(again, axis=1), pair.take(again)
 
-    def _jumps(self, distances: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _jumps(self, distances: Floats) -> Ints:
         """Find the elements of the distances (s, n), counted through, that one edge of the mesh proves too large."""
         tail, head = self._edges
         found = [np.empty(0, np.int64)]
@@ -333,7 +318,7 @@ class GeodesicSolver:
                 np.negative(difference, out=difference)
         return np.unique(np.concatenate(found))
 
-    def _repair(self, squares: NDArray[np.float64], pair: NDArray[np.int64]) -> None:
+    def _repair(self, squares: Floats, pair: Ints) -> None:
         """Update squared distances (s n,) of `pair` from all sides, and the neighbours that this proves too large.
 
         Needles and obtuse corners let the front pass in another order than Dijkstra's: what the bands leave behind is
@@ -357,16 +342,14 @@ class GeodesicSolver:
             pair = np.unique(neighbour[squares.take(neighbour) > reach * reach])
 
 
-def _spans(
-    starts: NDArray[np.int64], index: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+def _spans(starts: Ints, index: Ints) -> tuple[Ints, Ints, Ints]:
     """List starts[i] to starts[i + 1] - 1 for each i of `index`; also where in the list each begins, and its length."""
     counts = starts.take(index + 1) - starts.take(index)
     first = np.cumsum(counts) - counts
     return np.arange(counts.sum()) + np.repeat(starts.take(index) - first, counts), first, counts
 
 
-def _unfolded(squares: NDArray[np.float64], geometry: NDArray[np.float64]) -> NDArray[np.float64]:
+def _unfolded(squares: Floats, geometry: Floats) -> Floats:
     r"""Squared distance of c from the source that is unfolded into the plane of the corner c, a, b.
 
     Parameters
@@ -419,6 +402,6 @@ def _unfolded(squares: NDArray[np.float64], geometry: NDArray[np.float64]) -> ND
     return depth
 
 
-def geodesic_distances(mesh: TriangleMesh, sources: ArrayLike) -> NDArray[np.float64]:
+def geodesic_distances(mesh: TriangleMesh, sources: ArrayLike) -> Floats:
     """Compute the geodesic distances (S, n) from vertices (S,) to all vertices of a mesh; see `GeodesicSolver`."""
     return GeodesicSolver(mesh).distances(sources)

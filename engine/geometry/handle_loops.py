@@ -3,23 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
 from ..mesh.connectivity.adjacency import neighbour_means
 from ..mesh.connectivity.boundary_loops import boundary_loops
 from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Ints
 from ..runtime.progress import Progress, Steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["genus", "shortest_handle_loop_steps"]
 
 _ROOTS = 256
 """Most vertices of the first loops that shorter ones are looked for at."""
@@ -45,7 +39,7 @@ def genus(mesh: TriangleMesh) -> int:
     return (2 - ends - characteristic) // 2
 
 
-def shortest_handle_loop_steps(mesh: TriangleMesh) -> Steps[NDArray[np.int64]]:
+def shortest_handle_loop_steps(mesh: TriangleMesh) -> Steps[Ints]:
     """Find a short loop of edges that goes around a handle, or through it, in a crease if there is one.
 
     Parameters
@@ -115,7 +109,7 @@ class _Loops:
         n = mesh.vertex_count
         self._graph = csr_array(coo_array((self._lengths, (self._tails, self._heads)), shape=(n, n)))
 
-    def at(self, root: int, most: int | None = None) -> list[tuple[float, NDArray[np.int64]]]:
+    def at(self, root: int, most: int | None = None) -> list[tuple[float, Ints]]:
         """Find the shortest loops of a basis through a vertex: their lengths, and their vertices, shortest first."""
         distances, before = dijkstra(self._graph, directed=False, indices=root, return_predecessors=True)
         in_tree = (before[self._heads] == self._tails) | (before[self._tails] == self._heads)
@@ -140,7 +134,7 @@ class _Loops:
         return sorted(found, key=lambda each: each[0])
 
 
-def _creased(mesh: TriangleMesh) -> NDArray[np.bool_]:
+def _creased(mesh: TriangleMesh) -> Bools:
     """Tell at which vertices the surface is hollow, or bends like a saddle as around a narrow neck, (n,)."""
     corners = mesh.vertices[mesh.triangles]
     mean, excess = np.zeros(mesh.vertex_count), np.full(mesh.vertex_count, -2 * np.pi)
@@ -167,7 +161,7 @@ def _way(before: NDArray[np.int32], vertex: int) -> list[int]:
     return way
 
 
-def _closed(one: list[int], other: list[int]) -> NDArray[np.int64]:
+def _closed(one: list[int], other: list[int]) -> Ints:
     """Join two ways to the same root to a loop, without what they share."""
     while len(one) > 1 and len(other) > 1 and one[-2] == other[-2]:
         one, other = one[:-1], other[:-1]

@@ -4,18 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["IntrinsicTriangulation", "corner_cotangents", "intrinsic_delaunay", "mollified_lengths", "triangle_lengths"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 
 _SLACK = 1e-6
 """By how much two sides of a triangle are at least longer than the third, in mean edge lengths."""
@@ -38,18 +33,18 @@ class IntrinsicTriangulation:
         How many edges were flipped.
     """
 
-    triangles: NDArray[np.int64]
-    lengths: NDArray[np.float64]
+    triangles: Ints
+    lengths: Floats
     flips: int = 0
 
 
-def triangle_lengths(mesh: TriangleMesh) -> NDArray[np.float64]:
+def triangle_lengths(mesh: TriangleMesh) -> Floats:
     """Measure the sides of the triangles of a mesh, (m, 3); side i leads from corner i to corner i + 1."""
     corners = mesh.vertices[mesh.triangles]
     return np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
 
 
-def mollified_lengths(lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+def mollified_lengths(lengths: Floats) -> Floats:
     r"""Lengthen all sides alike until every triangle has an area.
 
     The same length is added to every side [1]_: the smallest with which two sides of a triangle are always longer than
@@ -74,7 +69,7 @@ def mollified_lengths(lengths: NDArray[np.float64]) -> NDArray[np.float64]:
     return lengths + max(0.0, _SLACK * float(lengths.mean()) - float(slack.min()))
 
 
-def corner_cotangents(lengths: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def corner_cotangents(lengths: Floats) -> tuple[Floats, Floats]:
     """Cotangent of the angle opposite each side, and area, of triangles.
 
     Parameters
@@ -147,7 +142,7 @@ def intrinsic_delaunay(mesh: TriangleMesh) -> IntrinsicTriangulation:
     return IntrinsicTriangulation(triangles, lengths, flips)
 
 
-def _shared_sides(triangles: NDArray[np.int64], n: int) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def _shared_sides(triangles: Ints, n: int) -> tuple[Ints, Bools]:
     """Find the edges of exactly two triangles, as pairs of sides, (p, 2); side i of triangle t is number 3 t + i.
 
     The second array, (p,), tells whether both sides run in the same direction: the triangles look to opposite sides.
@@ -161,9 +156,7 @@ def _shared_sides(triangles: NDArray[np.int64], n: int) -> tuple[NDArray[np.int6
     return pairs, tail[pairs[:, 0]] == tail[pairs[:, 1]]
 
 
-def _oriented(
-    triangles: NDArray[np.int64], lengths: NDArray[np.float64], n: int
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _oriented(triangles: Ints, lengths: Floats, n: int) -> tuple[Ints, Floats]:
     """Turn triangles over so that neighbours look to the same side, wherever the surface has two sides."""
     pairs, turned = _shared_sides(triangles, n)
     if not turned.any():
@@ -180,7 +173,7 @@ def _oriented(
     )
 
 
-def _twins(triangles: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+def _twins(triangles: Ints, n: int) -> Ints:
     """Find the side that each side is glued to, (3m,); -1 where there is none.
 
     That is at the boundary, at edges of more than two triangles, and where a surface with only one side has to be cut
@@ -192,9 +185,7 @@ def _twins(triangles: NDArray[np.int64], n: int) -> NDArray[np.int64]:
     return twins
 
 
-def _bad_sides(
-    sides: NDArray[np.int64], twins: NDArray[np.int64], cotangents: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _bad_sides(sides: Ints, twins: Ints, cotangents: Floats) -> Ints:
     """Those of some sides whose edges violate the Delaunay condition, each edge once by its smaller side."""
     other = twins[sides]
     # A side glued to its own triangle surrounds a vertex of degree one: there is no other diagonal.
@@ -205,7 +196,7 @@ def _bad_sides(
     return np.unique(np.minimum(sides[bad], other[bad]))
 
 
-def _independent(sides: NDArray[np.int64], twins: NDArray[np.int64], lengths: NDArray[np.float64]) -> NDArray[np.int64]:
+def _independent(sides: Ints, twins: Ints, lengths: Floats) -> Ints:
     """Choose edges of which no two share a triangle: those that are the longest in both their triangles."""
     order = np.lexsort((sides, lengths.ravel()[sides]))
     rank = np.empty(len(sides), np.int64)
@@ -217,9 +208,7 @@ def _independent(sides: NDArray[np.int64], twins: NDArray[np.int64], lengths: ND
     return sides[(longest[here] == rank) & (longest[there] == rank)]
 
 
-def _flip(
-    triangles: NDArray[np.int64], lengths: NDArray[np.float64], twins: NDArray[np.int64], sides: NDArray[np.int64]
-) -> None:
+def _flip(triangles: Ints, lengths: Floats, twins: Ints, sides: Ints) -> None:
     """Replace edges a b between the triangles a b c and b a d by c d, in place; no two share a triangle.
 
     The triangles become c a d and d b c.
@@ -245,13 +234,7 @@ def _flip(
     twins[3 * f + 2], twins[3 * g + 2] = 3 * g + 2, 3 * f + 2
 
 
-def _diagonal(
-    ab: NDArray[np.float64],
-    bc: NDArray[np.float64],
-    ca: NDArray[np.float64],
-    ad: NDArray[np.float64],
-    db: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _diagonal(ab: Floats, bc: Floats, ca: Floats, ad: Floats, db: Floats) -> Floats:
     """Length of c d, with the triangles a b c and b a d unfolded into the plane."""
     # a at the origin, b at (ab, 0), c above and d below.
     _, above = corner_cotangents(np.stack([ab, bc, ca], axis=1))

@@ -5,20 +5,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.csgraph import connected_components
 
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from .intrinsic_delaunay import corner_cotangents, intrinsic_delaunay
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["LaplaceBeltrami", "laplace_beltrami"]
 
 _LEAST_MASS = 1e-9
 """Least mass of a vertex with triangles, as a part of the mean."""
@@ -42,7 +38,7 @@ class LaplaceBeltrami:
     """
 
     stiffness: csr_array
-    mass: NDArray[np.float64]
+    mass: Floats
 
     @property
     def vertex_count(self) -> int:
@@ -55,7 +51,7 @@ class LaplaceBeltrami:
         return float(self.mass.sum())
 
     @cached_property
-    def components(self) -> list[NDArray[np.int64]]:
+    def components(self) -> list[Ints]:
         """The vertices of each part of the surface that hangs together, the largest by area first.
 
         Vertices without a triangle are in none.
@@ -70,9 +66,7 @@ class LaplaceBeltrami:
         return sorted((part for part in parts if self.mass[part[0]] > 0), key=lambda part: -self.mass[part].sum())
 
     @classmethod
-    def from_lengths(
-        cls, triangles: NDArray[np.int64], lengths: NDArray[np.float64], vertex_count: int
-    ) -> LaplaceBeltrami:
+    def from_lengths(cls, triangles: Ints, lengths: Floats, vertex_count: int) -> LaplaceBeltrami:
         r"""Build the operator from the lengths of the sides of triangles, all that it depends on.
 
         The weight of an edge is :math:`w = \tfrac{1}{2} \sum \cot\alpha` over the angles opposite to it [1]_; a third

@@ -3,19 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["smoothed_mean_curvature"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats
 
 
-def smoothed_mean_curvature(mesh: TriangleMesh, distances: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+def smoothed_mean_curvature(mesh: TriangleMesh, distances: Floats, radius: float) -> Floats:
     r"""Estimate the mean curvature of a surface that was smoothed within a radius.
 
     The barycentre of a patch lies below the surface where the surface bulges outwards, and above where it is hollow.
@@ -44,7 +38,7 @@ def smoothed_mean_curvature(mesh: TriangleMesh, distances: NDArray[np.float64], 
     """
     values = np.concatenate([mesh.vertices, mesh.vertex_normals], axis=1)
 
-    def mean_over_patch(size: float) -> NDArray[np.float64]:
+    def mean_over_patch(size: float) -> Floats:
         """Average positions and normals over a Gaussian patch of that size."""
         weight = np.exp(-np.square(distances / size) / 2) * mesh.vertex_areas
         return (weight @ values) / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)

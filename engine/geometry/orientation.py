@@ -3,20 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["orientation_agreement", "signed_areas", "tangent_gradient"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 
 
-def tangent_gradient(mesh: TriangleMesh, vertices: NDArray[np.int64]) -> csr_array:
+def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
     """Build the operator that takes the gradient of a function at some vertices, in a tangent frame.
 
     Parameters
@@ -57,7 +51,7 @@ def tangent_gradient(mesh: TriangleMesh, vertices: NDArray[np.int64]) -> csr_arr
     return csr_array((entries.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
 
 
-def signed_areas(directions: NDArray[np.float64]) -> NDArray[np.float64]:
+def signed_areas(directions: Floats) -> Floats:
     """Signed area of the parallelogram of each pair of directions.
 
     Parameters
@@ -76,9 +70,7 @@ def signed_areas(directions: NDArray[np.float64]) -> NDArray[np.float64]:
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 
-def orientation_agreement(
-    source_directions: NDArray[np.float64], target_directions: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def orientation_agreement(source_directions: Floats, target_directions: Floats) -> Floats:
     r"""Measure at each point whether a correspondence keeps or mirrors the surface.
 
     The directions u_j to the same places, seen from corresponding points, turn the same way on both surfaces if

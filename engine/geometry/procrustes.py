@@ -3,14 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["nearest_rotations"]
+from ..runtime.arrays import Bools, Floats
 
 _TURNS = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], np.float64)
 """No turn and the half turns around the axes: after one of them any rotation is less than 121 degrees from none."""
@@ -37,7 +32,7 @@ _BLOCK = 4096
 _TINY = np.finfo(float).tiny
 
 
-def nearest_rotations(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+def nearest_rotations(matrices: Floats) -> Floats:
     r"""Find the nearest rotation to each matrix.
 
     The rotation R with the largest :math:`\mathrm{tr}(R^T F)` belongs to the unit quaternion that is the eigenvector of
@@ -71,7 +66,7 @@ def nearest_rotations(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     return rotations
 
 
-def _of_block(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+def _of_block(matrices: Floats) -> Floats:
     """Nearest rotations: by quaternions, after the half turn that leaves least to turn, or where that fails exactly."""
     diagonals = np.einsum("nii->ni", matrices)
     turns = _TURNS[(diagonals @ _TURNS.T).argmax(axis=1)][:, :, None]
@@ -82,15 +77,14 @@ def _of_block(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     return rotations
 
 
-def _by_singular_values(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+def _by_singular_values(matrices: Floats) -> Floats:
     """Nearest rotations to any matrices (n, 3, 3)."""
     left, _, right = np.linalg.svd(matrices)
     left[:, :, 2] *= np.sign(np.linalg.det(left @ right))[:, None]
-    product: NDArray[np.float64] = left @ right
-    return product
+    return left @ right
 
 
-def _by_quaternions(matrices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _by_quaternions(matrices: Floats) -> tuple[Floats, Bools]:
     """Nearest rotations to matrices (n, 3, 3), and which of them can be believed, (n,)."""
     entries = np.ascontiguousarray(matrices.reshape(-1, 9).T)
     # First by the largest, as squares of very small numbers vanish.
@@ -113,7 +107,7 @@ def _by_quaternions(matrices: NDArray[np.float64]) -> tuple[NDArray[np.float64],
     return _rotations(quaternions), sure
 
 
-def _largest_eigenvalue(entries: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _largest_eigenvalue(entries: Floats) -> tuple[Floats, Floats]:
     """Largest eigenvalue of the 4 x 4 matrices of matrices of norm one, (9, n), and the product of its gaps, (n,) each.
 
     With the cofactors of a matrix F its characteristic polynomial is t^4 - 2 t^2 - 8 det(F) t + 1 - 4 |cof(F)|^2.
@@ -136,7 +130,7 @@ def _largest_eigenvalue(entries: NDArray[np.float64]) -> tuple[NDArray[np.float6
     return value, 4 * value * (np.square(value) - 1) - linear
 
 
-def _rotations(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotations(quaternions: Floats) -> Floats:
     """Rotations (n, 3, 3) of unit quaternions (4, n), the real part first."""
     r, x, y, z = quaternions
     entries = [

@@ -3,20 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-__all__ = ["FarthestPointSampler", "farthest_point_sampling"]
 
 
 class FarthestPointSampler:
@@ -52,11 +46,11 @@ class FarthestPointSampler:
     .. [1] D. Hochbaum, D. Shmoys, "A best possible heuristic for the k-center problem", Math. Oper. Res. 10, 1985.
     """
 
-    def __init__(self, graph: csr_array, start: int | Sequence[int] | NDArray[np.int64]) -> None:
+    def __init__(self, graph: csr_array, start: int | Sequence[int] | Ints) -> None:
         self._graph = graph
         self.samples: list[int] = []
-        self.distances: NDArray[np.float64] = np.full(graph.shape[0], np.inf)
-        self.nearest: NDArray[np.int64] = np.full(graph.shape[0], -1)
+        self.distances: Floats = np.full(graph.shape[0], np.inf)
+        self.nearest: Ints = np.full(graph.shape[0], -1)
         for vertex in np.atleast_1d(start):
             self._add(int(vertex))
 
@@ -85,7 +79,7 @@ class FarthestPointSampler:
             self._add(int(self.distances.argmax()))
 
 
-def farthest_point_sampling(graph: csr_array, count: int, start: int) -> NDArray[np.int64]:
+def farthest_point_sampling(graph: csr_array, count: int, start: int) -> Ints:
     """Sample `count` vertices of a graph (see `FarthestPointSampler`), in the order in which they were taken."""
     sampler = FarthestPointSampler(graph, start)
     sampler.extend(count)

@@ -3,19 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-from scipy.sparse import csc_array, eye_array
+from scipy.sparse import csc_array, csr_array, eye_array
 from scipy.sparse.csgraph import dijkstra
 
+from ..runtime.arrays import Bools, Floats, Ints
 from .symmetric_factor import symmetric_factor
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-__all__ = ["ShiftedFactor", "elimination_order", "nested_dissection"]
 
 _LARGE = 45_000
 """Rows from which on nested dissection is used: minimum degree is better below, and on some meshes very slow above."""
@@ -59,7 +52,7 @@ class ShiftedFactor:
         If the shift is an eigenvalue to the last digit.
     """
 
-    def __init__(self, matrix: csr_array, shift: float, order: NDArray[np.int64] | None = None) -> None:
+    def __init__(self, matrix: csr_array, shift: float, order: Ints | None = None) -> None:
         self.shift = shift
         shifted = csc_array(matrix - shift * eye_array(matrix.shape[0], format="csr"))
         if order is not None:
@@ -71,7 +64,7 @@ class ShiftedFactor:
         self.negative_count = int((self._factor.U.diagonal() < 0).sum()) if symmetric else None
         self._inner_order = order
         inner = np.argsort(self._factor.perm_c)
-        self.order: NDArray[np.int64] = inner if order is None else order[inner]
+        self.order: Ints = inner if order is None else order[inner]
 
     @property
     def size(self) -> int:
@@ -84,7 +77,7 @@ class ShiftedFactor:
         error = self._shifted @ self._factor.solve(right) - right
         return bool(np.linalg.norm(error) < _ACCURATE * np.linalg.norm(right))
 
-    def solve(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
+    def solve(self, right: Floats) -> Floats:
         """Solve for the columns of an (n, b) array."""
         if self._inner_order is None:
             return self._factor.solve(np.asfortranarray(right))
@@ -93,12 +86,12 @@ class ShiftedFactor:
         return solution
 
 
-def elimination_order(matrix: csr_array) -> NDArray[np.int64] | None:
+def elimination_order(matrix: csr_array) -> Ints | None:
     """Choose the order for `ShiftedFactor` by the size of the matrix; the same serves for every shift."""
     return nested_dissection(matrix) if matrix.shape[0] > _LARGE else None
 
 
-def nested_dissection(matrix: csr_array) -> NDArray[np.int64]:
+def nested_dissection(matrix: csr_array) -> Ints:
     """Order the rows of a matrix of a surface so that its factors stay sparse.
 
     The graph of the matrix is cut into halves again and again, at right angles to where each part is longest; the
@@ -143,18 +136,18 @@ def nested_dissection(matrix: csr_array) -> NDArray[np.int64]:
     return np.lexsort((part, -level, position))
 
 
-def _hop_distances(matrix: csr_array) -> NDArray[np.float64]:
+def _hop_distances(matrix: csr_array) -> Floats:
     """Count the edges from each vertex to landmarks far from one another, (n, landmarks)."""
     graph = abs(matrix)
     nearest = dijkstra(graph, indices=0, unweighted=True)
-    columns: list[NDArray[np.float64]] = []
+    columns: list[Floats] = []
     for _ in range(_LANDMARKS):
         columns.append(dijkstra(graph, indices=int(nearest.argmax()), unweighted=True))
         nearest = np.minimum(nearest, columns[-1]) if len(columns) > 1 else columns[0]
     return np.stack(columns, axis=1)
 
 
-def _upper_halves(places: NDArray[np.float64], part: NDArray[np.int64], count: int) -> NDArray[np.bool_]:
+def _upper_halves(places: Floats, part: Ints, count: int) -> Bools:
     """Halve parts, each at the median along its longest direction: true in the upper halves."""
     sizes = np.bincount(part, minlength=count)
     centred = np.stack(

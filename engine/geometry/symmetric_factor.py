@@ -3,16 +3,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
-
-if TYPE_CHECKING:
-    from scipy.sparse import sparray
-    from scipy.sparse.linalg import SuperLU
-
-__all__ = ["symmetric_factor"]
+from scipy.sparse import csc_array, sparray
+from scipy.sparse.linalg import SuperLU, splu
 
 
 def symmetric_factor(matrix: sparray, *, ordered: bool = False) -> SuperLU:

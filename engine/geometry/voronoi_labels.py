@@ -3,26 +3,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import dijkstra
 
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Ints
 from ..runtime.errors import MeshError
 from .geodesics import GeodesicSolver
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["NO_REGION", "nearest_regions"]
 
 NO_REGION = -1
 """The region of a vertex that no point has a path to."""
 
 
-def nearest_regions(mesh: TriangleMesh, vertices: ArrayLike) -> NDArray[np.int64]:
+def nearest_regions(mesh: TriangleMesh, vertices: ArrayLike) -> Ints:
     """Tell for each vertex which of some points is nearest along the surface.
 
     Distances are those in the graph of edges, and of straight lines that cross an edge: some percent too long, and so

@@ -3,24 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = [
-    "bin_difference",
-    "distance_histograms",
-    "earth_movers_distance",
-    "weighted_correlation",
-]
+from ..runtime.arrays import Floats
 
 
-def distance_histograms(
-    distances: NDArray[np.float64], weights: NDArray[np.float64], bins: int, reach: float
-) -> NDArray[np.float64]:
+def distance_histograms(distances: Floats, weights: Floats, bins: int, reach: float) -> Floats:
     """Histogram the distances from each point to the rest of its surface.
 
     Parameters
@@ -56,9 +47,7 @@ def distance_histograms(
     return counts.reshape(n, bins)
 
 
-def earth_movers_distance(
-    first: NDArray[np.float64], second: NDArray[np.float64], bin_width: float
-) -> NDArray[np.float64]:
+def earth_movers_distance(first: Floats, second: Floats, bin_width: float) -> Floats:
     r"""Compare histograms by how far their mass has to be moved.
 
     On a line the earth mover's distance is the area between the cumulative histograms,
@@ -81,7 +70,7 @@ def earth_movers_distance(
     return bin_difference(np.cumsum(first, axis=1), np.cumsum(second, axis=1)) * bin_width
 
 
-def bin_difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def bin_difference(first: Floats, second: Floats) -> Floats:
     """Compare descriptors entry by entry: histograms bin to bin, or signatures scale by scale.
 
     Parameters
@@ -102,9 +91,7 @@ def bin_difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> N
     return result
 
 
-def weighted_correlation(
-    first: NDArray[np.float64], second: NDArray[np.float64], weights: NDArray[np.float64]
-) -> float:
+def weighted_correlation(first: Floats, second: Floats, weights: Floats) -> float:
     """Pearson correlation of two functions (n,) at points that stand for some area each; 0 where one is constant."""
     weights = weights / weights.sum()
     first, second = first - weights @ first, second - weights @ second

@@ -3,20 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Generator
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..geometry.eigenpairs import Spectrum
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError, SettingsError
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..geometry.eigenpairs import Spectrum
-
-__all__ = ["DiffusionMetric", "automatic_time", "diffusion_distances", "heat_kernel"]
 
 _MODES = 8.0
 """How many eigenfunctions, each counted by its weight, make up diffusion distances at the automatic time.
@@ -78,7 +72,7 @@ class DiffusionMetric:
         self._squares = np.einsum("ni,ni->n", self._points, self._points)
         self._loose = spectrum.mass == 0
 
-    def distances(self, sources: ArrayLike) -> NDArray[np.float64]:
+    def distances(self, sources: ArrayLike) -> Floats:
         """Compute the distances from each source to every vertex.
 
         Parameters
@@ -102,7 +96,7 @@ class DiffusionMetric:
             result[first : first + len(block)] = block
         return result
 
-    def distances_in_blocks(self, sources: ArrayLike) -> Generator[tuple[int, NDArray[np.float64]], None, None]:
+    def distances_in_blocks(self, sources: ArrayLike) -> Generator[tuple[int, Floats], None, None]:
         """Compute the distances from each source to every vertex, a few sources at a time.
 
         Parameters
@@ -127,7 +121,7 @@ class DiffusionMetric:
         for first in range(0, len(checked), size):
             yield first, self._rows(checked[first : first + size])
 
-    def _rows(self, sources: NDArray[np.int64]) -> NDArray[np.float64]:
+    def _rows(self, sources: Ints) -> Floats:
         rows = self._points[sources] @ self._points.T
         rows *= -2
         rows += self._squares
@@ -140,7 +134,7 @@ class DiffusionMetric:
         return rows
 
 
-def diffusion_distances(spectrum: Spectrum, sources: ArrayLike, time: float | None = None) -> NDArray[np.float64]:
+def diffusion_distances(spectrum: Spectrum, sources: ArrayLike, time: float | None = None) -> Floats:
     """Compute diffusion distances (S, n) from some vertices (S,) to all; see `DiffusionMetric`."""
     return DiffusionMetric(spectrum, time).distances(sources)
 
@@ -176,7 +170,7 @@ def automatic_time(spectrum: Spectrum) -> float:
     return float(np.exp(middle))
 
 
-def heat_kernel(spectrum: Spectrum, time: float, sources: ArrayLike) -> NDArray[np.float64]:
+def heat_kernel(spectrum: Spectrum, time: float, sources: ArrayLike) -> Floats:
     r"""Evaluate the heat kernel :math:`h_t(x, z) = \sum_i e^{-\lambda_i t} \phi_i(x) \phi_i(z)`, (10) of the paper.
 
     Parameters
@@ -211,7 +205,7 @@ def _checked_time(time: float) -> float:
     return float(time)
 
 
-def _checked_vertices(sources: ArrayLike, count: int) -> NDArray[np.int64]:
+def _checked_vertices(sources: ArrayLike, count: int) -> Ints:
     array = np.asarray(sources)
     if array.ndim != 1 or not (np.issubdtype(array.dtype, np.integer) or array.size == 0):
         raise MeshError(

@@ -4,21 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps
+from .problem import MatchingProblem
 from .relaxation import RelaxedMatching, descend, project
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .problem import MatchingProblem
-    from .sampled_pair import Pair
-
-__all__ = ["Refined", "level_sizes", "refine_steps"]
+from .sampled_pair import Pair
 
 _MAX_ITERATIONS = 8
 
@@ -35,7 +29,7 @@ class Refined:
         Relaxed solves made in the level.
     """
 
-    assignment: NDArray[np.int64]
+    assignment: Ints
     iterations: int
 
 
@@ -48,10 +42,7 @@ def level_sizes(coarse: int, finest: int) -> list[int]:
 
 
 def refine_steps(
-    pair: Pair,
-    assignment: NDArray[np.int64],
-    sizes: list[int],
-    orientation_term: NDArray[np.float64] | None = None,
+    pair: Pair, assignment: Ints, sizes: list[int], orientation_term: Floats | None = None
 ) -> Steps[list[Refined]]:
     """Add points level by level and improve all of them at each level.
 
@@ -82,7 +73,7 @@ def refine_steps(
     return levels
 
 
-def _add_points(problem: MatchingProblem, assignment: NDArray[np.int64]) -> NDArray[np.int64]:
+def _add_points(problem: MatchingProblem, assignment: Ints) -> Ints:
     """Place new points where their distances to the points already matched are kept best."""
     old, size = len(assignment), problem.size[0]
     if size == old:
@@ -98,8 +89,8 @@ def _add_points(problem: MatchingProblem, assignment: NDArray[np.int64]) -> NDAr
 
 
 def _converge(
-    problem: MatchingProblem, assignment: NDArray[np.int64], neighbourhood: int, here: Progress
-) -> Steps[tuple[NDArray[np.int64], int]]:
+    problem: MatchingProblem, assignment: Ints, neighbourhood: int, here: Progress
+) -> Steps[tuple[Ints, int]]:
     """Solve the relaxed problem over each point's neighbourhood until the distortion no longer falls."""
     cost = problem.cost(assignment)
     for iteration in range(_MAX_ITERATIONS):
@@ -114,7 +105,7 @@ def _converge(
     return assignment, _MAX_ITERATIONS
 
 
-def _neighbourhoods(problem: MatchingProblem, assignment: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _neighbourhoods(problem: MatchingProblem, assignment: Ints, count: int) -> Ints:
     """For each point the candidates nearest to its present match, that one included, (j, count)."""
     count = min(count, problem.size[1])
     # The match itself is at distance zero; only exact duplicates could displace it, so it is put first by hand.

@@ -3,20 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement, signed_areas
 from ..geometry.squared_differences import squared_differences
+from ..runtime.arrays import Floats, Ints
+from ..shapes.shape import Shape
 from .descriptors import weighted_correlation
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..shapes.shape import Shape
-
-__all__ = ["CURVATURE_WEIGHT", "Misfits", "curvature_agreement", "mean_orientation", "sample_misfits"]
 
 CURVATURE_WEIGHT = 6.0
 """How much the agreement of curvatures counts beside the logarithm of the squared change of distances."""
@@ -34,11 +29,11 @@ class Misfits(NamedTuple):
     Both are (S, T) arrays of float.
     """
 
-    distances: NDArray[np.float64]
-    all: NDArray[np.float64]
+    distances: Floats
+    all: Floats
 
 
-def sample_misfits(x: Shape, y: Shape, images: NDArray[np.int64], sign: int) -> Misfits:
+def sample_misfits(x: Shape, y: Shape, images: Ints, sign: int) -> Misfits:
     """Compare all samples of two shapes by how they lie to matched points.
 
     Parameters
@@ -57,13 +52,13 @@ def sample_misfits(x: Shape, y: Shape, images: NDArray[np.int64], sign: int) -> 
     return Misfits(change, change + _SIDE_WEIGHT * squared_differences(first, sign * second) / first.shape[1])
 
 
-def mean_orientation(x: Shape, y: Shape, images: NDArray[np.int64], lifted: NDArray[np.int64]) -> float:
+def mean_orientation(x: Shape, y: Shape, images: Ints, lifted: Ints) -> float:
     """Mean agreement of orientation, -1 to 1, of a map of all samples (S,), as seen from matched ones, (k,)."""
     here, there = x.directions[:, : min(len(images), _ORIENTING)], y.directions[:, images[:_ORIENTING]]
     return float(orientation_agreement(here, there[lifted]).mean())
 
 
-def curvature_agreement(x: Shape, y: Shape, lifted: NDArray[np.int64]) -> float:
+def curvature_agreement(x: Shape, y: Shape, lifted: Ints) -> float:
     """Mean correlation, at most 1, of the curvatures with those at the images (S,) of all samples."""
     pairs = zip(x.curvatures, y.curvatures, strict=True)
     return float(np.mean([weighted_correlation(own, other[lifted], x.cell_areas) for own, other in pairs]))

@@ -4,16 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["MatchingProblem", "forbidding_cost"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +40,9 @@ class MatchingProblem:
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
     """
 
-    linear: NDArray[np.float64]
-    source_distances: NDArray[np.float64]
-    target_distances: NDArray[np.float64]
+    linear: Floats
+    source_distances: Floats
+    target_distances: Floats
     quadratic_weight: float = 1.0
 
     def __post_init__(self) -> None:
@@ -66,16 +61,16 @@ class MatchingProblem:
         n, m = self.linear.shape
         return n, m
 
-    def linear_cost(self, assignment: NDArray[np.int64]) -> float:
+    def linear_cost(self, assignment: Ints) -> float:
         """Evaluate the sum of the descriptor differences of an assignment (n,) of candidate numbers (equation 3)."""
         return float(self.linear[np.arange(len(assignment)), assignment].sum())
 
-    def quadratic_cost(self, assignment: NDArray[np.int64]) -> float:
+    def quadratic_cost(self, assignment: Ints) -> float:
         """Evaluate the sum of the squared differences of distances of an assignment, without lambda (equation 4)."""
         difference = self.source_distances - self.target_distances[np.ix_(assignment, assignment)]
         return float(np.square(difference).sum())
 
-    def cost(self, assignment: NDArray[np.int64]) -> float:
+    def cost(self, assignment: Ints) -> float:
         """Evaluate the distortion of an assignment (n,) of candidate numbers (equation 2)."""
         return self.linear_cost(assignment) + self.quadratic_weight * self.quadratic_cost(assignment)
 

@@ -3,18 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from ..runtime.arrays import Floats
 
-    from numpy.typing import NDArray
-
-    Objective = Callable[[NDArray[np.float64]], tuple[float, NDArray[np.float64]]]
-
-__all__ = ["minimize_lbfgs"]
+Objective = Callable[[Floats], tuple[float, Floats]]
 
 _MEMORY = 10
 _ARMIJO, _CURVATURE = 1e-4, 0.9
@@ -22,8 +17,8 @@ _SEARCHES = 20
 
 
 def minimize_lbfgs(
-    objective: Objective, start: NDArray[np.float64], max_iterations: int, tolerance: float = 1e-9
-) -> tuple[NDArray[np.float64], float]:
+    objective: Objective, start: Floats, max_iterations: int, tolerance: float = 1e-9
+) -> tuple[Floats, float]:
     """Minimise a smooth function by a limited-memory quasi-Newton method with a Wolfe line search [1]_.
 
     SciPy's L-BFGS-B does the same and more, but hands vectors of a thousand numbers to a multithreaded linear algebra
@@ -54,7 +49,7 @@ def minimize_lbfgs(
     """
     x = start
     value, gradient = objective(x)
-    memory: list[tuple[NDArray[np.float64], NDArray[np.float64], float]] = []
+    memory: list[tuple[Floats, Floats, float]] = []
     for _ in range(max_iterations):
         direction = _newton_direction(gradient, memory)
         slope = _dot(gradient, direction)
@@ -78,9 +73,7 @@ def minimize_lbfgs(
     return x, value
 
 
-def _newton_direction(
-    gradient: NDArray[np.float64], memory: list[tuple[NDArray[np.float64], NDArray[np.float64], float]]
-) -> NDArray[np.float64]:
+def _newton_direction(gradient: Floats, memory: list[tuple[Floats, Floats, float]]) -> Floats:
     """Multiply the gradient by the approximate inverse Hessian (two-loop recursion)."""
     direction = -gradient
     shares = []
@@ -97,19 +90,15 @@ def _newton_direction(
 
 
 def _search(
-    objective: Objective,
-    x: NDArray[np.float64],
-    direction: NDArray[np.float64],
-    here: tuple[float, float],
-    step: float,
-) -> tuple[float, float, NDArray[np.float64]]:
+    objective: Objective, x: Floats, direction: Floats, here: tuple[float, float], step: float
+) -> tuple[float, float, Floats]:
     """Find a step that lowers the value enough and flattens the slope, by bracketing; 0 if there is none.
 
     `here` is the value and the slope at x.
     """
     value, slope = here
     low, high = 0.0, np.inf
-    best: tuple[float, float, NDArray[np.float64]] = (0.0, value, direction)
+    best: tuple[float, float, Floats] = (0.0, value, direction)
     for _ in range(_SEARCHES):
         new_value, new_gradient = objective(x + step * direction)
         new_slope = _dot(new_gradient, direction)
@@ -128,5 +117,5 @@ def _search(
     return best
 
 
-def _dot(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+def _dot(first: Floats, second: Floats) -> float:
     return float((first * second).sum())

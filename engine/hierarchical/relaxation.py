@@ -5,21 +5,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse import csr_array
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.small_products import product
+from .problem import MatchingProblem
 from .quasi_newton import minimize_lbfgs
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .problem import MatchingProblem
-
-__all__ = ["RelaxedMatching", "descend", "project"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,25 +36,25 @@ class RelaxedMatching:
     """
 
     problem: MatchingProblem
-    candidates: NDArray[np.int64]
+    candidates: Ints
 
     @cached_property
-    def _used(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def _used(self) -> tuple[Ints, Ints]:
         """The distinct candidates (u,), and where each of `candidates` stands among them (j, K)."""
         used, column = np.unique(self.candidates, return_inverse=True)
         return used, column.reshape(self.candidates.shape)
 
     @cached_property
-    def _linear(self) -> NDArray[np.float64]:
+    def _linear(self) -> Floats:
         return np.take_along_axis(self.problem.linear, self.candidates, axis=1)
 
     @cached_property
-    def _target(self) -> NDArray[np.float64]:
+    def _target(self) -> Floats:
         used = self._used[0]
         return self.problem.target_distances[np.ix_(used, used)]
 
     @cached_property
-    def _squares(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _squares(self) -> tuple[Floats, Floats]:
         return np.square(self.problem.source_distances), np.square(self._target)
 
     @cached_property
@@ -67,7 +63,7 @@ class RelaxedMatching:
         (j, k), (used, column) = self.candidates.shape, self._used
         return csr_array((np.zeros(j * k), column.ravel(), np.arange(0, j * k + 1, k)), shape=(j, len(used)))
 
-    def value_and_gradient(self, mixture: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+    def value_and_gradient(self, mixture: Floats) -> tuple[float, Floats]:
         """Distortion of a mixture (j, K), and its derivative by each entry (j, K)."""
         used, column = self._used
         source_squared, target_squared = self._squares
@@ -81,7 +77,7 @@ class RelaxedMatching:
         value = np.vdot(self._linear, mixture) + weight * np.vdot(interaction, mixture)
         return float(value), self._linear + 2 * weight * interaction
 
-    def solve(self, max_iterations: int = 60) -> NDArray[np.float64]:
+    def solve(self, max_iterations: int = 60) -> Floats:
         """Minimise from the uniform mixture, by L-BFGS.
 
         Rows are kept stochastic by a softmax.  The start is uniform on purpose: one that already leans to the present
@@ -94,12 +90,12 @@ class RelaxedMatching:
         """
         shape = self.candidates.shape
 
-        def softmax(logits: NDArray[np.float64]) -> NDArray[np.float64]:
+        def softmax(logits: Floats) -> Floats:
             """Turn each row into a mixture: not negative, summing to one."""
             powers = np.exp(logits - logits.max(axis=1, keepdims=True))
             return powers / powers.sum(axis=1, keepdims=True)
 
-        def objective(flat: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        def objective(flat: Floats) -> tuple[float, Floats]:
             """Evaluate the distortion of the mixture of some logits, and its gradient by them."""
             mixture = softmax(flat.reshape(shape))
             value, gradient = self.value_and_gradient(mixture)
@@ -111,7 +107,7 @@ class RelaxedMatching:
         return softmax(logits.reshape(shape))
 
 
-def project(mixture: NDArray[np.float64], candidates: NDArray[np.int64]) -> NDArray[np.int64]:
+def project(mixture: Floats, candidates: Ints) -> Ints:
     """Find the one-to-one assignment that takes most mass of a mixture.
 
     Parameters
@@ -138,7 +134,7 @@ def project(mixture: NDArray[np.float64], candidates: NDArray[np.int64]) -> NDAr
     return used[chosen]
 
 
-def descend(problem: MatchingProblem, assignment: NDArray[np.int64], max_sweeps: int = 50) -> NDArray[np.int64]:
+def descend(problem: MatchingProblem, assignment: Ints, max_sweeps: int = 50) -> Ints:
     """Move one point at a time to the best free candidate, anywhere on Y, until no point can improve.
 
     This repairs what small neighbourhoods cannot: a point whose right place lies outside its neighbourhood.

@@ -4,31 +4,20 @@
 from __future__ import annotations
 
 import copy
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement, signed_areas
 from ..geometry.squared_differences import squared_differences
+from ..runtime.arrays import Bools, Floats, Ints
+from ..shapes.shape import Shape
 from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 from .descriptors import bin_difference, distance_histograms, earth_movers_distance
 from .diffusion import DiffusionMetric, automatic_time
 from .problem import MatchingProblem
+from .settings import MatchSettings
 from .sign_sequences import SignSequence, consistent_sequences
-from .spectral_descriptors import (
-    eigenfunction_descriptor,
-    heat_kernel_signatures,
-    multiplets,
-    wave_kernel_signatures,
-)
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..shapes.shape import Shape
-    from .settings import MatchSettings
-
-__all__ = ["Pair"]
+from .spectral_descriptors import eigenfunction_descriptor, heat_kernel_signatures, multiplets, wave_kernel_signatures
 
 # Weight of the orientation term beside the descriptors.  Its mean square difference of signed areas is about 0.5
 # between unrelated places, the descriptors' earth mover's distance some hundredths.
@@ -81,7 +70,7 @@ class Pair:
         """Say whether the shapes need eigenpairs of the Laplace-Beltrami operator."""
         return settings.metric == "diffusion" or settings.descriptor != "histogram"
 
-    def _sign_free(self, descriptor: str) -> NDArray[np.float64]:
+    def _sign_free(self, descriptor: str) -> Floats:
         """Compare the samples by a descriptor; in place of eigenfunctions, by histograms, which need no signs."""
         if descriptor in ("heat_kernel", "wave_kernel"):
             make = heat_kernel_signatures if descriptor == "heat_kernel" else wave_kernel_signatures
@@ -110,15 +99,13 @@ class Pair:
         sequences = consistent_sequences(source, target, self._descriptor, groups, count)
         return [self._with(source, target, sequence) for sequence in sequences]
 
-    def _with(self, source: NDArray[np.float64], target: NDArray[np.float64], sequence: SignSequence) -> Pair:
+    def _with(self, source: Floats, target: Floats, sequence: SignSequence) -> Pair:
         variant = copy.copy(self)
         difference = np.sqrt(squared_differences(source, sequence.apply(target)))
         variant.linear = self.settings.linear_weight * _scaled(difference)
         return variant
 
-    def problem(
-        self, points: int, candidates: int | None = None, extra: NDArray[np.float64] | None = None
-    ) -> MatchingProblem:
+    def problem(self, points: int, candidates: int | None = None, extra: Floats | None = None) -> MatchingProblem:
         """Match the first `points` samples of X to the first `candidates` samples of Y (all by default).
 
         `extra`, (points, T), is added to the linear term.
@@ -137,14 +124,13 @@ class Pair:
             linear = np.where(self._contradicting(*linear.shape), most if candidates is None else np.inf, linear)
         return MatchingProblem(linear, source, target, weight)
 
-    def _contradicting(self, points: int, candidates: int) -> NDArray[np.bool_]:
+    def _contradicting(self, points: int, candidates: int) -> Bools:
         """Find the matches of a landmark with anything but its partner, and of other points with a partner."""
         rows, columns = np.arange(points)[:, None], np.arange(candidates)
         of_landmark = (rows < self.landmarks) | (columns < self.landmarks)
-        forbidden: NDArray[np.bool_] = of_landmark & (rows != columns)
-        return forbidden
+        return of_landmark & (rows != columns)
 
-    def orientation_term(self, coarse: NDArray[np.int64], sign: int) -> NDArray[np.float64]:
+    def orientation_term(self, coarse: Ints, sign: int) -> Floats:
         """Penalise matches that do not keep (sign 1) or do not mirror (sign -1) the surface, (S, T).
 
         Seen from corresponding points, the directions to the coarse points turn the same way.  The term compares the
@@ -155,7 +141,7 @@ class Pair:
         second = sign * signed_areas(self.target.directions[:, coarse])
         return _ORIENTATION_WEIGHT * squared_differences(first, second) / first.shape[1]
 
-    def orientation(self, assignment: NDArray[np.int64]) -> float:
+    def orientation(self, assignment: Ints) -> float:
         """Mean agreement of orientation at the matched points, see `orientation_agreement`."""
         count = len(assignment)
         return float(
@@ -165,9 +151,7 @@ class Pair:
         )
 
 
-def _metric(
-    source: Shape, target: Shape, settings: MatchSettings
-) -> tuple[NDArray[np.float64], NDArray[np.float64], PointDistances]:
+def _metric(source: Shape, target: Shape, settings: MatchSettings) -> tuple[Floats, Floats, PointDistances]:
     """Distances between the samples of each shape in the chosen metric, and the metric on the whole target."""
     if settings.metric == "geodesic":
         return source.sample_distances, target.sample_distances, SurfaceDistances(target)
@@ -183,13 +167,13 @@ def _metric(
     return first * scale, second * scale, EmbeddedDistances(target.mesh, places)
 
 
-def _scaled(difference: NDArray[np.float64]) -> NDArray[np.float64]:
+def _scaled(difference: Floats) -> Floats:
     """Scale differences without a unit to those of histograms, so that one lambda serves all descriptors."""
     mean = difference.mean()
     return difference * (_TYPICAL_DIFFERENCE / mean) if mean > 0 else difference
 
 
-def _signature_difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _signature_difference(first: Floats, second: Floats) -> Floats:
     """Compare kernel signatures (s, d) and (t, d) by their logarithms, because they span decades: (s, t)."""
     smallest = np.finfo(float).tiny
     return bin_difference(*(np.log(np.maximum(signature, smallest)) for signature in (first, second)))

@@ -11,8 +11,6 @@ from typing import Any
 
 from ..runtime.errors import SettingsError
 
-__all__ = ["SETUPS", "CheckedSettings", "MatchSettings", "choice", "setting"]
-
 
 def setting(default: float, label: str, minimum: float, maximum: float, description: str) -> Any:  # noqa: ANN401
     """Declare a numeric field with all that an interface needs to show it."""

@@ -3,18 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["SignSequence", "consistent_sequences"]
+from ..runtime.arrays import Floats, Ints
 
 _CLUSTER = 12  # candidates that look most alike, among which a point's true and mirrored images should be
 _PLACES = 200  # so many points vote
@@ -35,21 +30,17 @@ class SignSequence:
         Mean difference between the eigenfunctions at a point and at the best of the candidates that look like it.
     """
 
-    order: NDArray[np.int64]
-    signs: NDArray[np.int64]
+    order: Ints
+    signs: Ints
     disagreement: float
 
-    def apply(self, functions: NDArray[np.float64]) -> NDArray[np.float64]:
+    def apply(self, functions: Floats) -> Floats:
         """Read eigenfunctions of the target (m, k) as those of the source."""
         return functions[:, self.order] * self.signs
 
 
 def consistent_sequences(
-    source: NDArray[np.float64],
-    target: NDArray[np.float64],
-    likeness: NDArray[np.float64],
-    groups: Sequence[Sequence[int]],
-    count: int,
+    source: Floats, target: Floats, likeness: Floats, groups: Sequence[Sequence[int]], count: int
 ) -> list[SignSequence]:
     r"""Find the sign sequences for which the eigenfunctions of two shapes agree best.
 

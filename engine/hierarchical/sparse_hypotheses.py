@@ -10,21 +10,17 @@ can speak.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
+from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps, within
 from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from .sampled_pair import Pair
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["Coarse", "Hypothesis", "assess", "choose_steps", "coarse_candidates", "coarse_steps", "two_answers"]
 
 Result = TypeVar("Result")
 
@@ -81,7 +77,7 @@ class Hypothesis:
     score: float
 
     @property
-    def assignment(self) -> NDArray[np.int64]:
+    def assignment(self) -> Ints:
         """The matching of the last level, (j,)."""
         return self.levels[-1].assignment
 
@@ -91,12 +87,12 @@ class _Lead:
     """A coarse matching on its way to a hypothesis, with the orientation that it is to have."""
 
     coarse: Coarse
-    orientation_term: NDArray[np.float64]  # (S, T)
+    orientation_term: Floats  # (S, T)
     levels: list[Refined]
     cost: float
 
     @property
-    def assignment(self) -> NDArray[np.int64]:
+    def assignment(self) -> Ints:
         """The matching of the last level, (j,)."""
         return self.levels[-1].assignment
 

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..mesh.surface_points import SurfacePoints
+from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Steps, within
 from ..shapes.landmarks import placed_at_vertices
 from ..shapes.surface_distances import symmetric_roots
@@ -16,17 +17,9 @@ from .compared.flat import flat_candidates, flat_steps
 from .compared.gmds import gmds_steps
 from .compared.stress_descent import Stress, settle_steps
 from .hierarchy import Refined, level_sizes, refine_steps
+from .sampled_pair import Pair
 from .sparse_hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
 from .sparse_result import Level
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from .sampled_pair import Pair
-
-__all__ = ["Answer", "at_samples", "moved", "solve_steps"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +48,7 @@ class Answer:
     candidates: int
     orientation: float
     points: SurfacePoints
-    distances: NDArray[np.float64]
+    distances: Floats
     linear: float
     levels: tuple[Level, ...]
 
@@ -166,7 +159,7 @@ def _gmds_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
     return answers
 
 
-def _at_landmarks_steps(pair: Pair, points: SurfacePoints) -> Steps[tuple[SurfacePoints, NDArray[np.float64]]]:
+def _at_landmarks_steps(pair: Pair, points: SurfacePoints) -> Steps[tuple[SurfacePoints, Floats]]:
     """Put the images of landmarks where they belong, and measure the distances between all images anew."""
     rows, target = np.arange(pair.landmarks), pair.target
     placed = placed_at_vertices(points, target.mesh, rows, target.samples[: pair.landmarks])
@@ -178,7 +171,7 @@ def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) 
     pair = hypothesis.coarse.pair
     target, assignment = pair.target, levels[-1].assignment
 
-    def places(numbers: NDArray[np.int64]) -> SurfacePoints:
+    def places(numbers: Ints) -> SurfacePoints:
         """Put samples of the target, by their numbers, on its mesh."""
         return SurfacePoints.at_vertices(target.mesh, target.samples[numbers])
 
@@ -234,14 +227,12 @@ def _one_settled_steps(answer: Answer) -> Steps[Answer]:
     if better.distortion >= answer.distortion:
         return answer
     last = replace(
-        answer.levels[-1],
-        distortion=better.distortion,
-        target_points=pair.target.surface.on_original(settled.points),
+        answer.levels[-1], distortion=better.distortion, target_points=pair.target.surface.on_original(settled.points)
     )
     return replace(better, levels=(*answer.levels[:-1], last))
 
 
-def _holding(pair: Pair, count: int) -> NDArray[np.float64]:
+def _holding(pair: Pair, count: int) -> Floats:
     """Linear term (count, n) at the vertices of the target that lets no image of a landmark leave its place."""
     farthest = max(float(pair.source_distances.max()), float(pair.target_distances.max()))
     linear = np.zeros((count, pair.target.mesh.vertex_count))

@@ -4,15 +4,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ..mesh.surface_points import SurfacePoints
-
-__all__ = ["CoarseMatch", "Level"]
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.arrays import Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +30,8 @@ class CoarseMatch:
         Nodes of the search tree visited.
     """
 
-    source_vertices: NDArray[np.int64]
-    target_vertices: NDArray[np.int64]
+    source_vertices: Ints
+    target_vertices: Ints
     candidates: int
     cost: float
     lower_bound: float

@@ -3,25 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..geometry.eigenpairs import Spectrum
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import SettingsError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..geometry.eigenpairs import Spectrum
-
-__all__ = [
-    "automatic_energies",
-    "automatic_times",
-    "eigenfunction_descriptor",
-    "heat_kernel_signatures",
-    "multiplets",
-    "wave_kernel_signatures",
-]
 
 _TIMES = 0.004, 1.0
 """First and last automatic time, in units of area: heat spreads over some hundredths, and over all of a surface."""
@@ -33,7 +20,7 @@ _ROWS = 1 << 13
 """Vertices that are described together."""
 
 
-def automatic_times(count: int = 16) -> NDArray[np.float64]:
+def automatic_times(count: int = 16) -> Floats:
     """Choose the times, in units of area, at which heat kernels are compared, (count,).
 
     They are the same for all shapes, evenly spaced on a logarithmic scale.
@@ -41,9 +28,7 @@ def automatic_times(count: int = 16) -> NDArray[np.float64]:
     return np.geomspace(*_TIMES, count)
 
 
-def heat_kernel_signatures(
-    spectrum: Spectrum, times: ArrayLike | None = None, *, relative: bool = True
-) -> NDArray[np.float64]:
+def heat_kernel_signatures(spectrum: Spectrum, times: ArrayLike | None = None, *, relative: bool = True) -> Floats:
     r"""Describe each vertex by how much heat stays there [1]_.
 
     .. math:: h_t(x, x) = \sum_i e^{-\lambda_i t} \phi_i(x)^2
@@ -82,7 +67,7 @@ def heat_kernel_signatures(
     return _weighted_squares(spectrum, weights)
 
 
-def automatic_energies(pairs: int, count: int = 50) -> NDArray[np.float64]:
+def automatic_energies(pairs: int, count: int = 50) -> Floats:
     """Choose the logarithms of eigenvalue times area at which waves are compared, (count,).
 
     They are the same for all shapes, evenly spaced, and by Weyl's law reach from the first of some pairs to four
@@ -91,7 +76,7 @@ def automatic_energies(pairs: int, count: int = 50) -> NDArray[np.float64]:
     return np.linspace(np.log(4 * np.pi), np.log(4 * np.pi * max(0.8 * pairs, 2)), count)
 
 
-def wave_kernel_signatures(spectrum: Spectrum, energies: ArrayLike | None = None) -> NDArray[np.float64]:
+def wave_kernel_signatures(spectrum: Spectrum, energies: ArrayLike | None = None) -> Floats:
     r"""Describe each vertex by how likely a quantum particle of some energy is there [1]_.
 
     .. math:: w_e(x) = A \frac{\sum_i g_i \phi_i(x)^2}{\sum_i g_i}, \quad
@@ -137,7 +122,7 @@ def wave_kernel_signatures(spectrum: Spectrum, energies: ArrayLike | None = None
     return _weighted_squares(spectrum, weights / weights.sum(axis=0))
 
 
-def eigenfunction_descriptor(spectrum: Spectrum, count: int) -> NDArray[np.float64]:
+def eigenfunction_descriptor(spectrum: Spectrum, count: int) -> Floats:
     """Describe each vertex by the values of the first eigenfunctions that are not constant.
 
     Each is known up to its sign only, and functions of near-equal eigenvalues (see `multiplets`) up to a rotation.
@@ -164,7 +149,7 @@ def eigenfunction_descriptor(spectrum: Spectrum, count: int) -> NDArray[np.float
     return spectrum.functions[:, first : first + count] * np.sqrt(spectrum.area)
 
 
-def multiplets(values: NDArray[np.float64], gap: float = 0.05) -> list[NDArray[np.int64]]:
+def multiplets(values: Floats, gap: float = 0.05) -> list[Ints]:
     """Group eigenvalues so close to each other that their functions may have another order, or mix, on a like shape.
 
     Parameters
@@ -184,7 +169,7 @@ def multiplets(values: NDArray[np.float64], gap: float = 0.05) -> list[NDArray[n
     return np.split(np.arange(len(array)), np.flatnonzero(apart) + 1) if len(array) else []
 
 
-def _weighted_squares(spectrum: Spectrum, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+def _weighted_squares(spectrum: Spectrum, weights: Floats) -> Floats:
     """Sum squared eigenfunctions, times the area, with weights (k, d): (n, d)."""
     result = np.empty((len(spectrum.functions), weights.shape[1]))
     for first in range(0, len(result), _ROWS):

@@ -99,7 +99,9 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     second = None
     if joined[0] is not x or joined[1] is not y:
         least = -np.inf if first is None else min(_likeness(first), EVEN) - RISE
-        second = yield from within(_tried_steps(*joined, replace(task, least=max(task.least, least))), begin, end)
+        second = yield from within(
+            _tried_steps(joined[0], joined[1], replace(task, least=max(task.least, least))), begin, end
+        )
     if second is None:
         # If bodies as a whole cannot be matched either, their main parts say why.
         return first or (yield from within(matched_steps(x, y, task), end, 1.0)), x, y

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-from ..hierarchical.exact.branch_and_bound import Exclusion, branch_and_bound_steps
+from ..hierarchical.exact.branch_and_bound import branch_and_bound_steps
+from ..hierarchical.exact.exclusion import Exclusion
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from ..hierarchical.sampled_pair import Pair

@@ -4,16 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .triangle_mesh import TriangleMesh
-
-__all__ = ["AreaSamples", "area_samples", "even_samples"]
+from ..runtime.arrays import Floats, Ints
+from .triangle_mesh import TriangleMesh
 
 _FIRST, _SECOND = 0.7548776662466927, 0.5698402909980532
 """Steps of a sequence that fills a square evenly from its first point on: the inverse of the real root of x^3 = x + 1,
@@ -34,9 +29,9 @@ class AreaSamples:
         The area that each stands for.
     """
 
-    positions: NDArray[np.float64]
-    triangles: NDArray[np.int64]
-    areas: NDArray[np.float64]
+    positions: Floats
+    triangles: Ints
+    areas: Floats
 
 
 def area_samples(mesh: TriangleMesh, area: float) -> AreaSamples:
@@ -64,7 +59,7 @@ def area_samples(mesh: TriangleMesh, area: float) -> AreaSamples:
     return AreaSamples(_places(mesh, triangles, number), triangles, (mesh.triangle_areas / counts)[triangles])
 
 
-def even_samples(mesh: TriangleMesh, area: float) -> NDArray[np.float64]:
+def even_samples(mesh: TriangleMesh, area: float) -> Floats:
     """Spread points over a mesh each of which stands for about the same area, (s, 3): one at least.
 
     Unlike those of `area_samples` they are no more where triangles are small, and not in every triangle.
@@ -76,7 +71,7 @@ def even_samples(mesh: TriangleMesh, area: float) -> NDArray[np.float64]:
     return _places(mesh, triangles, number)
 
 
-def _places(mesh: TriangleMesh, triangles: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.float64]:
+def _places(mesh: TriangleMesh, triangles: Ints, number: Ints) -> Floats:
     """Points of a sequence, by their numbers (s,), in triangles (s,): positions (s, 3)."""
     a, b, c = (mesh.vertices[corner] for corner in mesh.triangles[triangles].T)
     u, v = (1 / 3 + number * _FIRST) % 1, (1 / 3 + number * _SECOND) % 1

@@ -5,21 +5,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
 from ..runtime.worker import search_threads
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .triangle_mesh import TriangleMesh
-
-__all__ = ["ClosestPoints", "FoundPoints", "closest_in_triangles", "facing"]
+from .triangle_mesh import TriangleMesh
 
 _BLOCK = 10_000
 """Points that are searched side by side; the last steps, of few points each, are then shared by many."""
@@ -66,9 +61,9 @@ class FoundPoints:
         Squared distance from the point asked for, without any penalty for its normal.
     """
 
-    triangles: NDArray[np.int64]
-    barycentric: NDArray[np.float64]
-    squared_distances: NDArray[np.float64]
+    triangles: Ints
+    barycentric: Floats
+    squared_distances: Floats
 
     def __len__(self) -> int:
         return len(self.triangles)
@@ -76,15 +71,12 @@ class FoundPoints:
     def __repr__(self) -> str:
         return f"<FoundPoints: {len(self)} points>"
 
-    def nearest_vertices(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    def nearest_vertices(self, triangles: Ints) -> Ints:
         """Tell which corner of its triangle each is nearest to, of the surface's (m, 3): vertices (k,)."""
-        corners: NDArray[np.int64] = triangles[self.triangles, self.barycentric.argmax(axis=1)]
-        return corners
+        return triangles[self.triangles, self.barycentric.argmax(axis=1)]
 
 
-def closest_in_triangles(
-    points: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def closest_in_triangles(points: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
     """Find the point of each triangle that is closest to a point.
 
     Parameters
@@ -137,7 +129,7 @@ class ClosestPoints:
     def __init__(self, mesh: TriangleMesh) -> None:
         self._start(mesh.vertices, _Rings(mesh.triangles, mesh.vertex_count))
 
-    def _start(self, vertices: NDArray[np.float64], rings: _Rings) -> None:
+    def _start(self, vertices: Floats, rings: _Rings) -> None:
         self.vertices = vertices
         self._rings = rings
         self._coordinates = np.ascontiguousarray(vertices.T)  # (3, n): whole rows are faster to compute with
@@ -148,7 +140,7 @@ class ClosestPoints:
         kept = "vertices", "_rings", "_coordinates"
         return {name: self.__dict__[name] for name in kept} | {"_trees": {}}
 
-    def moved(self, vertices: NDArray[np.float64]) -> ClosestPoints:
+    def moved(self, vertices: Floats) -> ClosestPoints:
         """Return a search on the same triangles with other positions (n, d) of the vertices.
 
         Not only in space: the positions may have any number of coordinates, such as features beside the place.  Normals
@@ -165,12 +157,12 @@ class ClosestPoints:
         return other
 
     @property
-    def triangles(self) -> NDArray[np.int64]:
+    def triangles(self) -> Ints:
         """Corners of the triangles, (m, 3)."""
         return self._rings.triangles
 
     @cached_property
-    def _area_vectors(self) -> NDArray[np.float64]:
+    def _area_vectors(self) -> Floats:
         """Triangle normals times twice the area, (3, m)."""
         a, b, c = (self._coordinates.take(corner, axis=1) for corner in self.triangles.T)
         b -= a
@@ -178,12 +170,12 @@ class ClosestPoints:
         return np.stack([b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]])
 
     @cached_property
-    def _triangle_normals(self) -> NDArray[np.float64]:
+    def _triangle_normals(self) -> Floats:
         """Unit normals of the triangles, (3, m); zero without an area."""
         return _unit(self._area_vectors)
 
     @cached_property
-    def vertex_normals(self) -> NDArray[np.float64]:
+    def vertex_normals(self) -> Floats:
         """Unit normal at each vertex, weighted by triangle area, (n, 3); zero at a vertex without a triangle."""
         corners, n = self.triangles.ravel(), len(self.vertices)
         return _unit(np.stack([np.bincount(corners, np.repeat(part, 3), n) for part in self._area_vectors])).T
@@ -198,9 +190,7 @@ class ClosestPoints:
             self._trees[normal_length] = cKDTree(coordinates[self._rings.used], leafsize=16, balanced_tree=False)
         return self._trees[normal_length]
 
-    def nearest_vertices(
-        self, points: NDArray[np.float64], normals: NDArray[np.float64] | None = None, normal_length: float = 0.0
-    ) -> NDArray[np.int64]:
+    def nearest_vertices(self, points: Floats, normals: Floats | None = None, normal_length: float = 0.0) -> Ints:
         """Find the nearest vertex to each point, on the whole surface.
 
         Parameters
@@ -225,9 +215,7 @@ class ClosestPoints:
         """
         return self._nearest_vertices(points, normals, normal_length, 1)[:, 0]
 
-    def _nearest_vertices(
-        self, points: NDArray[np.float64], normals: NDArray[np.float64] | None, normal_length: float, count: int
-    ) -> NDArray[np.int64]:
+    def _nearest_vertices(self, points: Floats, normals: Floats | None, normal_length: float, count: int) -> Ints:
         """Find the `count` nearest vertices, (k, count), or all where there are fewer."""
         points = _checked(points, "points", self.vertices.shape[1])
         normals = None if normals is None else _checked(normals, "normals", 3)
@@ -249,8 +237,8 @@ class ClosestPoints:
 
     def nearest(
         self,
-        points: NDArray[np.float64],
-        normals: NDArray[np.float64] | None = None,
+        points: Floats,
+        normals: Floats | None = None,
         *,
         normal_length: float = 0.0,
         normal_weight: float = 0.0,
@@ -282,13 +270,7 @@ class ClosestPoints:
         starts = self._nearest_vertices(points, normals, normal_length, _STARTS)
         return self.walk(points, starts, normals, normal_weight=normal_weight, normal_gate=normal_gate)
 
-    def _of_all(
-        self,
-        points: NDArray[np.float64],
-        normals: NDArray[np.float64] | None,
-        normal_weight: float,
-        normal_gate: float,
-    ) -> FoundPoints:
+    def _of_all(self, points: Floats, normals: Floats | None, normal_weight: float, normal_gate: float) -> FoundPoints:
         """Find the closest point of few triangles to each of few points by trying all; as in `nearest`."""
         a, b, c = (self._coordinates.take(corner, axis=1) for corner in self.triangles.T)
         centre = self._coordinates.mean(axis=1, keepdims=True)  # rounding grows with the distance from the origin
@@ -310,7 +292,7 @@ class ClosestPoints:
         triangles = cost.argmin(axis=1)
         return FoundPoints(triangles, *closest_in_triangles(points, *(part.T[triangles] for part in (a, b, c))))
 
-    def at_vertices(self, points: NDArray[np.float64], vertices: NDArray[np.int64]) -> FoundPoints:
+    def at_vertices(self, points: Floats, vertices: Ints) -> FoundPoints:
         """Name vertices (k,), which must have triangles, as what was found for points (k, 3)."""
         places = self._rings.starts[vertices]
         triangles, slot = np.divmod(self._rings.corners[places], 3)
@@ -319,9 +301,9 @@ class ClosestPoints:
 
     def walk(
         self,
-        points: NDArray[np.float64],
-        start_vertices: NDArray[np.int64],
-        normals: NDArray[np.float64] | None = None,
+        points: Floats,
+        start_vertices: Ints,
+        normals: Floats | None = None,
         *,
         normal_weight: float = 0.0,
         normal_gate: float = 0.3,
@@ -377,9 +359,7 @@ class ClosestPoints:
         return FoundPoints(triangles, barycentric, squared_distances)
 
 
-def facing(
-    search: ClosestPoints, points: NDArray[np.float64], normals: NDArray[np.float64], size: float
-) -> FoundPoints:
+def facing(search: ClosestPoints, points: Floats, normals: Floats, size: float) -> FoundPoints:
     """Find the closest point of a surface to each point, among those that look to the same side.
 
     Parameters
@@ -398,7 +378,7 @@ def facing(
 class _Rings:
     """The triangles around each vertex, side by side, as places: corners of triangles, (3 m,), sorted by vertex."""
 
-    def __init__(self, triangles: NDArray[np.int64], vertex_count: int) -> None:
+    def __init__(self, triangles: Ints, vertex_count: int) -> None:
         self.triangles = triangles
         m = len(triangles)
         # Transposing a sparse matrix is a counting sort, several times as fast as argsort.
@@ -413,11 +393,11 @@ class _Rings:
         self.next = flat[self.corners + np.where(slot == 2, -2, 1)]  # the triangle's other corners, in its cyclic order
         self.last = flat[self.corners + np.where(slot == 0, 2, -1)]
 
-    def around(self, vertices: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def around(self, vertices: Ints) -> tuple[Ints, Ints]:
         """Places around vertices (k,): all of them (p,), and how many each vertex has (k,)."""
         counts = self.counts.take(vertices)
         ends = np.cumsum(counts)
-        places: NDArray[np.int64] = np.repeat(self.starts.take(vertices) - ends + counts, counts)
+        places: Ints = np.repeat(self.starts.take(vertices) - ends + counts, counts)
         places += np.arange(len(places))
         return places, counts
 
@@ -426,12 +406,12 @@ class _Rings:
 class _NormalPenalty:
     """What is added to squared distances: weight x max(gate - product of the normals, 0)."""
 
-    normals: NDArray[np.float64]  # (3, k)
-    triangle_normals: NDArray[np.float64]  # (3, m)
+    normals: Floats  # (3, k)
+    triangle_normals: Floats  # (3, m)
     weight: float
     gate: float
 
-    def of(self, points: NDArray[np.int64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    def of(self, points: Ints, triangles: Ints) -> Floats:
         """Return the penalty of pairs (p,) of a point and a triangle."""
         product = _dot(self.normals.take(points, axis=1), self.triangle_normals.take(triangles, axis=1))
         return self.weight * np.maximum(self.gate - product, 0)
@@ -440,13 +420,7 @@ class _NormalPenalty:
 class _Walk:
     """The search for some points at once; all arrays of vectors are (3, k)."""
 
-    def __init__(
-        self,
-        coordinates: NDArray[np.float64],
-        rings: _Rings,
-        points: NDArray[np.float64],
-        penalty: _NormalPenalty | None,
-    ) -> None:
+    def __init__(self, coordinates: Floats, rings: _Rings, points: Floats, penalty: _NormalPenalty | None) -> None:
         k = points.shape[1]
         self.coordinates, self.rings, self.points, self.penalty = coordinates, rings, points, penalty
         self.cost = np.full(k, np.inf)
@@ -456,7 +430,7 @@ class _Walk:
         self.barycentric = np.zeros((3, k))  # of these
         self.visited = np.full((_REMEMBERED, k), -1)  # the latest first
 
-    def search(self, starts: NDArray[np.int64], steps: int) -> None:
+    def search(self, starts: Ints, steps: int) -> None:
         """Try the triangles around vertices until none is better around any corner of the best."""
         # A search from a corner of the best triangle would end there.
         active = np.flatnonzero((self.corners != starts).all(axis=0))
@@ -477,7 +451,7 @@ class _Walk:
             left = np.flatnonzero(~tried.all(axis=0))
             active, vertices = active[left], corners[choice[left], left]
 
-    def _try_around(self, points: NDArray[np.int64], vertices: NDArray[np.int64]) -> None:
+    def _try_around(self, points: Ints, vertices: Ints) -> None:
         """Try the triangles around a vertex for each point, and keep the best where it is better than what is known."""
         rings = self.rings
         places, counts = rings.around(vertices)  # (p,) and (k,), p about 6 k
@@ -511,7 +485,7 @@ class _Walk:
         self.corners[:, points] = vertices, following[where], last[where]
         self.barycentric[:, points] = 1 - v[where] - w[where], v[where], w[where]
 
-    def found(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    def found(self) -> tuple[Ints, Floats, Floats]:
         """Triangles (k,), coordinates in the order of their corners (k, 3), and squared distances (k,)."""
         triangles, slot = np.divmod(self.rings.corners[self.places], 3)
         order = (np.arange(3) - slot[:, None]) % 3  # corner i of the triangle is corner i - slot from the place
@@ -519,9 +493,7 @@ class _Walk:
         return triangles, barycentric.clip(min=0), self.squared_distances
 
 
-def _closest(
-    ap: NDArray[np.float64], ab: NDArray[np.float64], ac: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _closest(ap: Floats, ab: Floats, ac: Floats) -> tuple[Floats, Floats, Floats]:
     """Closest points a + v ab + w ac of triangles to points a + ap: v, w and the squared distances, (k,) each.
 
     The vectors are (3, k).
@@ -540,12 +512,8 @@ def _closest(
 
 
 def _closest_on_sides(
-    ab_ab: NDArray[np.float64],
-    ab_ac: NDArray[np.float64],
-    ac_ac: NDArray[np.float64],
-    ab_ap: NDArray[np.float64],
-    ac_ap: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    ab_ab: Floats, ab_ac: Floats, ac_ac: Floats, ab_ap: Floats, ac_ap: Floats
+) -> tuple[Floats, Floats]:
     """Find v and w of the closest points on the three sides, from the scalar products (k,) of the vectors."""
     bc_bc = ab_ab + ac_ac - 2 * ab_ac
     bc_bp = ac_ap - ab_ap - ab_ac + ab_ab
@@ -565,12 +533,12 @@ def _closest_on_sides(
     return v, w
 
 
-def _dot(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+def _dot(x: Floats, y: Floats) -> Floats:
     """Scalar products of vectors (3, k)."""
     return np.einsum("dk,dk->k", x, y)
 
 
-def _least(values: NDArray[np.float64], counts: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _least(values: Floats, counts: Ints) -> tuple[Floats, Ints]:
     """Least of each run of values, the runs as long as counts (k,) say, none empty, and where it comes first, (k,)."""
     least = np.minimum.reduceat(values, np.cumsum(counts) - counts)
     equal = np.flatnonzero(values == np.repeat(least, counts))
@@ -580,7 +548,7 @@ def _least(values: NDArray[np.float64], counts: NDArray[np.int64]) -> tuple[NDAr
     return least, equal[np.append(True, run[1:] != run[:-1])]
 
 
-def _checked(vectors: NDArray[np.float64], name: str, dimensions: int) -> NDArray[np.float64]:
+def _checked(vectors: Floats, name: str, dimensions: int) -> Floats:
     """Return vectors (k, d) after a look at their shape and values."""
     array = np.asarray(vectors, np.float64)
     if array.ndim != 2 or array.shape[1] != dimensions:
@@ -590,7 +558,7 @@ def _checked(vectors: NDArray[np.float64], name: str, dimensions: int) -> NDArra
     return array
 
 
-def _spatial_order(points: NDArray[np.float64]) -> NDArray[np.int64]:
+def _spatial_order(points: Floats) -> Ints:
     """Order of points (k, d) along a Morton curve through 128^3 cells of the first three coordinates."""
     points = points[:, :3]
     low = points.min(axis=0)
@@ -602,7 +570,7 @@ def _spatial_order(points: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.argsort(x << 2 | y << 1 | z, kind="stable")
 
 
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _unit(vectors: Floats) -> Floats:
     """Scale vectors (3, k) to length one, leaving zero vectors alone."""
     lengths = np.sqrt(_dot(vectors, vectors))
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)

@@ -3,16 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ..runtime.arrays import Ints
 from .triangle_mesh import TriangleMesh
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["split_longest_edges"]
 
 _PIECES = (
     ((0, 1, 2),),
@@ -30,7 +24,7 @@ _EQUAL = 1e-6
 """Relative difference up to which edges are taken to be equally long."""
 
 
-def split_longest_edges(mesh: TriangleMesh, count: int) -> tuple[TriangleMesh, NDArray[np.int64]]:
+def split_longest_edges(mesh: TriangleMesh, count: int) -> tuple[TriangleMesh, Ints]:
     """Split the longest edges of a mesh in the middle.
 
     Parameters

@@ -5,18 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .triangle_mesh import TriangleMesh
-
-__all__ = ["Polygons", "from_faces"]
+from .triangle_mesh import TriangleMesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,11 +41,11 @@ class Polygons:
         If the arrays do not belong together.
     """
 
-    starts: NDArray[np.int64]
-    corner_vertices: NDArray[np.int64]
-    edges: NDArray[np.int64]
-    corner_edges: NDArray[np.int64]
-    triangle_corners: NDArray[np.int64]
+    starts: Ints
+    corner_vertices: Ints
+    edges: Ints
+    corner_edges: Ints
+    triangle_corners: Ints
 
     def __post_init__(self) -> None:
         for name in ("starts", "corner_vertices", "edges", "corner_edges", "triangle_corners"):
@@ -78,33 +74,33 @@ class Polygons:
         return len(self.corner_vertices)
 
     @cached_property
-    def face_sizes(self) -> NDArray[np.int64]:
+    def face_sizes(self) -> Ints:
         """Number of corners of each face, (f,)."""
         return np.diff(self.starts)
 
     @cached_property
-    def corner_faces(self) -> NDArray[np.int64]:
+    def corner_faces(self) -> Ints:
         """The face of each corner, (l,)."""
         return np.repeat(np.arange(self.face_count), self.face_sizes)
 
     @cached_property
-    def next_corners(self) -> NDArray[np.int64]:
+    def next_corners(self) -> Ints:
         """The corner that follows each corner in its face, (l,)."""
         following = np.arange(1, self.corner_count + 1)
         following[self.starts[1:] - 1] = self.starts[:-1]
         return following
 
     @cached_property
-    def triangle_faces(self) -> NDArray[np.int64]:
+    def triangle_faces(self) -> Ints:
         """The face of each triangle, (t,)."""
         return self.corner_faces[self.triangle_corners[:, 0]]
 
-    def face_means(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def face_means(self, values: Floats) -> Floats:
         """Mean over the corners of each face, (f, ...), of a value per corner, (l, ...)."""
         sums = np.add.reduceat(values, self.starts[:-1], axis=0) if self.face_count else values[:0]
         return sums / self.face_sizes.reshape(-1, *[1] * (values.ndim - 1))
 
-    def face_areas(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    def face_areas(self, positions: Floats) -> Floats:
         """Area of each face, (f,), as that of the triangles; `positions` (n, 3) of the vertices."""
         a, b, c = (positions[self.corner_vertices[corner]] for corner in self.triangle_corners.T)
         areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
@@ -112,7 +108,7 @@ class Polygons:
         return total
 
     @cached_property
-    def neighbours(self) -> NDArray[np.int64]:
+    def neighbours(self) -> Ints:
         """Pairs of corners (p, 2) in different faces that have the same edge.
 
         At an edge of more than two faces each is paired with the next one in the order of the faces.
@@ -123,7 +119,7 @@ class Polygons:
         return pairs[self.corner_faces[pairs[:, 0]] != self.corner_faces[pairs[:, 1]]]
 
     @cached_property
-    def meeting_corners(self) -> NDArray[np.int64]:
+    def meeting_corners(self) -> Ints:
         """For each pair of `neighbours`, the corners that meet at each end of their edge, (p, 2 ends, 2 sides)."""
         one, other = self.neighbours.T
         one_next, other_next = self.next_corners[one], self.next_corners[other]
@@ -150,7 +146,7 @@ class Polygons:
         raise MeshError("The faces of the mesh are not those that the map was made for. Match again.")
 
 
-def from_faces(starts: NDArray[np.int64], corner_vertices: NDArray[np.int64]) -> Polygons:
+def from_faces(starts: Ints, corner_vertices: Ints) -> Polygons:
     """Make polygons of faces alone: number their edges, and cut each into triangles that fan out from its first corner.
 
     Parameters

@@ -3,16 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from ..runtime.arrays import Floats
 from .surface_points import SurfacePoints
 from .triangle_mesh import TriangleMesh
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-__all__ = ["reflected_mesh", "reflected_points", "reflected_positions"]
 
 
 def reflected_mesh(mesh: TriangleMesh) -> TriangleMesh:
@@ -20,7 +13,7 @@ def reflected_mesh(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(reflected_positions(mesh.vertices), mesh.triangles[:, [0, 2, 1]])
 
 
-def reflected_positions(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+def reflected_positions(positions: Floats) -> Floats:
     """Reflect positions (k, 3) in the plane x = 0."""
     return positions * [-1.0, 1.0, 1.0]
 

@@ -3,23 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from .closest_points import ClosestPoints
 from .surface_points import SurfacePoints
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from .triangle_mesh import TriangleMesh
-
-__all__ = ["SurfaceMap"]
+from .triangle_mesh import TriangleMesh
 
 _CHUNK = 100_000
 """Rows computed at once, which bounds the memory of what is gathered for them."""
@@ -28,7 +23,7 @@ _FLAT = 1e-9
 """Mapped triangles whose area is a smaller part of their longest side squared have no side to be seen from."""
 
 
-def _everywhere() -> NDArray[np.bool_]:
+def _everywhere() -> Bools:
     """Stand for one truth value for each vertex, all true."""
     return np.ones(0, bool)
 
@@ -59,9 +54,9 @@ class SurfaceMap:
     """
 
     points: SurfacePoints
-    confidence: NDArray[np.float64]
+    confidence: Floats
     image_vertex_count: int
-    has_partner: NDArray[np.bool_] = field(default_factory=_everywhere)
+    has_partner: Bools = field(default_factory=_everywhere)
 
     def __post_init__(self) -> None:
         confidence = np.asarray(self.confidence, np.float64)
@@ -93,8 +88,8 @@ class SurfaceMap:
         cls,
         image: TriangleMesh,
         points: SurfacePoints,
-        confidence: NDArray[np.float64] | None = None,
-        has_partner: NDArray[np.bool_] | None = None,
+        confidence: Floats | None = None,
+        has_partner: Bools | None = None,
     ) -> SurfaceMap:
         """Make a map from points (n,) on the image; trusted everywhere if no confidence (n,) is given."""
         trusted = np.ones(len(points)) if confidence is None else confidence
@@ -104,10 +99,10 @@ class SurfaceMap:
     def from_barycentric(
         cls,
         image: TriangleMesh,
-        triangles: NDArray[np.int64],
-        barycentric: NDArray[np.float64],
-        confidence: NDArray[np.float64] | None = None,
-        has_partner: NDArray[np.bool_] | None = None,
+        triangles: Ints,
+        barycentric: Floats,
+        confidence: Floats | None = None,
+        has_partner: Bools | None = None,
     ) -> SurfaceMap:
         """Make a map from triangles (n,) of the image and barycentric coordinates (n, 3) there."""
         points = SurfacePoints.from_barycentric(image, triangles, barycentric)
@@ -131,27 +126,27 @@ class SurfaceMap:
         return f"<SurfaceMap: {len(self)} vertices to a mesh of {self.image_vertex_count}>"
 
     @property
-    def triangles(self) -> NDArray[np.int64]:
+    def triangles(self) -> Ints:
         """Triangle of the image in which the point of each vertex lies, (n,)."""
         return self.points.triangles
 
     @property
-    def barycentric(self) -> NDArray[np.float64]:
+    def barycentric(self) -> Floats:
         """Barycentric coordinates of each point in its triangle, (n, 3)."""
         return self.points.barycentric
 
     @property
-    def corners(self) -> NDArray[np.int64]:
+    def corners(self) -> Ints:
         """Vertices of these triangles, in the order of `barycentric`, (n, 3)."""
         return self.points.corners
 
     @property
-    def nearest_vertices(self) -> NDArray[np.int64]:
+    def nearest_vertices(self) -> Ints:
         """Corner with the largest coordinate for each point, (n,)."""
         return self.points.nearest_vertices
 
     @property
-    def positions(self) -> NDArray[np.float64]:
+    def positions(self) -> Floats:
         """Where the points are, (n, 3)."""
         return self.points.positions
 
@@ -232,7 +227,7 @@ class SurfaceMap:
         partners = self.has_partner & self.transfer(other.has_partner)
         return SurfaceMap.from_barycentric(image, found.triangles, found.barycentric, confidence, partners)
 
-    def edge_stretch(self, domain: TriangleMesh, image: TriangleMesh) -> NDArray[np.float64]:
+    def edge_stretch(self, domain: TriangleMesh, image: TriangleMesh) -> Floats:
         """Measure how the map stretches each edge of the domain.
 
         Returns
@@ -287,7 +282,7 @@ class SurfaceMap:
         return signs
 
     @staticmethod
-    def _area_share(domain: TriangleMesh, selected: NDArray[np.bool_]) -> float:
+    def _area_share(domain: TriangleMesh, selected: Bools) -> float:
         return float(domain.triangle_areas[selected].sum() / domain.area)
 
     def _check_domain(self, domain: TriangleMesh) -> None:

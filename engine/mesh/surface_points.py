@@ -4,18 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .triangle_mesh import TriangleMesh
-
-__all__ = ["SurfacePoints"]
+from .triangle_mesh import TriangleMesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,11 +30,11 @@ class SurfacePoints:
         Where the points are.
     """
 
-    triangles: NDArray[np.int64]
-    barycentric: NDArray[np.float64]
-    corners: NDArray[np.int64]
-    nearest_vertices: NDArray[np.int64]
-    positions: NDArray[np.float64]
+    triangles: Ints
+    barycentric: Floats
+    corners: Ints
+    nearest_vertices: Ints
+    positions: Floats
 
     def __len__(self) -> int:
         return len(self.triangles)
@@ -49,9 +43,7 @@ class SurfacePoints:
         return f"<SurfacePoints: {len(self)} points>"
 
     @classmethod
-    def from_barycentric(
-        cls, mesh: TriangleMesh, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
-    ) -> SurfacePoints:
+    def from_barycentric(cls, mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -> SurfacePoints:
         """Make points from triangles (k,) and barycentric coordinates (k, 3)."""
         corners = mesh.triangles[triangles]
         nearest = np.take_along_axis(corners, barycentric.argmax(axis=1)[:, None], axis=1)[:, 0]
@@ -59,7 +51,7 @@ class SurfacePoints:
         return cls(triangles, barycentric, corners, nearest, positions)
 
     @classmethod
-    def at_vertices(cls, mesh: TriangleMesh, vertices: NDArray[np.int64]) -> SurfacePoints:
+    def at_vertices(cls, mesh: TriangleMesh, vertices: Ints) -> SurfacePoints:
         """Make points at vertices (k,), each in the first triangle around it.
 
         Raises
@@ -81,9 +73,7 @@ class SurfacePoints:
         return cls.from_barycentric(mesh, triangles, np.eye(3)[corner])
 
     @classmethod
-    def from_corners(
-        cls, mesh: TriangleMesh, corners: NDArray[np.int64], barycentric: NDArray[np.float64]
-    ) -> SurfacePoints:
+    def from_corners(cls, mesh: TriangleMesh, corners: Ints, barycentric: Floats) -> SurfacePoints:
         """Make points from the vertices of their triangles (k, 3), in any order, and barycentric coordinates (k, 3).
 
         Raises
@@ -92,14 +82,14 @@ class SurfacePoints:
             If the mesh has no such triangle.
         """
 
-        def lower_sides(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+        def lower_sides(triangles: Ints) -> Ints:
             """Name the side between the two lowest corners of each triangle by one number."""
             low, middle, _ = np.sort(triangles, axis=1).T
             return low * mesh.vertex_count + middle
 
         sides = np.unique(lower_sides(mesh.triangles))
 
-        def keys(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+        def keys(triangles: Ints) -> Ints:
             """Name each triangle by one number, whatever corner it starts at; -1 if the mesh has no such side."""
             # Sides are numbered: a number made of three vertices has no room in 64 bits beyond two million of these.
             wanted = lower_sides(triangles)
@@ -114,7 +104,7 @@ class SurfacePoints:
         place = (mesh.triangles[triangles][:, :, None] == corners[:, None, :]).argmax(axis=2)
         return cls.from_barycentric(mesh, triangles, np.take_along_axis(barycentric, place, axis=1))
 
-    def interpolate(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def interpolate(self, values: Floats) -> Floats:
         """Evaluate a function given at the vertices, linear inside triangles.
 
         Parameters

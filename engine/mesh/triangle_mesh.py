@@ -3,23 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from .unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-__all__ = ["TriangleMesh"]
 
 _FARTHEST = 1e75
 """Coordinate, in any unit, up to which the squares of areas are numbers: their fourth powers are below 1e308."""
@@ -49,8 +45,8 @@ class TriangleMesh:
     without a triangle are allowed: real meshes have them.
     """
 
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    vertices: Floats
+    triangles: Ints
     is_sent_once: ClassVar[bool] = True
     """See `parallel_map.shared_steps`."""
 
@@ -92,13 +88,13 @@ class TriangleMesh:
         return len(self.triangles)
 
     @cached_property
-    def _area_vectors(self) -> NDArray[np.float64]:
+    def _area_vectors(self) -> Floats:
         """Triangle normals times area, (m, 3)."""
         a, b, c = (self.vertices[self.triangles[:, i]] for i in range(3))
         return np.cross(b - a, c - a) / 2
 
     @cached_property
-    def triangle_areas(self) -> NDArray[np.float64]:
+    def triangle_areas(self) -> Floats:
         """Area of each triangle, (m,)."""
         return np.linalg.norm(self._area_vectors, axis=1)
 
@@ -108,27 +104,27 @@ class TriangleMesh:
         return float(self.triangle_areas.sum())
 
     @cached_property
-    def triangle_normals(self) -> NDArray[np.float64]:
+    def triangle_normals(self) -> Floats:
         """Unit normal of each triangle, (m, 3); zero for a triangle without area."""
         return unit_vectors(self._area_vectors)
 
     @cached_property
-    def vertex_areas(self) -> NDArray[np.float64]:
+    def vertex_areas(self) -> Floats:
         """A third of the area of the triangles around each vertex, (n,); they sum to `area`."""
         return self.sum_at_vertices(self.triangle_areas / 3)
 
     @cached_property
-    def vertex_normals(self) -> NDArray[np.float64]:
+    def vertex_normals(self) -> Floats:
         """Unit normal at each vertex, weighted by triangle area, (n, 3); zero at a vertex without a triangle."""
         return unit_vectors(np.stack([self.sum_at_vertices(component) for component in self._area_vectors.T], axis=1))
 
-    def sum_at_vertices(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def sum_at_vertices(self, values: Floats) -> Floats:
         """Sum a value per triangle, (m,), over the triangles around each vertex, (n,)."""
         sums: NDArray[Any] = np.bincount(self.triangles.ravel(), np.repeat(values, 3), self.vertex_count)
         return sums
 
     @cached_property
-    def _edge_table(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def _edge_table(self) -> tuple[Ints, Ints]:
         """Edges (e, 2), each once with its smaller index first, and how many triangles each has (e,)."""
         a, b = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
         # One integer per edge: far faster to sort than rows.
@@ -136,17 +132,17 @@ class TriangleMesh:
         return np.stack(np.divmod(keys, self.vertex_count), axis=1), counts
 
     @property
-    def edges(self) -> NDArray[np.int64]:
+    def edges(self) -> Ints:
         """Each edge once, smaller vertex index first, (e, 2)."""
         return self._edge_table[0]
 
     @cached_property
-    def edge_lengths(self) -> NDArray[np.float64]:
+    def edge_lengths(self) -> Floats:
         """Length of each of `edges`, (e,)."""
         return np.linalg.norm(self.vertices[self.edges[:, 0]] - self.vertices[self.edges[:, 1]], axis=1)
 
     @cached_property
-    def boundary_edges(self) -> NDArray[np.int64]:
+    def boundary_edges(self) -> Ints:
         """The edges with exactly one triangle, (b, 2)."""
         edges, counts = self._edge_table
         return edges[counts == 1]
@@ -157,7 +153,7 @@ class TriangleMesh:
         return bool((self._edge_table[1] == 2).all())
 
     @cached_property
-    def component_labels(self) -> NDArray[np.int64]:
+    def component_labels(self) -> Ints:
         """Number of the edge-connected component of each vertex, (n,); the largest by area is 0, and so on down.
 
         Vertices without a triangle are components of their own, at the end.
@@ -177,7 +173,7 @@ class TriangleMesh:
         """Number of edge-connected components, vertices without a triangle included."""
         return int(self.component_labels.max()) + 1
 
-    def submesh(self, keep: NDArray[np.bool_]) -> tuple[TriangleMesh, NDArray[np.int64], NDArray[np.int64]]:
+    def submesh(self, keep: Bools) -> tuple[TriangleMesh, Ints, Ints]:
         """Return the part of the mesh on some of its vertices.
 
         Parameters
@@ -210,7 +206,7 @@ def _read_only(array: NDArray[Any]) -> NDArray[Any]:
     return array
 
 
-def _as_vertices(vertices: ArrayLike) -> NDArray[np.float64]:
+def _as_vertices(vertices: ArrayLike) -> Floats:
     try:
         array = np.array(vertices, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -235,7 +231,7 @@ def _as_vertices(vertices: ArrayLike) -> NDArray[np.float64]:
     return _read_only(array)
 
 
-def _as_triangles(triangles: ArrayLike, vertex_count: int) -> NDArray[np.int64]:
+def _as_triangles(triangles: ArrayLike, vertex_count: int) -> Ints:
     try:
         array = np.array(triangles)
     except ValueError as error:

@@ -3,17 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["unit_vectors"]
+from ..runtime.arrays import Floats
 
 
-def unit_vectors(vectors: NDArray[np.float64], least: float = 0.0) -> NDArray[np.float64]:
+def unit_vectors(vectors: Floats, least: float = 0.0) -> Floats:
     """Scale vectors (n, d) to length one; those that are no longer than `least` become zero."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > least)

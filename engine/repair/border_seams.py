@@ -4,22 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..mesh.connectivity.halfedges import triangle_slots
+from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
 from ..mesh.unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.connectivity.halfedges import EdgeGroups
-
-__all__ = ["seam_partners"]
+from ..runtime.arrays import Bools, Floats, Ints
 
 _SMALLEST = 0.01
 """Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""
@@ -73,16 +66,16 @@ class _Borders:
         The piece of every vertex of the mesh.
     """
 
-    vertices: NDArray[np.int64]
-    pieces: NDArray[np.int64]
-    loops: NDArray[np.int64]
-    lengths: NDArray[np.float64]
-    outward: NDArray[np.float64]
+    vertices: Ints
+    pieces: Ints
+    loops: Ints
+    lengths: Floats
+    outward: Floats
     neighbours: coo_array
-    owners: NDArray[np.int64]
+    owners: Ints
 
 
-def seam_partners(vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups) -> NDArray[np.int64]:
+def seam_partners(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> Ints:
     """Find vertices of different pieces that face each other across a narrow gap.
 
     A body whose halves were mirrored but not merged, or a head beside the neck that it belongs to, are one surface.
@@ -133,9 +126,7 @@ def seam_partners(vertices: NDArray[np.float64], triangles: NDArray[np.int64], g
     return representatives
 
 
-def _nearest(
-    borders: _Borders, places: NDArray[np.float64], shifts: NDArray[np.float64], reach: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _nearest(borders: _Borders, places: Floats, shifts: Floats, reach: Floats) -> Ints:
     """Find the nearest vertex at the border of another piece to places (k, 3) that were shifted, (k,); -1 for none."""
     nearest = np.full(len(places), -1)
     for piece in np.unique(borders.pieces):
@@ -147,9 +138,7 @@ def _nearest(
     return nearest
 
 
-def _facing(
-    borders: _Borders, places: NDArray[np.float64], nearest: NDArray[np.int64], widest: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _facing(borders: _Borders, places: Floats, nearest: Ints, widest: Floats) -> Ints:
     """Find the vertices beyond which the surface goes on, at the nearest one of another piece."""
     facing = np.flatnonzero(nearest >= 0)
     partner = nearest[facing]
@@ -162,13 +151,7 @@ def _facing(
     return facing[near & opposite & (np.minimum(ahead, back) >= behind)]
 
 
-def _on_others(
-    vertices: NDArray[np.float64],
-    borders: _Borders,
-    first: NDArray[np.int64],
-    second: NDArray[np.int64],
-    reach: float,
-) -> NDArray[np.bool_]:
+def _on_others(vertices: Floats, borders: _Borders, first: Ints, second: Ints, reach: float) -> Bools:
     """Tell for which vertices of borders that face each other, (c,) each, one piece lies on the other all over."""
     pairs = np.sort(np.stack([borders.pieces[first], borders.pieces[second]], axis=1), axis=1)
     kinds, number = np.unique(pairs, axis=0, return_inverse=True)
@@ -181,9 +164,7 @@ def _on_others(
     return lying[number.reshape(-1)]
 
 
-def _borders(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups
-) -> tuple[_Borders | None, float]:
+def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Borders | None, float]:
     """Find where large pieces end, and the area of all; None, and maybe no area, if fewer than two of them do."""
     open_edges = groups.order[groups.starts[groups.counts == 1]]
     if not len(open_edges):
@@ -228,5 +209,5 @@ def _borders(
     return _Borders(border[kept], pieces[border[kept]], loops, around[kept], outward, neighbours, pieces), area
 
 
-def _graph(tails: NDArray[np.int64], heads: NDArray[np.int64], count: int) -> coo_array:
+def _graph(tails: Ints, heads: Ints, count: int) -> coo_array:
     return coo_array((np.ones(len(tails)), (tails, heads)), shape=(count, count)).tocsr()

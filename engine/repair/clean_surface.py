@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,13 +12,8 @@ from ..mesh.closest_points import ClosestPoints, facing
 from ..mesh.reflection import reflected_mesh
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .cleaning_notes import CleaningCounts
-
-__all__ = ["CleanSurface", "StandIn", "SurfacePart"]
+from ..runtime.arrays import Bools, Floats, Ints
+from .cleaning_notes import CleaningCounts
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,14 +35,12 @@ class SurfacePart:
     """
 
     mesh: TriangleMesh
-    original_vertices: NDArray[np.int64]
-    original_triangles: NDArray[np.int64]
-    turned: NDArray[np.bool_]
+    original_vertices: Ints
+    original_triangles: Ints
+    turned: Bools
     inverted: bool
 
-    def to_original(
-        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def to_original(self, triangles: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """Name points of the part as points of the original mesh.
 
         Parameters
@@ -80,9 +72,7 @@ class SurfacePart:
         # As the triangles of the original turn as well, those that were turned against them still are.
         return replace(self, mesh=reflected_mesh(self.mesh))
 
-    def _beside_holes(
-        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def _beside_holes(self, triangles: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """Move points in filled holes to the nearest of the triangles around holes."""
         corners, kept = self.mesh.triangles, self.original_triangles >= 0
         at_hole = np.zeros(self.mesh.vertex_count, bool)
@@ -115,20 +105,18 @@ class StandIn(SurfacePart):
         Which of them have their last two corners exchanged against the original.
     """
 
-    place_triangles: NDArray[np.int64]
-    place_barycentric: NDArray[np.float64]
+    place_triangles: Ints
+    place_barycentric: Floats
     shown: TriangleMesh
-    shown_triangles: NDArray[np.int64]
-    shown_turned: NDArray[np.bool_]
+    shown_triangles: Ints
+    shown_turned: Bools
 
     @cached_property
     def shown_search(self) -> ClosestPoints:
         """Search on the pieces."""
         return ClosestPoints(self.shown)
 
-    def to_original(
-        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def to_original(self, triangles: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """Name the points of the original mesh that are closest to points of the surface and look to the same side."""
         points = np.einsum("kc,kcd->kd", barycentric, self.mesh.vertices[self.mesh.triangles[triangles]])
         size = float(np.sqrt(self.mesh.area))
@@ -137,14 +125,12 @@ class StandIn(SurfacePart):
         barycentric = np.where(turned[:, None], barycentric[:, [0, 2, 1]], barycentric)
         return self.shown_triangles[found.triangles], barycentric
 
-    def places(self, vertices: NDArray[np.int64]) -> SurfacePoints:
+    def places(self, vertices: Ints) -> SurfacePoints:
         """Places of vertices (k,) of the original mesh on the surface."""
         triangles, barycentric = self.place_triangles[vertices], self.place_barycentric[vertices]
         return SurfacePoints.from_barycentric(self.mesh, triangles, barycentric)
 
-    def images_of(
-        self, vertices: NDArray[np.int64], starts: NDArray[np.int64], found: SurfacePoints, mesh: TriangleMesh
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def images_of(self, vertices: Ints, starts: Ints, found: SurfacePoints, mesh: TriangleMesh) -> tuple[Ints, Floats]:
         """Say where a map of the surface to a mesh takes the places of vertices (k,), searched from vertices there."""
         images = ClosestPoints(mesh).walk(self.places(vertices).interpolate(found.positions), starts)
         return images.triangles, images.barycentric
@@ -182,8 +168,8 @@ class CleanSurface:
 
     original: TriangleMesh
     pieces: tuple[SurfacePart, ...]
-    vertex_parts: NDArray[np.int64]
-    vertex_images: NDArray[np.int64]
+    vertex_parts: Ints
+    vertex_images: Ints
     notes: tuple[str, ...]
     counts: CleaningCounts
 
@@ -212,9 +198,7 @@ class CleanSurface:
         """Whether the normals of the main part pointed inwards."""
         return self.pieces[0].inverted
 
-    def images_of(
-        self, vertices: NDArray[np.int64], found: SurfacePoints, mesh: TriangleMesh
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def images_of(self, vertices: Ints, found: SurfacePoints, mesh: TriangleMesh) -> tuple[Ints, Floats]:
         """Say where a map of the main part takes vertices of the original mesh.
 
         Parameters

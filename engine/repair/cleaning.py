@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..mesh.connectivity.boundary_loops import boundary_loops
@@ -14,6 +12,7 @@ from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.connectivity.triangle_components import triangle_components
 from ..mesh.connectivity.vertex_welding import weld_boundaries
 from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from .border_seams import seam_partners
 from .clean_surface import CleanSurface, SurfacePart
@@ -21,11 +20,6 @@ from .cleaning_notes import CleaningCounts, cleaning_notes
 from .hole_filling import fill_holes, small_holes
 from .pinched_gaps import pinched_gaps
 from .spikes import find_spikes, pulled_in
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["clean"]
 
 _MOST_OPEN = 1.0
 """Length of its open borders, in the root of its area, from which on a part counts as if it were half as large."""
@@ -37,7 +31,7 @@ _MOST_PARTS = 256
 """Parts that are kept beside the main one, the largest; there may be thousands of hairs or crumbs."""
 
 
-def clean(mesh: TriangleMesh, name: str = "mesh", left_out: NDArray[np.bool_] | None = None) -> CleanSurface:
+def clean(mesh: TriangleMesh, name: str = "mesh", left_out: Bools | None = None) -> CleanSurface:
     """Make a mesh into oriented manifolds.
 
     In this order: vertices along open seams, and across narrow gaps between pieces, are welded; triangles without three
@@ -84,7 +78,7 @@ def clean(mesh: TriangleMesh, name: str = "mesh", left_out: NDArray[np.bool_] | 
     return _in_parts(mesh, work, inward, representatives, name)
 
 
-def _loose_vertices(mesh: TriangleMesh, left_out: NDArray[np.bool_] | None) -> int:
+def _loose_vertices(mesh: TriangleMesh, left_out: Bools | None) -> int:
     """Count the vertices without a face, but for those whose faces were left out on purpose."""
     loose = np.bincount(mesh.triangles.ravel(), minlength=mesh.vertex_count) == 0
     return int((loose if left_out is None else loose & ~left_out).sum())
@@ -104,7 +98,7 @@ class _Work:
         self.twins = np.empty(0, np.int64)
         self.components = np.empty(0, np.int64)  # of each triangle
 
-    def keep(self, kept: NDArray[np.bool_]) -> None:
+    def keep(self, kept: Bools) -> None:
         """Leave out triangles."""
         self.triangles, self.areas = self.triangles[kept], self.areas[kept]
         self.origins, self.turned = self.origins[kept], self.turned[kept]
@@ -115,7 +109,7 @@ class _Work:
             triangle = number[np.where(twins >= 0, twins // 3, -1)]
             self.twins = np.where(triangle >= 0, 3 * triangle + twins % 3, -1)
 
-    def turn(self, turned: NDArray[np.bool_]) -> None:
+    def turn(self, turned: Bools) -> None:
         """Turn triangles over."""
         if not turned.any():
             return
@@ -132,7 +126,7 @@ class _Work:
             self.copied = np.concatenate([self.copied, sources])
 
 
-def _weld(work: _Work) -> tuple[EdgeGroups, NDArray[np.int64]]:
+def _weld(work: _Work) -> tuple[EdgeGroups, Ints]:
     """Weld vertices along seams and gaps: the edges then, and the vertex that stands for each (n,)."""
     n = len(work.vertices)
     groups = group_half_edges(work.triangles, n)
@@ -149,7 +143,7 @@ def _weld(work: _Work) -> tuple[EdgeGroups, NDArray[np.int64]]:
     return groups, partners[representatives]
 
 
-def _merged(work: _Work, representatives: NDArray[np.int64], moved: NDArray[np.int64]) -> EdgeGroups:
+def _merged(work: _Work, representatives: Ints, moved: Ints) -> EdgeGroups:
     """Let some vertices be `moved` to those that stand for them: the edges then."""
     n = len(work.vertices)
     # A welded vertex lies in the middle of its copies, so that their order does not matter.
@@ -250,16 +244,10 @@ def _pull_in_spikes(work: _Work) -> None:
         work.areas[affected] = _areas(work.vertices, work.triangles[affected])
 
 
-def _in_parts(
-    mesh: TriangleMesh,
-    work: _Work,
-    inward: NDArray[np.bool_],
-    representatives: NDArray[np.int64],
-    name: str,
-) -> CleanSurface:
+def _in_parts(mesh: TriangleMesh, work: _Work, inward: Bools, representatives: Ints, name: str) -> CleanSurface:
     """Take the mesh apart, and fill the holes of the main part."""
     components, counts = work.components, work.counts
-    areas: NDArray[np.float64] = np.bincount(components, work.areas).astype(np.float64)
+    areas: Floats = np.bincount(components, work.areas).astype(np.float64)
     order = _main_first(work, areas)
     if not len(order):
         raise MeshError("Nothing of the mesh has an area once repeated and degenerate faces are left out.")
@@ -306,7 +294,7 @@ def _in_parts(
     return CleanSurface(mesh, tuple(pieces), parts_of_vertices, local[images], notes, counts)
 
 
-def _main_first(work: _Work, areas: NDArray[np.float64]) -> NDArray[np.int64]:
+def _main_first(work: _Work, areas: Floats) -> Ints:
     """Order the components by area, but put the main one first: a body may be smaller than its clothes, but is closed.
 
     Those without an area (c,) are left out.
@@ -323,10 +311,10 @@ def _main_first(work: _Work, areas: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.concatenate([order[order == main], order[order != main]])
 
 
-_Piece = tuple["NDArray[np.float64]", "NDArray[np.int64]", "NDArray[np.int64]", "NDArray[np.int64]"]
+_Piece = tuple["Floats", "Ints", "Ints", "Ints"]
 
 
-def _filled(piece: _Piece, open_half_edges: NDArray[np.int64], area: float) -> tuple[_Piece, int, int]:
+def _filled(piece: _Piece, open_half_edges: Ints, area: float) -> tuple[_Piece, int, int]:
     """Fill the small holes of a part: the part, and how many holes were filled and left open."""
     vertices, triangles, original_vertices, original_triangles = piece
     if not len(open_half_edges):
@@ -343,9 +331,7 @@ def _filled(piece: _Piece, open_half_edges: NDArray[np.int64], area: float) -> t
     return piece, int(small.sum()), int((~small).sum())
 
 
-def _images(
-    vertex_parts: NDArray[np.int64], copied: NDArray[np.int64], representatives: NDArray[np.int64]
-) -> NDArray[np.int64]:
+def _images(vertex_parts: Ints, copied: Ints, representatives: Ints) -> Ints:
     """For each original vertex, which of the copies of the vertex that stands for it is in the largest part."""
     n = len(representatives)
     best = np.arange(n)
@@ -359,7 +345,7 @@ def _images(
     return best[representatives]
 
 
-def _areas(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+def _areas(vertices: Floats, triangles: Ints) -> Floats:
     """Area of each triangle, (m,)."""
     a, b, c = (vertices[corner] for corner in triangles.T)
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2

@@ -6,8 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-__all__ = ["CleaningCounts", "cleaning_notes"]
-
 _SENTENCES: Final = {
     "welded": (
         "The {0} had {1} duplicate vertex along open seams: it was welded for matching.",

@@ -3,16 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import label
 from scipy.spatial import cKDTree
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["bridged"]
+from ..runtime.arrays import Ints
 
 _LEAST = 0.002
 """Part of all of the inside that a solid must have to be joined to others: half a finger of a person."""
@@ -58,7 +54,7 @@ def bridged(values: NDArray[np.float32], level: float, widest: float) -> NDArray
     return result
 
 
-def _nearest_pair(solids: list[NDArray[np.int64]], widest: float) -> NDArray[np.int64] | None:
+def _nearest_pair(solids: list[Ints], widest: float) -> Ints | None:
     """Find the two solids, of places (s, 3) each, with the narrowest gap: the places between them, (k, 3)."""
     trees = [cKDTree(places) for places in solids]
     best, pair = np.inf, None

@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..mesh.connectivity.boundary_loops import BoundaryLoops
 from ..mesh.unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.connectivity.boundary_loops import BoundaryLoops
-
-__all__ = ["fill_holes", "small_holes"]
+from ..runtime.arrays import Bools, Floats, Ints
 
 _LARGEST_HOLE = 0.01
 """Area of the largest hole in a sheet that is filled, as a part of the surface."""
@@ -26,9 +22,7 @@ _SHEET = 0.5
 """Cosine of the largest mean angle between the lid of a hole in a sheet and the surface around it."""
 
 
-def small_holes(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], loops: BoundaryLoops, area: float
-) -> NDArray[np.bool_]:
+def small_holes(vertices: Floats, triangles: Ints, loops: BoundaryLoops, area: float) -> Bools:
     """Say which boundary loops are holes to fill rather than the ends of the surface.
 
     Parameters
@@ -66,9 +60,7 @@ def small_holes(
     return long_enough & (loops.areas <= np.where(in_sheet, _LARGEST_HOLE, _LARGEST_END) * area)
 
 
-def fill_holes(
-    loops: BoundaryLoops, chosen: NDArray[np.bool_], vertex_count: int
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def fill_holes(loops: BoundaryLoops, chosen: Bools, vertex_count: int) -> tuple[Floats, Ints]:
     """Close boundary loops with fans around their centres.
 
     Parameters

@@ -3,24 +3,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..mesh.connectivity.boundary_loops import BoundaryLoops
 from ..mesh.connectivity.halfedges import triangle_slots
 from ..mesh.connectivity.nonmanifold_vertices import several_fans
+from ..runtime.arrays import Bools, Floats, Ints
 from .hole_filling import small_holes
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
-__all__ = ["pinched_gaps"]
-
-
-def pinched_gaps(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], twins: NDArray[np.int64], area: float
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def pinched_gaps(vertices: Floats, triangles: Ints, twins: Ints, area: float) -> tuple[Ints, Ints]:
     """Find the gaps of one triangle that meet other gaps in a vertex.
 
     Where many faces are missing here and there, the surface would fall into shreds if it was cut apart in all vertices
@@ -68,9 +60,7 @@ def pinched_gaps(
     return np.stack([heads[first], tails[first], tails[third]], axis=1), np.stack([first, third, second], axis=1)
 
 
-def _cycles_of_three(
-    numbers: NDArray[np.int64], tails: NDArray[np.int64], heads: NDArray[np.int64], n: int
-) -> NDArray[np.int64]:
+def _cycles_of_three(numbers: Ints, tails: Ints, heads: Ints, n: int) -> Ints:
     """List the half-edges of each closed walk of three of them, the least number first, (c, 3)."""
     order = np.argsort(tails * n + heads)
     numbers, tails, heads = numbers[order], tails[order], heads[order]
@@ -85,9 +75,7 @@ def _cycles_of_three(
     return walks[(walks[:, 0] < walks[:, 1]) & (walks[:, 0] < walks[:, 2])]
 
 
-def _in_sheets(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], gaps: NDArray[np.int64], area: float
-) -> NDArray[np.bool_]:
+def _in_sheets(vertices: Floats, triangles: Ints, gaps: Ints, area: float) -> Bools:
     """Tell which gaps (g, 3) are holes to fill."""
     half_edges = gaps.ravel()
     tails, heads = (triangle_slots(triangles, half_edges, shift) for shift in (0, 1))

@@ -4,20 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import fftfreq, irfftn, next_fast_len, rfftfreq, rfftn
 from scipy.sparse import csc_array
 
 from ..mesh.area_samples import area_samples
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["SolidIndicator", "solid_indicator"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats
 
 _MARGIN = 8
 """Places of the grid around the surfaces: the grid goes on at its other side, as Fourier transforms see it."""
@@ -47,7 +42,7 @@ class SolidIndicator:
     """
 
     values: NDArray[np.float32]
-    origin: NDArray[np.float64]
+    origin: Floats
     spacing: float
 
 
@@ -98,7 +93,7 @@ def solid_indicator(mesh: TriangleMesh, spacing: float) -> SolidIndicator:
     return SolidIndicator(values - np.median(np.concatenate(faces)), origin, spacing)
 
 
-def _spreading(places: NDArray[np.float64], shape: tuple[int, ...]) -> csc_array:
+def _spreading(places: Floats, shape: tuple[int, ...]) -> csc_array:
     """Make the matrix (number of places of a grid, s) that spreads values at points, in its units, (s, 3)."""
     cells = np.floor(places).astype(np.int64)
     inside = places - cells

@@ -3,14 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["find_spikes", "pulled_in"]
+from ..runtime.arrays import Floats, Ints
 
 _SLENDER = 1.0
 """Length of the shortest edge of a spike by the length of the ring around its foot: a horn is broader at its tip."""
@@ -19,7 +14,7 @@ _LONG = 5.0
 """The same by the mean length of the mesh's edges: what is shorter does no harm."""
 
 
-def find_spikes(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+def find_spikes(vertices: Floats, triangles: Ints) -> Ints:
     """Find the tips of spikes of one vertex.
 
     Parameters
@@ -50,9 +45,7 @@ def find_spikes(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> 
     return np.flatnonzero((slims == around) & (around > 2))
 
 
-def pulled_in(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], spikes: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def pulled_in(vertices: Floats, triangles: Ints, spikes: Ints) -> Floats:
     """Move the tips of spikes (k,) into the middle of the rings around them: the new positions (n, 3)."""
     tip = np.zeros(len(vertices), bool)
     tip[spikes] = True

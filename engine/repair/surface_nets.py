@@ -3,20 +3,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["surface_net"]
+from ..runtime.arrays import Floats, Ints
 
 _RING = (0, 0), (-1, 0), (-1, -1), (0, -1)
 """Cells around an edge of the grid, by their offsets along the two other axes."""
 
 
-def surface_net(values: NDArray[np.float32], level: float = 0.0) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def surface_net(values: NDArray[np.float32], level: float = 0.0) -> tuple[Floats, Ints]:
     """Mesh the surface on which a function has a value [1]_.
 
     Parameters
@@ -63,7 +59,7 @@ def surface_net(values: NDArray[np.float32], level: float = 0.0) -> tuple[NDArra
         points.append(crossing)
     quads, crossings = np.concatenate(rings), np.repeat(np.concatenate(points), 4, axis=0)
     used, inverse = np.unique(quads, return_inverse=True)
-    owners: NDArray[np.int64] = inverse.reshape(-1).astype(np.int64)
+    owners: Ints = inverse.reshape(-1).astype(np.int64)
     sums = np.stack([np.bincount(owners, column, len(used)) for column in crossings.T], axis=1).astype(np.float64)
     vertices = sums / np.bincount(owners, minlength=len(used))[:, None].astype(np.float64) - 1
     a, b, c, d = owners.reshape(-1, 4).T

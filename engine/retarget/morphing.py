@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.spatial import cKDTree
@@ -13,14 +11,9 @@ from scipy.spatial.transform import Rotation
 from ..geometry.laplacian import laplace_beltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.welded_parts import WeldedParts
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from .values.deformation_gradients import surface_frames
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["in_between"]
 
 _LEAST_WEIGHT = 1e-4
 """Least weight of an edge, as in `elastic`."""
@@ -35,9 +28,7 @@ _RADIUS = 0.03
 """Over what distance rotations are averaged, in sqrt(area)."""
 
 
-def in_between(
-    mesh: TriangleMesh, positions: NDArray[np.float64], fractions: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def in_between(mesh: TriangleMesh, positions: Floats, fractions: Floats) -> Floats:
     r"""Interpolate between a surface and a deformed one.
 
     Each edge is turned by the part t of the rotation around it while its length and shear change evenly, and the
@@ -75,9 +66,7 @@ def in_between(
     return _in_between(mesh, positions, fractions)
 
 
-def _in_between(
-    mesh: TriangleMesh, positions: NDArray[np.float64], fractions: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _in_between(mesh: TriangleMesh, positions: Floats, fractions: Floats) -> Floats:
     """Interpolate; see `in_between`."""
     frames = surface_frames(mesh, positions, radius=_RADIUS)
     tails, heads, weights = _edges(mesh)
@@ -103,7 +92,7 @@ def _in_between(
     return found
 
 
-def _edges(mesh: TriangleMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+def _edges(mesh: TriangleMesh) -> tuple[Ints, Ints, Floats]:
     """Edges with their weights, (e,) each, and ties from loose parts to the largest."""
     entries = coo_array(laplace_beltrami(mesh).stiffness)
     between = entries.row < entries.col

@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["open_ends"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 
 _COINCIDENT: Final = 1e-6
 """Vertices closer than this part of the diagonal of the bounding box are one: meshes are split at UV seams."""
@@ -67,13 +63,13 @@ def open_ends(mesh: TriangleMesh) -> int:
     return int(count)
 
 
-def _pieces(edges: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _pieces(edges: Ints, count: int) -> Ints:
     """Label the pieces that edges (e, 2) make of points, (count,)."""
     graph = coo_array((np.ones(len(edges)), tuple(edges.T)), shape=(count, count))
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
-def _winding_number(triangles: NDArray[np.float64]) -> float:
+def _winding_number(triangles: Floats) -> float:
     """Say how often triangles (k, 3, 3) go around the origin: 1 inside of a closed surface, 0 outside [1]_.
 
     References

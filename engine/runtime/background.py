@@ -5,23 +5,16 @@ from __future__ import annotations
 
 import time
 import warnings
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from .blas_threads import on_one_thread
 from .errors import HierMatchError
-from .progress import Progress
-from .worker import Task, call_background
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from .progress import Steps
-    from .worker import Helper
-
-__all__ = ["Background", "called_steps", "can_go_beside"]
+from .progress import Progress, Steps
+from .worker import Helper, Task, call_background
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")

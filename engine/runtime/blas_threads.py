@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
+from typing import NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 import scipy
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from .progress import Steps
-
-__all__ = ["Library", "libraries", "on_one_thread", "one_thread", "thread_counts"]
+from .progress import Steps
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")

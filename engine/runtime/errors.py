@@ -7,8 +7,6 @@ them as they are.  Anything else that escapes the engine is a bug.
 
 from __future__ import annotations
 
-__all__ = ["HierMatchError", "MatchError", "MeshError", "RigError", "SettingsError"]
-
 
 class HierMatchError(ValueError):
     """Base of all errors that are about the input and not about the program."""

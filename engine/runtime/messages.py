@@ -6,12 +6,8 @@ from __future__ import annotations
 import io
 import pickle
 import weakref
-from typing import IO, TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-__all__ = ["PACKAGE", "SentObjects", "pack", "unpack"]
+from collections.abc import Mapping
+from typing import IO, Any
 
 PACKAGE = __name__.rsplit(".", 2)[0]
 """What the engine is called here: another program may have it inside of a package."""

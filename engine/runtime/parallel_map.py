@@ -5,21 +5,13 @@ from __future__ import annotations
 
 import warnings
 from collections import deque
-from typing import TYPE_CHECKING, Generic, TypeVar
+from collections.abc import Callable, Sequence
+from typing import Generic, Self, TypeVar
 
 from .blas_threads import on_one_thread
 from .errors import HierMatchError
-from .progress import Progress, within
-from .worker import present_helpers
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Self
-
-    from .progress import Steps
-    from .worker import Helper, Task
-
-__all__ = ["MOST_SENT", "beside_steps", "here_steps", "shared_steps"]
+from .progress import Progress, Steps, within
+from .worker import Helper, Task, present_helpers
 
 Common = TypeVar("Common")
 Item = TypeVar("Item")

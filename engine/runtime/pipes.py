@@ -6,12 +6,7 @@ from __future__ import annotations
 import os
 import select
 import time
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["Inbox", "can_take", "has_more", "receive", "send", "sent_in_parts"]
+from collections.abc import Iterator
 
 _LENGTH = 8
 """Bytes that say how long a message is."""

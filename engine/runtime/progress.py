@@ -9,13 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-__all__ = ["Preview", "Progress", "Steps", "run", "within"]
+from .arrays import Floats
 
 Result = TypeVar("Result")
 
@@ -30,8 +26,8 @@ class Preview:
         Corresponding places of two surfaces, in the space of either.
     """
 
-    source: NDArray[np.float64]
-    target: NDArray[np.float64]
+    source: Floats
+    target: Floats
 
     def __repr__(self) -> str:
         return f"<Preview: {len(self.source)} places>"

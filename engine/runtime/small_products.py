@@ -3,14 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["product"]
+from .arrays import Floats
 
 # OpenBLAS, which NumPy carries, leaves products of at most so many multiplications to the calling thread.
 _SERIAL_MATRIX, _SERIAL_VECTOR = 250_000, 9_000
@@ -19,7 +14,7 @@ _SERIAL_MATRIX, _SERIAL_VECTOR = 250_000, 9_000
 _LARGE = 30_000_000
 
 
-def product(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def product(first: Floats, second: Floats) -> Floats:
     """Multiply a matrix by a matrix or vector without waking the threads of the linear algebra library.
 
     Solvers make thousands of products of some hundred rows.  OpenBLAS shares even these out among threads, which then

@@ -13,33 +13,18 @@ import atexit
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import scipy
 
 from .messages import PACKAGE, SentObjects, unpack
 from .pipes import Inbox, has_more, send, sent_in_parts
-from .progress import Progress
+from .progress import Progress, Steps
 from .worker_main import READY
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from .progress import Steps
-
-__all__ = [
-    "Helper",
-    "Task",
-    "call_background",
-    "call_helpers",
-    "close_helpers",
-    "present_helpers",
-    "search_threads",
-    "use_processes",
-]
 
 _VARIABLE = "HIERMATCH_PROCESSES"
 """Environment variable that says how many processes may be at work, this one counted."""

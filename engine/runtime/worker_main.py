@@ -9,18 +9,13 @@ import time
 import traceback
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from .blas_threads import one_thread
 from .errors import HierMatchError
 from .messages import pack, unpack
 from .pipes import can_take, has_more, receive, send
-from .progress import run
-
-if TYPE_CHECKING:
-    from .progress import Preview, Steps
-
-__all__ = ["READY", "serve"]
+from .progress import Preview, Steps, run
 
 READY = b"A helper of HierMatch is ready.\n"
 """What is written before the first reply."""

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -14,25 +13,19 @@ from ..mesh.closest_points import ClosestPoints, facing
 from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.connectivity.triangle_components import triangle_components
+from ..mesh.surface_map import SurfaceMap
 from ..mesh.triangle_mesh import TriangleMesh
-from ..repair.clean_surface import StandIn
+from ..repair.clean_surface import CleanSurface, StandIn, SurfacePart
 from ..repair.cleaning import clean
 from ..repair.cleaning_notes import cleaning_notes
 from ..repair.gap_bridges import bridged
 from ..repair.solid_indicator import solid_indicator
 from ..repair.surface_nets import surface_net
+from ..runtime.arrays import Bools, Ints
 from ..runtime.errors import MeshError
 from ..runtime.progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.surface_map import SurfaceMap
-    from ..repair.clean_surface import CleanSurface, SurfacePart
-
-__all__ = ["joined_shapes_steps", "joined_steps", "separate_limbs", "with_limbs_steps"]
 
 _BESIDE = 0.02
 """How far from what is known already, in sqrt(area), a piece goes on beyond it: eyes, teeth and clothes do not."""
@@ -67,12 +60,12 @@ _WIDEST = 0.06
 _LABEL = "Joining pieces"
 
 
-def separate_limbs(cleaned: CleanSurface) -> NDArray[np.bool_]:
+def separate_limbs(cleaned: CleanSurface) -> Bools:
     """Tell which vertices of a mesh, (n,), are of pieces that the main one lacks as a body: no eyes and no clothes."""
     return _taking_part(cleaned)[cleaned.vertex_parts] & (cleaned.vertex_parts > 0)
 
 
-def with_limbs_steps(shape: Shape, name: str, vertices: NDArray[np.int64]) -> Steps[Shape]:
+def with_limbs_steps(shape: Shape, name: str, vertices: Ints) -> Steps[Shape]:
     """Join the pieces of a body if some vertices of it are on limbs beside the main piece.
 
     Parameters
@@ -109,9 +102,7 @@ def with_limbs_steps(shape: Shape, name: str, vertices: NDArray[np.int64]) -> St
     return whole
 
 
-def joined_shapes_steps(
-    x: Shape, y: Shape, found: SurfaceMap, ends: tuple[NDArray[np.int64], NDArray[np.int64]]
-) -> Steps[tuple[Shape, Shape]]:
+def joined_shapes_steps(x: Shape, y: Shape, found: SurfaceMap, ends: tuple[Ints, Ints]) -> Steps[tuple[Shape, Shape]]:
     """Join the pieces of two bodies if a map takes the main piece of one to other pieces of the other.
 
     Parameters
@@ -202,7 +193,7 @@ def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Step
     )
 
 
-def _taking_part(cleaned: CleanSurface) -> NDArray[np.bool_]:
+def _taking_part(cleaned: CleanSurface) -> Bools:
     """Tell which pieces (p,) go on beyond those before them: the main one, and limbs if these matter."""
     pieces = cleaned.pieces
     areas = np.array([piece.mesh.area for piece in pieces])
@@ -221,7 +212,7 @@ def _taking_part(cleaned: CleanSurface) -> NDArray[np.bool_]:
     return taking_part
 
 
-def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> NDArray[np.bool_]:
+def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> Bools:
     """Tell which pieces (p,) lie on a surface, or near beneath it, for the most part."""
     tree, lying = cKDTree(mesh.vertices), np.zeros(len(pieces), bool)
     for number, piece in enumerate(pieces):
@@ -247,9 +238,9 @@ class _Body:
     """
 
     mesh: TriangleMesh
-    vertices: NDArray[np.int64]
-    triangles: NDArray[np.int64]
-    turned: NDArray[np.bool_]
+    vertices: Ints
+    triangles: Ints
+    turned: Bools
     solid: TriangleMesh
 
     @classmethod

@@ -3,18 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .shape import Shape
-
-__all__ = ["limb_tips", "mean_distances", "spread_extremities"]
+from ..runtime.arrays import Floats, Ints
+from .shape import Shape
 
 _REACH = 0.15
 """Distance, in sqrt(area), in which a tip is farther from the rest of the surface than all else."""
@@ -26,7 +19,7 @@ _FILLED = 0.3
 """Distance, in sqrt(area), from all others of a place that stands in where there are too few tips."""
 
 
-def limb_tips(shape: Shape) -> NDArray[np.int64]:
+def limb_tips(shape: Shape) -> Ints:
     """Find the ends of limbs, of ears, of tails: samples that are farther from the rest than all around them.
 
     Parameters
@@ -45,7 +38,7 @@ def limb_tips(shape: Shape) -> NDArray[np.int64]:
     return tips[np.argsort(-means[tips], kind="stable")][:_MOST_TIPS]
 
 
-def spread_extremities(shape: Shape, count: int, apart: float, *, filled: bool = True) -> NDArray[np.int64]:
+def spread_extremities(shape: Shape, count: int, apart: float, *, filled: bool = True) -> Ints:
     """Choose tips of different limbs; where there are too few, places far from all of them.
 
     Parameters
@@ -72,7 +65,7 @@ def spread_extremities(shape: Shape, count: int, apart: float, *, filled: bool =
     return np.array(chosen, np.int64)
 
 
-def mean_distances(shape: Shape) -> NDArray[np.float64]:
+def mean_distances(shape: Shape) -> Floats:
     """Mean distance of each sample from the whole surface, (S,)."""
-    means: NDArray[np.float64] = shape.sample_distances @ shape.cell_areas
+    means: Floats = shape.sample_distances @ shape.cell_areas
     return means / shape.cell_areas.sum()

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -15,17 +14,12 @@ from ..mesh.connectivity.boundary_loops import boundary_loops
 from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.triangle_mesh import TriangleMesh
+from ..repair.clean_surface import SurfacePart
 from ..repair.hole_filling import fill_holes
+from ..runtime.arrays import Ints
 from ..runtime.progress import Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..repair.clean_surface import SurfacePart
-
-__all__ = ["cut_along", "evened_steps"]
 
 _MOST = 6
 """Handles that are cut at most: a surface that has so many more, such as chain mail, has them on purpose."""
@@ -81,7 +75,7 @@ def _without_handles_steps(shape: Shape, count: int, name: str, other: str) -> S
     return Shape.of(replace(surface, cleaned=cleaned))
 
 
-def cut_along(part: SurfacePart, loop: NDArray[np.int64]) -> SurfacePart | None:
+def cut_along(part: SurfacePart, loop: Ints) -> SurfacePart | None:
     """Cut a surface open along a loop and close both sides.
 
     Parameters
@@ -128,7 +122,7 @@ def cut_along(part: SurfacePart, loop: NDArray[np.int64]) -> SurfacePart | None:
     )
 
 
-def _on_dense(proxy: Proxy, mesh: TriangleMesh, loop: NDArray[np.int64]) -> NDArray[np.int64]:
+def _on_dense(proxy: Proxy, mesh: TriangleMesh, loop: Ints) -> Ints:
     """Find the loop of a dense mesh (k',) that goes where one of its proxy does; nothing if there is none."""
     if proxy.is_identity:
         return loop

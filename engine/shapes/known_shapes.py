@@ -5,18 +5,14 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from hashlib import blake2b
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.sparse import issparse
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-    from .shape import Shape
-
-__all__ = ["KnownShapes"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools
+from .shape import Shape
 
 _LIMIT = 500
 """Megabytes by default: some ten bodies of 5,000 vertices, or one pair of a million."""
@@ -50,14 +46,14 @@ class KnownShapes:
         """Leave the shapes out."""
         return {"megabytes": self.megabytes, "_shapes": OrderedDict()}
 
-    def find(self, mesh: TriangleMesh, name: str, excluded: NDArray[np.bool_] | None) -> Shape | None:
+    def find(self, mesh: TriangleMesh, name: str, excluded: Bools | None) -> Shape | None:
         """Return the shape of a mesh by that name, and without these vertices (n,); None if it is not known."""
         key = _digest(mesh, name, excluded)
         if key in self._shapes:
             self._shapes.move_to_end(key)
         return self._shapes.get(key)
 
-    def keep(self, mesh: TriangleMesh, name: str, excluded: NDArray[np.bool_] | None, shape: Shape) -> None:
+    def keep(self, mesh: TriangleMesh, name: str, excluded: Bools | None, shape: Shape) -> None:
         """Keep the shape of a mesh."""
         if self.megabytes > 0:
             self._shapes[_digest(mesh, name, excluded)] = shape
@@ -68,7 +64,7 @@ class KnownShapes:
             self._shapes.popitem(last=False)
 
 
-def _digest(mesh: TriangleMesh, name: str, excluded: NDArray[np.bool_] | None) -> bytes:
+def _digest(mesh: TriangleMesh, name: str, excluded: Bools | None) -> bytes:
     """Tell meshes, and what is left out of them, apart."""
     digest = blake2b(f"{name} {mesh.vertex_count} {mesh.triangle_count} {excluded is not None}".encode())
     for array in (mesh.vertices, mesh.triangles, *(() if excluded is None else (np.asarray(excluded, bool),))):

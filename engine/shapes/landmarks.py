@@ -4,22 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import linear_sum_assignment
 
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Ints
 from ..runtime.errors import MatchError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-    from .prepared_surface import PreparedSurface
-    from .shape import Shape
-
-__all__ = ["LandmarkPlaces", "Landmarks", "landmark_pairs", "locate_landmarks", "placed_at_vertices"]
+from .prepared_surface import PreparedSurface
+from .shape import Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,9 +32,9 @@ class LandmarkPlaces:
         they are only near to the landmarks.
     """
 
-    original: NDArray[np.int64]
-    main: NDArray[np.int64]
-    matched: NDArray[np.int64]
+    original: Ints
+    main: Ints
+    matched: Ints
 
     def __len__(self) -> int:
         return len(self.original)
@@ -92,7 +87,7 @@ def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int) -> Landmar
     return Landmarks(_places(x.surface, source, "source"), _places(y.surface, target, "target"))
 
 
-def landmark_pairs(x: Shape, y: Shape, pairs: ArrayLike | None, most: int) -> NDArray[np.int64]:
+def landmark_pairs(x: Shape, y: Shape, pairs: ArrayLike | None, most: int) -> Ints:
     """Check what can be checked of landmarks before it is known which parts of the surfaces are matched.
 
     Parameters
@@ -129,9 +124,7 @@ def landmark_pairs(x: Shape, y: Shape, pairs: ArrayLike | None, most: int) -> ND
     return array
 
 
-def placed_at_vertices(
-    points: SurfacePoints, mesh: TriangleMesh, rows: NDArray[np.int64], vertices: NDArray[np.int64]
-) -> SurfacePoints:
+def placed_at_vertices(points: SurfacePoints, mesh: TriangleMesh, rows: Ints, vertices: Ints) -> SurfacePoints:
     """Put some points of a mesh, `rows` (q,), exactly at vertices (q,); each of these must have a triangle."""
     exact = SurfacePoints.at_vertices(mesh, vertices)
     triangles, barycentric = points.triangles.copy(), points.barycentric.copy()
@@ -139,7 +132,7 @@ def placed_at_vertices(
     return SurfacePoints.from_barycentric(mesh, triangles, barycentric)
 
 
-def _check_vertices(vertices: NDArray[np.int64], count: int, name: str) -> None:
+def _check_vertices(vertices: Ints, count: int, name: str) -> None:
     """Raise an error if vertices (k,) of a mesh of so many are named twice, or are none."""
     for bad in np.flatnonzero((vertices < 0) | (vertices >= count))[:1]:
         raise MatchError(
@@ -153,7 +146,7 @@ def _check_vertices(vertices: NDArray[np.int64], count: int, name: str) -> None:
         )
 
 
-def _places(surface: PreparedSurface, vertices: NDArray[np.int64], name: str) -> LandmarkPlaces:
+def _places(surface: PreparedSurface, vertices: Ints, name: str) -> LandmarkPlaces:
     """Find landmarks on one mesh, or raise an error."""
     for bad in np.flatnonzero(surface.cleaned.vertex_parts[vertices] != 0)[:1]:
         raise MatchError(
@@ -169,14 +162,14 @@ def _places(surface: PreparedSurface, vertices: NDArray[np.int64], name: str) ->
     return LandmarkPlaces(vertices, main, main if surface.proxy.is_identity else _on_proxy(surface, main))
 
 
-def _repeated(numbers: NDArray[np.int64]) -> list[tuple[int, int]]:
+def _repeated(numbers: Ints) -> list[tuple[int, int]]:
     """Places of the first two numbers that are the same, if there are any."""
     order = np.argsort(numbers, kind="stable")
     same = np.flatnonzero(np.diff(numbers[order]) == 0)[:1]
     return [(int(order[i]), int(order[i + 1])) for i in same]
 
 
-def _on_proxy(surface: PreparedSurface, main: NDArray[np.int64]) -> NDArray[np.int64]:
+def _on_proxy(surface: PreparedSurface, main: Ints) -> Ints:
     """Choose a vertex of the proxy for each vertex of the main part: the nearest, or one beside it if that is taken."""
     nearest = surface.proxy.points.nearest_vertices[main]
     if len(np.unique(nearest)) == len(nearest):

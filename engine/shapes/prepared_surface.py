@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,17 +12,12 @@ from ..mesh.closest_points import ClosestPoints
 from ..mesh.reflection import reflected_mesh, reflected_points, reflected_positions
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
+from ..repair.clean_surface import CleanSurface
 from ..repair.cleaning import clean
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..repair.clean_surface import CleanSurface
-
-__all__ = ["PreparedSurface", "prepared_steps"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +41,7 @@ class PreparedSurface:
     """
 
     original: TriangleMesh
-    kept_triangles: NDArray[np.int64]
+    kept_triangles: Ints
     cleaned: CleanSurface
     proxy: Proxy
     wanted: int
@@ -66,7 +60,7 @@ class PreparedSurface:
             is_reflected=not self.is_reflected,
         )
 
-    def as_given(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    def as_given(self, positions: Floats) -> Floats:
         """Find where points of the surface (k, 3) are on the mesh that was given, (k, 3), if this is its reflection."""
         return reflected_positions(positions) if self.is_reflected else positions
 
@@ -86,7 +80,7 @@ class PreparedSurface:
         return ClosestPoints(self.cleaned.mesh)
 
     @cached_property
-    def vertices(self) -> NDArray[np.int64]:
+    def vertices(self) -> Ints:
         """For each vertex of the surface that is matched, a vertex of the original: itself or the nearest, (k,)."""
         own = self.cleaned.main.original_vertices
         added = np.flatnonzero(own < 0)  # centres of holes
@@ -120,7 +114,7 @@ class PreparedSurface:
         found = ClosestPoints(self.mesh).walk(points.positions, starts)
         return SurfacePoints.from_barycentric(self.mesh, found.triangles, found.barycentric)
 
-    def mesh_vertices(self, vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+    def mesh_vertices(self, vertices: Ints) -> Ints:
         """Find the vertex of the surface that is matched that is nearest to each of some original ones (k,).
 
         Raises
@@ -136,7 +130,7 @@ class PreparedSurface:
         dense = self.cleaned.vertex_images[vertices]
         return dense if self.proxy.is_identity else self.proxy.points.nearest_vertices[dense]
 
-    def spread(self, values: NDArray[np.float64], outside: float) -> NDArray[np.float64]:
+    def spread(self, values: Floats, outside: float) -> Floats:
         """Carry functions on the surface that is matched to the vertices of the original mesh.
 
         Parameters
@@ -162,7 +156,7 @@ class PreparedSurface:
 
 
 def prepared_steps(
-    mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: NDArray[np.bool_] | None = None
+    mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: Bools | None = None
 ) -> Steps[PreparedSurface]:
     """Clean a mesh, and make a proxy of its main part where it is dense.
 

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.csgraph import connected_components
 
@@ -15,15 +16,11 @@ from ..mesh.closest_points import ClosestPoints
 from ..mesh.edge_splitting import split_longest_edges
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps, within
 from .remeshing.dual_triangulation import manifold_part
 from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
 from .remeshing.voronoi_regions import VoronoiRegions, spread_regions_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["Proxy", "proxy_steps"]
 
 _LARGE = 1.6  # times as many vertices as wanted: meshes with fewer stand for themselves
 _CELLS = 20.0  # cells for each vertex of the proxy: some where it is densest, and none ever joins two fingers
@@ -56,8 +53,8 @@ class Proxy:
 
     mesh: TriangleMesh
     points: SurfacePoints
-    vertices: NDArray[np.int64]
-    ends: NDArray[np.int64] | None = None
+    vertices: Ints
+    ends: Ints | None = None
 
     @property
     def is_identity(self) -> bool:
@@ -197,7 +194,7 @@ def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
     return TriangleMesh(np.concatenate([mesh.vertices, centres[small]]), np.concatenate([mesh.triangles, fans]))
 
 
-def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: NDArray[np.int64]) -> Steps[Proxy]:
+def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: Ints) -> Steps[Proxy]:
     """Make a proxy of the kept triangles of a triangulation, and fit it to the mesh."""
     cells = regions.cells
     used, triangles = np.unique(regions.dual.triangles[kept], return_inverse=True)
@@ -240,7 +237,7 @@ def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: NDArray[np.int64]
     return Proxy(coarse, SurfacePoints.from_barycentric(coarse, where, barycentric), vertices)
 
 
-def _first_positions(regions: VoronoiRegions) -> NDArray[np.float64]:
+def _first_positions(regions: VoronoiRegions) -> Floats:
     """Seeds' positions (k, 3), but for regions at open boundaries that of the nearest place there.
 
     Else a triangulation dual to regions would end half a region before the boundary.
@@ -253,12 +250,8 @@ def _first_positions(regions: VoronoiRegions) -> NDArray[np.float64]:
 
 
 def _fitted_positions(
-    search: ClosestPoints,
-    triangles: NDArray[np.int64],
-    barycentric: NDArray[np.float64],
-    wanted: NDArray[np.float64],
-    weights: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    search: ClosestPoints, triangles: Ints, barycentric: Floats, wanted: Floats, weights: Floats
+) -> Floats:
     """Positions of the vertices, (k, 3), so that points of the surface come as near to where they are wanted as can be.
 
     The points, (s,), are given by triangles and coordinates, with positions `wanted`, (s, 3), and weights, (s,).

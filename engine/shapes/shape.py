@@ -5,24 +5,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.geodesics import GeodesicSolver
 from ..geometry.laplacian import LaplaceBeltrami, laplace_beltrami
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.progress import Steps, run
 from .prepared_surface import PreparedSurface, prepared_steps
 from .proxy import Proxy
 from .surface_samples import SurfaceSampler, SurfaceSamples
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["Shape"]
 
 _FEW = 0.4
 """Part of the vertices wanted from which on a surface gains little by more where it is registered."""
@@ -101,11 +96,7 @@ class Shape:
     """See `parallel_map.shared_steps`; true of `lean` ones, which do not change any more."""
 
     def __init__(
-        self,
-        mesh: TriangleMesh,
-        name: str = "mesh",
-        proxy_vertices: int = 5000,
-        excluded: NDArray[np.bool_] | None = None,
+        self, mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: Bools | None = None
     ) -> None:
         surface = run(prepared_steps(mesh, name, proxy_vertices, excluded))
         self._start(_Operators(surface.mesh, GeodesicSolver(surface.mesh), surface))
@@ -116,11 +107,7 @@ class Shape:
 
     @classmethod
     def steps(
-        cls,
-        mesh: TriangleMesh,
-        name: str = "mesh",
-        proxy_vertices: int = 5000,
-        excluded: NDArray[np.bool_] | None = None,
+        cls, mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: Bools | None = None
     ) -> Steps[Shape]:
         """Make a shape in steps: for dense meshes that takes seconds."""
         return cls.of((yield from prepared_steps(mesh, name, proxy_vertices, excluded)))
@@ -168,7 +155,7 @@ class Shape:
         return self.taken.measured
 
     @property
-    def samples(self) -> NDArray[np.int64]:
+    def samples(self) -> Ints:
         """Vertices of the samples, farthest points first, (S,)."""
         return self.taken.vertices
 
@@ -178,22 +165,22 @@ class Shape:
         return self.taken.rows
 
     @property
-    def cell_areas(self) -> NDArray[np.float64]:
+    def cell_areas(self) -> Floats:
         """Area of each sample's Voronoi cell as a part of the whole, (S,)."""
         return self.taken.cell_areas
 
     @property
-    def sample_distances(self) -> NDArray[np.float64]:
+    def sample_distances(self) -> Floats:
         """Distances between the samples, (S, S), symmetric with a zero diagonal."""
         return self.taken.distances
 
     @property
-    def directions(self) -> NDArray[np.float64]:
+    def directions(self) -> Floats:
         """Unit direction at each sample in which the distance from each sample grows, (S at, S from, 2)."""
         return self.taken.directions
 
     @property
-    def curvatures(self) -> NDArray[np.float64]:
+    def curvatures(self) -> Floats:
         """Mean curvature at each sample, smoothed at two scales, (2, S)."""
         return self.taken.curvatures
 
@@ -251,7 +238,7 @@ class Shape:
             view = self._views[count, measured] = self._made(self._operators, self._sampler, samples)
         return view
 
-    def starting_with(self, vertices: NDArray[np.int64]) -> Shape:
+    def starting_with(self, vertices: Ints) -> Shape:
         """Return the shape with samples of its own, the first of which are given vertices (k,) of `mesh`.
 
         All else that was computed is shared.
@@ -341,7 +328,6 @@ class Shape:
             raise RuntimeError("The spectrum was not computed: run spectrum_steps first.")
         return self._operators.spectrum
 
-    def unit_functions(self, count: int | None = None) -> NDArray[np.float64]:
+    def unit_functions(self, count: int | None = None) -> Floats:
         """First eigenfunctions at all vertices, in units in which the area is one, (n, count), or all."""
-        functions: NDArray[np.float64] = self.spectrum.functions[:, :count] * np.sqrt(self.laplace.area)
-        return functions
+        return self.spectrum.functions[:, :count] * np.sqrt(self.laplace.area)

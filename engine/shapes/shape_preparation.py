@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.laplacian import LaplaceBeltrami
 from ..runtime.parallel_map import shared_steps
-
-if TYPE_CHECKING:
-    from ..runtime.progress import Steps
-    from .shape import Shape
-    from .surface_samples import SurfaceSampler
-
-__all__ = ["Wanted", "finer_shapes", "finer_shapes_steps", "prepared_shapes_steps"]
+from ..runtime.progress import Steps
+from .shape import Shape
+from .surface_samples import SurfaceSampler
 
 
 class Wanted(NamedTuple):

@@ -3,34 +3,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..geometry.geodesics import GeodesicSolver
 from ..geometry.squared_differences import squared_differences
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run, within
 from .shape import Shape
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..geometry.geodesics import GeodesicSolver
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = [
-    "EmbeddedDistances",
-    "PointDistances",
-    "SurfaceDistances",
-    "distances_to_vertices_steps",
-    "measured_steps",
-    "squared_offsets",
-    "symmetric_roots",
-    "to_all_vertices_steps",
-]
 
 _MEMORY = 256_000_000  # bytes of rows that are kept
 _PARTED = 32  # sources from which on distances are computed in two parts, one of them by a helper if there is one
@@ -50,19 +37,19 @@ class PointDistances(Protocol):
     def prepare_steps(self, points: SurfacePoints) -> Steps[None]:
         """Compute what the other methods need for some points, in short steps."""
 
-    def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def squares_to_vertices(self, points: SurfacePoints, vertices: Ints) -> Floats:
         """Squared distances from points (k,), prepared, to vertices (v,): (k, v)."""
 
-    def squares_between(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def squares_between(self, points: SurfacePoints) -> Floats:
         """Squared distances between points (k,), prepared: (k, k)."""
 
     def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
         """Compute what `squares_by_nearest` needs for some points, in short steps: less than `prepare_steps` does."""
 
-    def squares_by_nearest(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def squares_by_nearest(self, points: SurfacePoints) -> Floats:
         """Squared distances between points (k,) far from each other: almost those of `squares_between`."""
 
-    def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    def squared_sides(self, triangles: Ints) -> Floats:
         """Squared lengths, in this metric, of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
 
 
@@ -125,7 +112,7 @@ class SurfaceDistances:
         """Compute the rows of the vertices nearest to some points, a third of all that `prepare_steps` computes."""
         yield from self.prepare_steps(SurfacePoints.at_vertices(self.mesh, points.nearest_vertices))
 
-    def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def squares_to_vertices(self, points: SurfacePoints, vertices: Ints) -> Floats:
         """Squared distances from points (k,), prepared, to vertices (v,) of the part: (k, v).
 
         They can be slightly negative close to a point.
@@ -134,7 +121,7 @@ class SurfaceDistances:
         rows = self._gather(corners, vertices)
         return weights @ np.square(rows, out=rows) - self._offsets(points)[:, None]
 
-    def squares_between(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def squares_between(self, points: SurfacePoints) -> Floats:
         """Squared distances between points (k,), prepared: (k, k).
 
         Entry (i, j) follows the rows of point i; that of (j, i) differs by the error of fast marching.  Both can be
@@ -146,7 +133,7 @@ class SurfaceDistances:
         np.square(square, out=square)
         return (weights @ (weights @ square).T).T - offsets[:, None] - offsets
 
-    def squares_by_nearest(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def squares_by_nearest(self, points: SurfacePoints) -> Floats:
         r"""Squared distances between points (k,), of which only the nearest vertices are prepared: (k, k).
 
         From the nearest vertices p' and q', by :math:`d^2(p, q) = d^2(p', q) + d^2(p, q') - d^2(p', q')`.  In the plane
@@ -158,24 +145,24 @@ class SurfaceDistances:
         mixed = (weights @ rows.T).T - self._offsets(points)  # from the vertex nearest to i to point j
         return mixed + mixed.T - rows[:, np.searchsorted(corners, nearest)]
 
-    def between(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def between(self, points: SurfacePoints) -> Floats:
         """Distances between points (k,), prepared: (k, k), symmetric with a zero diagonal."""
         return symmetric_roots(self.squares_between(points))
 
-    def to_all_vertices(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def to_all_vertices(self, points: SurfacePoints) -> Floats:
         """Distances from points (k,), prepared, to all vertices of the whole surface, in units of the mesh: (k, n)."""
         shape = self._shape
         squares = self.squares_to_vertices(points, np.arange(self.mesh.vertex_count))
         return shape.surface.spread(np.sqrt(np.maximum(squares, 0)) * shape.scale, np.inf)
 
-    def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    def squared_sides(self, triangles: Ints) -> Floats:
         """Squared lengths of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
         return _squared_sides(self.mesh.vertices, self.mesh.triangles[triangles]) / self._unit
 
-    def _offsets(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def _offsets(self, points: SurfacePoints) -> Floats:
         return squared_offsets(points.barycentric, self.squared_sides(points.triangles))
 
-    def _gather(self, sources: NDArray[np.int64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def _gather(self, sources: Ints, vertices: Ints) -> Floats:
         """Distances from prepared vertices (s,) to vertices (v,), (s, v)."""
         measured = slice(self._shape.measured_count)
         number = dict(zip(self._shape.samples[measured].tolist(), self._shape.sample_rows[measured], strict=True))
@@ -187,7 +174,7 @@ class SurfaceDistances:
 
 
 @can_go_beside
-def distances_to_vertices_steps(mesh: TriangleMesh, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
+def distances_to_vertices_steps(mesh: TriangleMesh, points: SurfacePoints) -> Steps[Floats]:
     """Measure the distances from points of a mesh to all its vertices, as a match does.
 
     Parameters
@@ -207,7 +194,7 @@ def distances_to_vertices_steps(mesh: TriangleMesh, points: SurfacePoints) -> St
     return (yield from within(to_all_vertices_steps(SurfaceDistances(shape), own), 0.2, 1.0))
 
 
-def to_all_vertices_steps(metric: SurfaceDistances, points: SurfacePoints) -> Steps[NDArray[np.float64]]:
+def to_all_vertices_steps(metric: SurfaceDistances, points: SurfacePoints) -> Steps[Floats]:
     """Measure the distances from points to every vertex of the whole surface.
 
     Parameters
@@ -240,7 +227,7 @@ class EmbeddedDistances:
         Where its vertices lie.
     """
 
-    def __init__(self, mesh: TriangleMesh, coordinates: NDArray[np.float64]) -> None:
+    def __init__(self, mesh: TriangleMesh, coordinates: Floats) -> None:
         self.mesh = mesh
         self._coordinates = coordinates
 
@@ -252,32 +239,32 @@ class EmbeddedDistances:
         """Do nothing, as `prepare_steps`."""
         yield from self.prepare_steps(points)
 
-    def squares_by_nearest(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def squares_by_nearest(self, points: SurfacePoints) -> Floats:
         """Squared distances between points (k,): (k, k); exact ones."""
         return self.squares_between(points)
 
-    def squares_to_vertices(self, points: SurfacePoints, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def squares_to_vertices(self, points: SurfacePoints, vertices: Ints) -> Floats:
         """Squared distances from points (k,) to vertices (v,): (k, v)."""
         return squared_differences(points.interpolate(self._coordinates), self._coordinates[vertices])
 
-    def squares_between(self, points: SurfacePoints) -> NDArray[np.float64]:
+    def squares_between(self, points: SurfacePoints) -> Floats:
         """Squared distances between points (k,): (k, k)."""
         places = points.interpolate(self._coordinates)
         return squared_differences(places, places)
 
-    def squared_sides(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    def squared_sides(self, triangles: Ints) -> Floats:
         """Squared lengths of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
         return _squared_sides(self._coordinates, self.mesh.triangles[triangles])
 
 
-def symmetric_roots(squares: NDArray[np.float64]) -> NDArray[np.float64]:
+def symmetric_roots(squares: Floats) -> Floats:
     """Turn squared distances (k, k) into distances, equal in both directions and zero from a point to itself."""
     roots = np.sqrt(np.maximum((squares + squares.T) / 2, 0))
     np.fill_diagonal(roots, 0)
     return roots
 
 
-def squared_offsets(barycentric: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+def squared_offsets(barycentric: Floats, sides: Floats) -> Floats:
     """By how much linear interpolation overestimates squared distances at barycentric coordinates (..., 3): (...).
 
     `sides`, (..., 3), are the squared lengths of the sides 01, 02, 12.
@@ -286,13 +273,13 @@ def squared_offsets(barycentric: NDArray[np.float64], sides: NDArray[np.float64]
     return a * b * sides[..., 0] + a * c * sides[..., 1] + b * c * sides[..., 2]
 
 
-def _squared_sides(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+def _squared_sides(vertices: Floats, triangles: Ints) -> Floats:
     """Squared lengths of the sides 01, 02, 12 of triangles (q, 3) of vertices (n, d): (q, 3)."""
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     return np.stack([np.square(q - p).sum(axis=1) for p, q in ((a, b), (a, c), (b, c))], axis=1)
 
 
-def _weights(points: SurfacePoints) -> tuple[NDArray[np.int64], csr_array]:
+def _weights(points: SurfacePoints) -> tuple[Ints, csr_array]:
     """List the corners that have weight in some points (k,): vertices (u,), and the weights (k, u)."""
     counts = points.barycentric > 0
     corners, column = np.unique(points.corners[counts], return_inverse=True)
@@ -300,7 +287,7 @@ def _weights(points: SurfacePoints) -> tuple[NDArray[np.int64], csr_array]:
     return corners, csr_array((points.barycentric[counts], column, ends), shape=(len(points), len(corners)))
 
 
-def measured_steps(_: None, given: tuple[GeodesicSolver, NDArray[np.int64]]) -> Steps[NDArray[np.float64]]:
+def measured_steps(_: None, given: tuple[GeodesicSolver, Ints]) -> Steps[Floats]:
     """Compute the distances (s, n) from some sources (s,) to all vertices, where `shared_steps` has it done."""
     solver, sources = given
     rows = []

@@ -5,23 +5,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 
+from ..geometry.geodesics import GeodesicSolver
 from ..geometry.mean_curvature import smoothed_mean_curvature
 from ..geometry.orientation import tangent_gradient
 from ..geometry.sampling import FarthestPointSampler
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..geometry.geodesics import GeodesicSolver
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["SurfaceSampler", "SurfaceSamples"]
 
 _CURVATURE_RADII = (0.02, 0.03)  # in units of sqrt(area): on a person, some fingers wide
 
@@ -49,7 +44,7 @@ class SurfaceSamples:
     """
 
     mesh: TriangleMesh
-    vertices: NDArray[np.int64]
+    vertices: Ints
     rows: NDArray[np.float32]
     measured: int
 
@@ -65,12 +60,12 @@ class SurfaceSamples:
         return replace(self, mesh=mesh)
 
     @cached_property
-    def cell_areas(self) -> NDArray[np.float64]:
+    def cell_areas(self) -> Floats:
         """Area of each sample's Voronoi cell as a part of the whole, (S,)."""
         return np.bincount(self.rows.argmin(axis=0), self.mesh.vertex_areas, len(self)) / self.mesh.area
 
     @cached_property
-    def distances(self) -> NDArray[np.float64]:
+    def distances(self) -> Floats:
         """Distances between the samples, (S, S), symmetric with a zero diagonal."""
         square = self.rows[:, self.vertices].astype(np.float64)
         measured = self.measured
@@ -80,7 +75,7 @@ class SurfaceSamples:
         return square
 
     @cached_property
-    def directions(self) -> NDArray[np.float64]:
+    def directions(self) -> Floats:
         """Unit direction at each sample in which the distance from each sample grows, (S at, S from, 2)."""
         gradient = tangent_gradient(self.mesh, self.vertices) @ self.rows.T.astype(np.float64)
         planar = gradient.reshape(len(self), 2, -1).transpose(0, 2, 1)
@@ -88,7 +83,7 @@ class SurfaceSamples:
         return np.divide(planar, lengths, out=np.zeros_like(planar), where=lengths > 0)
 
     @cached_property
-    def curvatures(self) -> NDArray[np.float64]:
+    def curvatures(self) -> Floats:
         """Mean curvature at each sample, smoothed at two scales, (2, S)."""
         scale = float(np.sqrt(self.mesh.area))
         distances = self.rows * scale
@@ -113,7 +108,7 @@ class SurfaceSampler:
         The samples so far from which distances were measured.
     """
 
-    def __init__(self, mesh: TriangleMesh, solver: GeodesicSolver, start: NDArray[np.int64] | None = None) -> None:
+    def __init__(self, mesh: TriangleMesh, solver: GeodesicSolver, start: Ints | None = None) -> None:
         self._mesh, self._solver, self._start = mesh, solver, start
         self._paths: dict[int, NDArray[np.float32]] = {}
         self.taken = SurfaceSamples(mesh, np.empty(0, np.int64), np.empty((0, mesh.vertex_count), np.float32), 0)

@@ -198,7 +198,7 @@ def fitted_copy(
     if keys is None:
         return copy, []
     theirs = [found for part in (largest, *parts_of(target)) if (found := keys_of(part)) is not None]
-    every = {mine: (other,) for mine, other in places.items()}
+    every: dict[bpy.types.ID, tuple[bpy.types.ID, ...]] = {mine: (other,) for mine, other in places.items()}
     every |= {found: tuple(theirs) for part in parts_of(source) if (found := keys_of(part)) is not None}
     return copy, point_key_drivers(keys, every)
 

@@ -117,7 +117,7 @@ def unpacked_match(content: bytes) -> MatchFile:
     ObjectError
         If it was not made by that.
     """
-    return _checked("The kept match", _read_npz, content)
+    return _checked("kept match", _read_npz, content)
 
 
 def load_match(path: Path) -> MatchFile:
@@ -133,7 +133,7 @@ def load_match(path: Path) -> MatchFile:
         content = path.read_bytes()
     except OSError as error:
         raise ObjectError(f'"{path}" cannot be read: {error.strerror or error}.') from error
-    return _checked(f'"{path.name}"', read, content)
+    return _checked(path.name, read, content)
 
 
 def _checked(name: str, read: Callable[[bytes], tuple[Any, dict[str, NDArray[Any]]]], content: bytes) -> MatchFile:
@@ -141,14 +141,14 @@ def _checked(name: str, read: Callable[[bytes], tuple[Any, dict[str, NDArray[Any
     try:
         header, arrays = read(content)
         if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise ObjectError(f"{name} is no match that HierMatch has exported. Choose another file.")
+            raise ObjectError(f'"{name}" is no match that HierMatch has exported. Choose another file.')
         if header.get("version") != VERSION:
-            raise ObjectError(f"{name} was exported by a later version of HierMatch. Update the add-on.")
+            raise ObjectError(f'"{name}" was exported by a later version of HierMatch. Update the add-on.')
         return _match_of(header, arrays)
     except HierMatchError:
         raise
     except _BAD_FILE as error:
-        raise ObjectError(f"{name} is damaged or no match file: {error}. Export the match again.") from error
+        raise ObjectError(f'"{name}" is damaged or no match file: {error}. Export the match again.') from error
 
 
 def _kind_of(path: Path) -> str:

@@ -83,7 +83,7 @@ class WrapTransfer:
             if self._settings.result == "KEY":
                 check_writable(part)
                 check_keys_writable(part, self._names(other.name))
-            self._from_world.append(np.linalg.inv(rest_matrix(part) or world_matrix(context, part)))
+            self._from_world.append(np.linalg.inv(np.array(rest_matrix(part) or world_matrix(context, part))))
         parts = parts_of(moved)
         if self._settings.result == "OBJECT" and any(mesh_of(part).has_custom_normals for part in parts):
             turned = zip(parts, self._from_world, strict=True)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -16,15 +15,10 @@ from ...mesh.closest_points import ClosestPoints, FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import DeformableSurface
 from ...registration.registration import FINE, LAST, Stage, register_steps
+from ...runtime.arrays import Floats, Ints
 from ...runtime.progress import Steps, within
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .component_pairs import PartPair
-    from .similarity_field import Surroundings
-
-__all__ = ["laid_onto_steps"]
+from .component_pairs import PartPair
+from .similarity_field import Surroundings
 
 _NORMAL_LENGTH = 0.25
 """How many radii a unit of difference of the normals counts: it tells the two sides of a thin part from each other."""
@@ -61,8 +55,8 @@ class _Motion:
     It leaves a mean squared distance, in radii; it costs more where what touches the surroundings does not stay there.
     """
 
-    rotation: NDArray[np.float64]
-    centre: NDArray[np.float64]
+    rotation: Floats
+    centre: Floats
     distance: float
     cost: float
 
@@ -132,7 +126,7 @@ def laid_onto_steps(
     return _closest(partner, placed, normals, pair.radius)
 
 
-def _turned(pair: PartPair) -> list[NDArray[np.float64]]:
+def _turned(pair: PartPair) -> list[Floats]:
     """Rotations of a part that has swung about where it touches its surroundings, by all angles about its direction."""
     swung, arm = pair.rotations[-1], pair.centres[1] - pair.joint
     axis = arm / np.maximum(np.linalg.norm(arm), np.finfo(float).tiny)
@@ -140,30 +134,24 @@ def _turned(pair: PartPair) -> list[NDArray[np.float64]]:
     return list(Rotation.from_rotvec(angles[:, None] * axis).as_matrix() @ swung)
 
 
-def _placed(
-    part: TriangleMesh, pair: PartPair, rotation: NDArray[np.float64], centre: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _placed(part: TriangleMesh, pair: PartPair, rotation: Floats, centre: Floats) -> Floats:
     """Vertices of the part where a motion takes them, (n, 3)."""
     return centre + pair.ratio * (part.vertices - pair.centres[0]) @ rotation.T
 
 
-def _strayed(pair: PartPair, placed: NDArray[np.float64]) -> float:
+def _strayed(pair: PartPair, placed: Floats) -> float:
     """By what factor a placement (n, 3) is less credible for having moved what touches the surroundings away."""
     away = placed[pair.touching].mean(axis=0) - pair.joint
     return float(1 + (away @ away) / pair.radius**2)
 
 
-def _cost(distance: float, pair: PartPair, placed: NDArray[np.float64]) -> float:
+def _cost(distance: float, pair: PartPair, placed: Floats) -> float:
     """Tell what a placement (n, 3) at this mean squared distance costs, in square radii."""
     return (distance + _RIGID**2) * _strayed(pair, placed)
 
 
 def _deformed_steps(
-    part: TriangleMesh,
-    partner: TriangleMesh,
-    pair: PartPair,
-    starts: list[NDArray[np.float64]],
-    stages: tuple[Stage, ...],
+    part: TriangleMesh, partner: TriangleMesh, pair: PartPair, starts: list[Floats], stages: tuple[Stage, ...]
 ) -> Steps[FoundPoints]:
     """Deform a part onto its partner from each of some positions (n, 3), and take the most credible result."""
     source, target = (DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (part, partner))
@@ -176,7 +164,7 @@ def _deformed_steps(
     return found[int(np.argmin(costs))]
 
 
-def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: NDArray[np.float64]) -> _Motion:
+def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: Floats) -> _Motion:
     """Move a part to where it is closest to its partner, beginning with a rotation, centre on centre."""
     handed = float(np.sign(np.linalg.det(rotation)))
     here, centre = _points(part, part.vertices, part.vertex_normals, aim.most), pair.centres[1]
@@ -203,12 +191,12 @@ def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: NDArray[np
 class _Points:
     """Some vertices of a mesh, the normals there, and shares of the area."""
 
-    places: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    shares: NDArray[np.float64]
+    places: Floats
+    normals: Floats
+    shares: Floats
 
 
-def _points(mesh: TriangleMesh, places: NDArray[np.float64], normals: NDArray[np.float64], most: int) -> _Points:
+def _points(mesh: TriangleMesh, places: Floats, normals: Floats, most: int) -> _Points:
     """Take evenly numbered vertices, so many at most, of a mesh that has been moved to places and normals (n, 3)."""
     chosen = np.linspace(0, mesh.vertex_count - 1, min(mesh.vertex_count, most)).astype(int)
     areas = mesh.vertex_areas[chosen] + 1e-9 * mesh.area
@@ -225,7 +213,7 @@ class _Aim:
         self._features = self._located(self.points)
         self._tree = cKDTree(self._features)
 
-    def found(self, points: _Points) -> tuple[float, NDArray[np.int64], NDArray[np.int64]]:
+    def found(self, points: _Points) -> tuple[float, Ints, Ints]:
         """Return the mean squared distance in radii, both ways, of points from here, and which ones are the closest.
 
         These are indices into `points` of the partner for each of the given ones, and the other way round.
@@ -237,15 +225,13 @@ class _Aim:
         squares += self.points.shares @ np.square(back[:, :3]).sum(axis=1)
         return float(squares) / 2, images, origins
 
-    def _located(self, points: _Points) -> NDArray[np.float64]:
+    def _located(self, points: _Points) -> Floats:
         """Places in radii, and normals, (k, 6)."""
         places = (points.places - self._pair.centres[1]) / self._pair.radius
         return np.concatenate([places, _NORMAL_LENGTH * points.normals], axis=1)
 
 
-def _closest(
-    partner: TriangleMesh, points: NDArray[np.float64], normals: NDArray[np.float64], radius: float
-) -> FoundPoints:
+def _closest(partner: TriangleMesh, points: Floats, normals: Floats, radius: float) -> FoundPoints:
     """Find the closest points of a part that look to the same side."""
     length = _NORMAL_LENGTH * radius
     return ClosestPoints(partner).nearest(points, normals, normal_length=length, normal_weight=4 * length**2)

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -13,22 +13,13 @@ from scipy.spatial import cKDTree
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
+from ...repair.clean_surface import CleanSurface, SurfacePart
+from ...runtime.arrays import Floats, Ints
 from ...runtime.progress import Progress, Steps, within
-from .attached_sheets import mapped_sheets
+from .attached_sheets import MappedSheets, mapped_sheets
 from .component_alignment import laid_onto_steps
-from .component_pairs import contact_with, paired_parts
+from .component_pairs import Contact, contact_with, paired_parts
 from .similarity_field import Surroundings
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from ...repair.clean_surface import CleanSurface, SurfacePart
-    from .attached_sheets import MappedSheets
-    from .component_pairs import Contact
-
-__all__ = ["FollowedMap", "follow_steps"]
 
 _TRUSTED_DISTANCE = 0.05
 """Distance from what is followed at which confidence is halved, in units of the root of the main part's area."""
@@ -69,9 +60,9 @@ class FollowedMap:
     """
 
     points: SurfacePoints
-    confidence: NDArray[np.float64]
-    surroundings: NDArray[np.int64]
-    partners: NDArray[np.int64]
+    confidence: Floats
+    surroundings: Ints
+    partners: Ints
     alone: float
 
 
@@ -179,9 +170,7 @@ class _Mapped:
         """Find where a part of Y is next to what these are mapped to."""
         return contact_with(self._tree.query(part.vertices)[0], part)
 
-    def carried(
-        self, points: NDArray[np.float64], distances: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def carried(self, points: Floats, distances: Floats) -> tuple[Ints, Floats]:
         """Take points (k, 3), at distances (k,), along: triangles of the other original mesh (k,), and (k, 3) there."""
         moved = self.around.similarities(points, distances)(points)
         _, nearest = self.around.nearest(points)
@@ -254,8 +243,8 @@ class _PartMaps:
 
 
 def _by_what_they_follow(
-    vertices: NDArray[np.float64], alone: NDArray[np.int64], distances: NDArray[np.float64], followed: list[_Mapped]
-) -> list[tuple[NDArray[np.int64], NDArray[np.float64], _Mapped]]:
+    vertices: Floats, alone: Ints, distances: Floats, followed: list[_Mapped]
+) -> list[tuple[Ints, Floats, _Mapped]]:
     """Group vertices by what they follow, with the distances from that: the main part, or others that are nearer."""
     if len(followed) == 1 or not len(alone):
         return [(alone, distances, followed[0])] if len(alone) else []

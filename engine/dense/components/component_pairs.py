@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -13,15 +13,9 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .similarity_field import Surroundings
-
-__all__ = ["Contact", "PartPair", "contact_with", "paired_parts"]
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
+from .similarity_field import Surroundings
 
 _LARGEST_OFFSET = 1.5
 """How far from where it is expected a partner may be, in sums of the two radii."""
@@ -66,8 +60,8 @@ _NOT_POSSIBLE = 20.0
 class Contact:
     """Where a part is next to its surroundings: the vertices that touch (v,), their middle (3,), and the distance."""
 
-    vertices: NDArray[np.int64]
-    place: NDArray[np.float64]
+    vertices: Ints
+    place: Floats
     gap: float
 
 
@@ -95,22 +89,22 @@ class PartPair:
 
     part: int
     partner: int
-    rotations: list[NDArray[np.float64]]
+    rotations: list[Floats]
     ratio: float
     radius: float
-    centres: tuple[NDArray[np.float64], NDArray[np.float64]]
-    touching: NDArray[np.int64]
-    joint: NDArray[np.float64]
+    centres: tuple[Floats, Floats]
+    touching: Ints
+    joint: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class _Extents:
     """Centres (p, 3), areas (p,), root mean square radii (p,) and widths along the main axes in radii (p, 3)."""
 
-    centres: NDArray[np.float64]
-    areas: NDArray[np.float64]
-    radii: NDArray[np.float64]
-    widths: NDArray[np.float64]
+    centres: Floats
+    areas: Floats
+    radii: Floats
+    widths: Floats
 
     @classmethod
     def of(cls, parts: Sequence[TriangleMesh]) -> _Extents:
@@ -143,7 +137,7 @@ def _length(part: TriangleMesh) -> float:
     return max(length / np.sqrt(part.area), _TINY)
 
 
-def contact_with(distances: NDArray[np.float64], part: TriangleMesh) -> Contact:
+def contact_with(distances: Floats, part: TriangleMesh) -> Contact:
     """Find where a part is next to its surroundings by the distances (n,) of its vertices from there."""
     touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * _radius(part))
     return Contact(touching, part.vertices[touching].mean(axis=0), float(distances.min()))
@@ -154,7 +148,7 @@ def paired_parts(
     there: tuple[Sequence[TriangleMesh], Sequence[Contact]],
     around: Surroundings,
     unit: float,
-    large: NDArray[np.bool_],
+    large: Bools,
 ) -> list[PartPair]:
     """Find which parts of X and Y belong together.
 
@@ -214,10 +208,7 @@ def paired_parts(
         PartPair(
             int(i),
             int(j),
-            [
-                similarities.rotations[i],
-                _swung(near.rotations[i], x.centres[i] - places[i], y.centres[j] - joints[i]),
-            ],
+            [similarities.rotations[i], _swung(near.rotations[i], x.centres[i] - places[i], y.centres[j] - joints[i])],
             float(y.radii[j] / x.radii[i]),
             float(y.radii[j]),
             (x.centres[i], y.centres[j]),
@@ -230,8 +221,8 @@ def paired_parts(
 
 
 def _worn(
-    parts: Sequence[TriangleMesh], partners: Sequence[TriangleMesh], around: Surroundings, large: NDArray[np.bool_]
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    parts: Sequence[TriangleMesh], partners: Sequence[TriangleMesh], around: Surroundings, large: Bools
+) -> tuple[Floats, Bools]:
     """Compare large parts with partners as every point goes with what is nearest: the difference, (p, q), or infinity.
 
     And tell which of them lie on their surroundings everywhere, (p,): where these go is known, so nothing else will do.
@@ -254,7 +245,7 @@ def _worn(
     return difference, lying
 
 
-def _some(part: TriangleMesh) -> NDArray[np.int64]:
+def _some(part: TriangleMesh) -> Ints:
     """Choose some vertices, evenly numbered."""
     return np.linspace(0, part.vertex_count - 1, min(part.vertex_count, _WORN_POINTS)).astype(np.int64)
 
@@ -264,7 +255,7 @@ def _radius(part: TriangleMesh) -> float:
     return float(np.sqrt(np.square(part.vertices - part.vertices.mean(axis=0)).sum(axis=1).mean()))
 
 
-def _swung(rotation: NDArray[np.float64], arm: NDArray[np.float64], there: NDArray[np.float64]) -> NDArray[np.float64]:
+def _swung(rotation: Floats, arm: Floats, there: Floats) -> Floats:
     """Turn an arm (3,) as a rotation does, and then the shortest way to the direction where it is there (3,)."""
     turned = rotation @ arm
     lengths = np.linalg.norm(turned) * np.linalg.norm(there)
@@ -273,5 +264,4 @@ def _swung(rotation: NDArray[np.float64], arm: NDArray[np.float64], there: NDArr
     if not sine > 0:
         return rotation
     angle = np.arctan2(sine / lengths, turned @ there / lengths)
-    swung: NDArray[np.float64] = Rotation.from_rotvec(angle * axis / sine).as_matrix() @ rotation
-    return swung
+    return Rotation.from_rotvec(angle * axis / sine).as_matrix() @ rotation

@@ -4,23 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ...mesh.surface_points import SurfacePoints
+from ...repair.clean_surface import CleanSurface
+from ...runtime.arrays import Floats
 from ...runtime.progress import Progress, Steps, within
 from ..missing_parts import round_trips
 from ..quality import map_confidence, trip_confidence
-from .component_maps import follow_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.surface_points import SurfacePoints
-    from ...repair.clean_surface import CleanSurface
-    from .component_maps import FollowedMap
-
-__all__ = ["WholeMap", "WholeMaps", "whole_maps_steps"]
+from .component_maps import FollowedMap, follow_steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +34,7 @@ class WholeMap:
     """
 
     points: SurfacePoints
-    confidence: NDArray[np.float64]
+    confidence: Floats
     alone: float
     share: float
 
@@ -59,7 +53,7 @@ def whole_maps_steps(
     back: SurfacePoints,
     *,
     credibility: float = 1.0,
-    doubts: tuple[NDArray[np.float64] | float, NDArray[np.float64] | float] = (0.0, 0.0),
+    doubts: tuple[Floats | float, Floats | float] = (0.0, 0.0),
 ) -> Steps[WholeMaps]:
     """Extend maps of the main parts to all vertices of the meshes.
 
@@ -96,9 +90,7 @@ def whole_maps_steps(
     return WholeMaps(forth, _judged(y, backward, forward, main_back, credibility))
 
 
-def _judged(
-    x: CleanSurface, forward: FollowedMap, backward: FollowedMap, main: NDArray[np.float64], credibility: float
-) -> WholeMap:
+def _judged(x: CleanSurface, forward: FollowedMap, backward: FollowedMap, main: Floats, credibility: float) -> WholeMap:
     """Say how far to trust a map of all vertices, by that of the main part, (k,), and by the way back."""
     confidence = forward.confidence * main[forward.surroundings]
     share = 1.0

@@ -4,19 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
-from ..quality import of_covered_part
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ..quality import MatchQuality
-
-__all__ = ["piece_of", "share_of", "with_piece_only", "with_pieces_only"]
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Ints
+from ..quality import MatchQuality, of_covered_part
 
 
 class _HasMaps(Protocol):
@@ -43,7 +36,7 @@ _LEAST_LEFT = 0.1
 """Part of a surface without a partner from which on it is left out: less does little harm, and may be a mistake."""
 
 
-def with_piece_only(maps: Maps, covered: NDArray[np.bool_], share: float, *, of_source: bool) -> Maps:
+def with_piece_only(maps: Maps, covered: Bools, share: float, *, of_source: bool) -> Maps:
     """Say of maps what was left out when they were made.
 
     Parameters
@@ -73,7 +66,7 @@ def with_piece_only(maps: Maps, covered: NDArray[np.bool_], share: float, *, of_
     return replace(maps, source_to_target=there, target_to_source=back, quality=quality)
 
 
-def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: NDArray[np.int64]) -> NDArray[np.bool_] | None:
+def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: Ints) -> Bools | None:
     """Tell which vertices of a mesh (n,) have a partner by an earlier map.
 
     Parameters
@@ -100,9 +93,7 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: NDArray[np.in
 
 
 def with_pieces_only(
-    maps: Maps,
-    meshes: tuple[TriangleMesh, TriangleMesh],
-    pieces: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None],
+    maps: Maps, meshes: tuple[TriangleMesh, TriangleMesh], pieces: tuple[Bools | None, Bools | None]
 ) -> Maps:
     """Say of maps what was left out of either mesh, see `with_piece_only`; of None nothing was."""
     for mesh, covered, of_source in zip(meshes, pieces, (True, False), strict=True):
@@ -111,6 +102,6 @@ def with_pieces_only(
     return maps
 
 
-def share_of(mesh: TriangleMesh, covered: NDArray[np.bool_]) -> float:
+def share_of(mesh: TriangleMesh, covered: Bools) -> float:
     """Say what part of the area of a mesh some of its vertices, (n,), have."""
     return float(mesh.vertex_areas @ covered / mesh.vertex_areas.sum())

@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...mesh.surface_points import SurfacePoints
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.surface_points import SurfacePoints
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["Similarities", "Surroundings"]
+from ...runtime.arrays import Floats, Ints
 
 _NEIGHBOURS = 32
 """Places on the surface that a similarity is fitted to."""
@@ -46,12 +42,12 @@ class Similarities:
         c and t.
     """
 
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
-    sources: NDArray[np.float64]
-    targets: NDArray[np.float64]
+    rotations: Floats
+    scales: Floats
+    sources: Floats
+    targets: Floats
 
-    def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, points: Floats) -> Floats:
         """Apply each to a point, (k, 3)."""
         turned = np.einsum("kij,kj->ki", self.rotations, points - self.sources)
         return self.targets + self.scales[:, None] * turned
@@ -62,11 +58,11 @@ class _Places:
     """Places on the surface (k, 3), their images, the normals at both, and the area each stands for."""
 
     spacing: float
-    positions: NDArray[np.float64]
-    images: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    image_normals: NDArray[np.float64]
-    areas: NDArray[np.float64]
+    positions: Floats
+    images: Floats
+    normals: Floats
+    image_normals: Floats
+    areas: Floats
     tree: cKDTree
 
 
@@ -109,14 +105,14 @@ class Surroundings:
         self._handedness = -1.0 if np.einsum("md,md->", np.cross(b - a, c - a), facing) < 0 else 1.0
         self._mean_scale = float(np.sqrt(other.area / mesh.area))
 
-    def nearest(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def nearest(self, points: Floats) -> tuple[Floats, Ints]:
         """Find the nearest vertex of the surface to points (k, 3): distances (k,) and vertices (k,)."""
         distances, vertices = np.empty(len(points)), np.empty(len(points), np.int64)
         order = _neighbours_together(points)
         distances[order], vertices[order] = self._levels[0].tree.query(points[order])
         return distances, vertices
 
-    def similarities(self, points: NDArray[np.float64], reach: NDArray[np.float64]) -> Similarities:
+    def similarities(self, points: Floats, reach: Floats) -> Similarities:
         """Fit a similarity around each point.
 
         Parameters
@@ -144,14 +140,7 @@ class Surroundings:
                 self._fit(result, part, points[part], reach[part], level)
         return result
 
-    def _fit(
-        self,
-        result: Similarities,
-        part: NDArray[np.int64],
-        points: NDArray[np.float64],
-        reach: NDArray[np.float64],
-        places: _Places,
-    ) -> None:
+    def _fit(self, result: Similarities, part: Ints, points: Floats, reach: Floats, places: _Places) -> None:
         """Fit the similarities of some points."""
         count = min(_NEIGHBOURS, len(places.positions))
         distances, near = places.tree.query(points, count)
@@ -181,7 +170,7 @@ class Surroundings:
         result.scales[part], result.sources[part], result.targets[part] = scale, centre, target
 
 
-def _places(spacing: float, vectors: tuple[NDArray[np.float64], ...], areas: NDArray[np.float64]) -> _Places:
+def _places(spacing: float, vectors: tuple[Floats, ...], areas: Floats) -> _Places:
     """Put places together with their search tree."""
     tree = cKDTree(vectors[0], balanced_tree=False, compact_nodes=False)
     return _Places(spacing, vectors[0], vectors[1], vectors[2], vectors[3], areas, tree)
@@ -208,7 +197,7 @@ def _coarser(places: _Places) -> _Places | None:
     return _places(spacing, means, totals)
 
 
-def _neighbours_together(points: NDArray[np.float64]) -> NDArray[np.int64]:
+def _neighbours_together(points: Floats) -> Ints:
     """Order points (k, 3) by the cells of a grid: searches that follow each other then read the same memory."""
     if not len(points):
         return np.empty(0, np.int64)

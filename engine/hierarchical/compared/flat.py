@@ -6,15 +6,9 @@ This is the method without a hierarchy, which hierarchical matching is measured 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from ...runtime.progress import Steps
 from ..exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
-
-if TYPE_CHECKING:
-    from ...runtime.progress import Steps
-    from ..sampled_pair import Pair
-
-__all__ = ["flat_candidates", "flat_steps"]
+from ..sampled_pair import Pair
 
 _PAIRS = 5000  # of a point and a candidate: what an exact search takes
 

@@ -6,30 +6,23 @@ This is the method that hierarchical matching is measured against.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from ...mesh.surface_points import SurfacePoints
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps, within
-from ...shapes.surface_distances import SurfaceDistances, symmetric_roots
+from ...shapes.shape import Shape
+from ...shapes.surface_distances import PointDistances, SurfaceDistances, symmetric_roots
 from ..hierarchy import level_sizes
 from ..problem import MatchingProblem
 from ..relaxation import descend
 from .stress_descent import Settled, Stress, joined, settle_steps
 from .vertex_stress import PairStress
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...shapes.shape import Shape
-    from ...shapes.surface_distances import PointDistances
-
-__all__ = ["GmdsLevel", "GmdsResult", "Norm", "gmds_steps"]
 
 Norm = Literal["L2", "Linf"]
 """What is minimised: the sum of the squared differences of distances, or the largest difference."""
@@ -91,7 +84,7 @@ class GmdsResult:
     norm: Norm
     quadratic: float
     largest: float
-    distances: NDArray[np.float64]
+    distances: Floats
     levels: tuple[GmdsLevel, ...]
 
 
@@ -103,7 +96,7 @@ def gmds_steps(
     norm: Norm = "L2",
     start: SurfacePoints | None = None,
     levels: Sequence[int] | None = None,
-    wanted: NDArray[np.float64] | None = None,
+    wanted: Floats | None = None,
     distances: PointDistances | None = None,
 ) -> Steps[GmdsResult]:
     r"""Match the farthest point samples of X to points anywhere on Y so that their distances are kept.
@@ -222,7 +215,7 @@ def _checked_levels(
     return sizes
 
 
-def _own_start(between: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.int64]:
+def _own_start(between: Floats, wanted: Floats) -> Ints:
     """Choose places with distances (s, s) for the first points by their distances (k, k) on X alone, (k,)."""
     squares = np.square(between)
     # Row s: a matching that begins at place s, and what each place would cost as the next one, but for constants.
@@ -239,9 +232,7 @@ def _own_start(between: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDA
     return min(improved, key=problem.quadratic_cost)
 
 
-def _inserted_steps(
-    distances: PointDistances, placed: SurfacePoints, wanted: NDArray[np.float64]
-) -> Steps[SurfacePoints]:
+def _inserted_steps(distances: PointDistances, placed: SurfacePoints, wanted: Floats) -> Steps[SurfacePoints]:
     """Add new points, each at the vertex that keeps best its distances to the points that are placed.
 
     `wanted` is (k, points): of the old points and then the new ones.
@@ -262,7 +253,7 @@ def _inserted_steps(
     return joined(mesh, placed, SurfacePoints.at_vertices(mesh, best))
 
 
-def _minimax_steps(distances: PointDistances, start: Settled, wanted: NDArray[np.float64]) -> Steps[Settled]:
+def _minimax_steps(distances: PointDistances, start: Settled, wanted: Floats) -> Steps[Settled]:
     """Lower the largest difference by growing exponents."""
     best = settled = start
     largest = float(np.abs(start.distances - wanted).max())

@@ -5,24 +5,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...mesh.surface_points import SurfacePoints
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats, Ints
 from ...runtime.progress import Progress, Steps
-from ...shapes.surface_distances import symmetric_roots
+from ...shapes.surface_distances import PointDistances, symmetric_roots
 from .vertex_stress import LocalStress, PairStress
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...shapes.surface_distances import PointDistances
-
-__all__ = ["Settled", "Stress", "joined", "settle_steps"]
 
 _TRIANGLES = 6  # around a point in which it is minimised: as many as a regular vertex has
 _BLOCK = 500_000  # distances from a point to a triangle that are handled at once
@@ -48,15 +41,15 @@ class Stress:
         lambda and p.
     """
 
-    wanted: NDArray[np.float64]
-    linear: NDArray[np.float64] | None = None
+    wanted: Floats
+    linear: Floats | None = None
     pair: PairStress = field(default_factory=PairStress)
 
-    def of_places(self, places: SurfacePoints, owner: NDArray[np.int64]) -> NDArray[np.float64]:
+    def of_places(self, places: SurfacePoints, owner: Ints) -> Floats:
         """Evaluate the linear term at places (q,), each for the point of its number (q,)."""
         return (self.at_vertices(places.corners, owner[:, None]) * places.barycentric).sum(axis=1)
 
-    def at_vertices(self, vertices: NDArray[np.int64], owner: NDArray[np.int64]) -> NDArray[np.float64]:
+    def at_vertices(self, vertices: Ints, owner: Ints) -> Floats:
         """Evaluate the linear term at vertices of any shape, for the points `owner` that broadcast with it."""
         return np.zeros(vertices.shape) if self.linear is None else self.linear[owner, vertices]
 
@@ -78,19 +71,14 @@ class Settled:
     """
 
     points: SurfacePoints
-    distances: NDArray[np.float64]
+    distances: Floats
     start: float
     stress: float
     sweeps: int
 
 
 def settle_steps(
-    distances: PointDistances,
-    start: SurfacePoints,
-    stress: Stress,
-    *,
-    max_sweeps: int = 30,
-    tolerance: float = 1e-3,
+    distances: PointDistances, start: SurfacePoints, stress: Stress, *, max_sweeps: int = 30, tolerance: float = 1e-3
 ) -> Steps[Settled]:
     """Move points over a surface so that the stress falls, until it rests in a local minimum.
 
@@ -154,22 +142,22 @@ class _Places:
     """Places (q,) on the surface, each for one of the k points, and the squared distances between them."""
 
     points: SurfacePoints
-    owner: NDArray[np.int64]
-    squares: NDArray[np.float64]
+    owner: Ints
+    squares: Floats
     stress: Stress
 
     @cached_property
-    def distances(self) -> NDArray[np.float64]:
+    def distances(self) -> Floats:
         """Distances between all places, (q, q)."""
         return symmetric_roots(self.squares)
 
     @cached_property
-    def linear(self) -> NDArray[np.float64]:
+    def linear(self) -> Floats:
         """What the linear term is at each place, (q,)."""
         return self.stress.of_places(self.points, self.owner)
 
     @cached_property
-    def pairs(self) -> NDArray[np.float64]:
+    def pairs(self) -> Floats:
         """What each pair of places contributes to the stress, (q, q)."""
         return self.stress.pair.cost(self.distances - self.stress.wanted[np.ix_(self.owner, self.owner)])
 
@@ -179,19 +167,19 @@ class _Places:
         return float(self.linear.sum() + self.pairs.sum())
 
     @cached_property
-    def of_each(self) -> NDArray[np.float64]:
+    def of_each(self) -> Floats:
         """What of the stress each place takes part in, (q,)."""
         return self.linear + 2 * self.pairs.sum(axis=1)
 
     @cached_property
-    def asymmetry(self) -> NDArray[np.float64]:
+    def asymmetry(self) -> Floats:
         """What squared distances by the rows of the first point lack to the mean of both directions, (q, q).
 
         It hardly changes from place to place, so where only one direction is known, it is added as it is here.
         """
         return (self.squares.T - self.squares) / 2
 
-    def chosen(self, numbers: NDArray[np.int64], mesh: TriangleMesh) -> _Places:
+    def chosen(self, numbers: Ints, mesh: TriangleMesh) -> _Places:
         """Return some of the places."""
         points = self.points
         points = SurfacePoints.from_barycentric(mesh, points.triangles[numbers], points.barycentric[numbers])
@@ -235,7 +223,7 @@ def _best_choice(now: _Places, both: _Places, mesh: TriangleMesh) -> _Places:
 
 def _proposals(
     distances: PointDistances, around: _TrianglesAround, now: _Places, here: Progress
-) -> Steps[tuple[NDArray[np.int64], SurfacePoints]]:
+) -> Steps[tuple[Ints, SurfacePoints]]:
     """Find for each point, the others at rest, a better place in the triangles around it.
 
     Returns
@@ -274,13 +262,7 @@ def _proposals(
     return owner[best], SurfacePoints.from_barycentric(mesh, triangles[best], barycentric[best])
 
 
-def _most_promising(
-    now: _Places,
-    owner: NDArray[np.int64],
-    corners: NDArray[np.int64],
-    squares: NDArray[np.float64],
-    vertices: NDArray[np.int64],
-) -> NDArray[np.int64]:
+def _most_promising(now: _Places, owner: Ints, corners: Ints, squares: Floats, vertices: Ints) -> Ints:
     """List for each point the few triangles at whose corners it would cost least.
 
     Parameters
@@ -323,7 +305,7 @@ class _TrianglesAround:
         self._starts = np.append(0, np.cumsum(np.bincount(corners, minlength=n)))
         self._count = mesh.triangle_count
 
-    def of(self, points: SurfacePoints) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def of(self, points: SurfacePoints) -> tuple[Ints, Ints]:
         """List the triangles (q,), and the point that each is around (q,), ascending."""
         point, corner = np.nonzero(points.barycentric > 0)
         place = self._place[points.corners[point, corner]]

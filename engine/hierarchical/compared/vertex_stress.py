@@ -4,16 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...runtime.arrays import Floats, Ints
 from ...shapes.surface_distances import squared_offsets
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["LocalStress", "PairStress", "minimum_in_triangle"]
 
 _NEWTON_STEPS = 3
 _RIDGE = 1e-9  # of the curvature, added in all directions so that a flat direction can be divided by
@@ -41,20 +36,20 @@ class PairStress:
     exponent: float = 2.0
     unit: float = 1.0
 
-    def cost(self, residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+    def cost(self, residuals: Floats) -> Floats:
         """Evaluate differences of any shape."""
         if self.exponent == 2:
             return self.weight * np.square(residuals / self.unit)
         return self.weight * self._limited(residuals) ** self.exponent
 
-    def curvature(self, residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+    def curvature(self, residuals: Floats) -> Floats:
         """Second derivative by the difference; the first is this times the difference over (exponent - 1)."""
         scale = self.weight * self.exponent * (self.exponent - 1) / self.unit**2
         if self.exponent == 2:
             return np.full(residuals.shape, scale)
         return scale * self._limited(residuals) ** (self.exponent - 2)
 
-    def _limited(self, residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _limited(self, residuals: Floats) -> Floats:
         return np.minimum(np.abs(residuals) / self.unit, _LARGEST)
 
 
@@ -79,13 +74,13 @@ class LocalStress:
     """
 
     pair: PairStress
-    owner: NDArray[np.int64]
-    wanted: NDArray[np.float64]
-    squares: NDArray[np.float64]
-    sides: NDArray[np.float64]
-    linear: NDArray[np.float64]
+    owner: Ints
+    wanted: Floats
+    squares: Floats
+    sides: Floats
+    linear: Floats
 
-    def residuals(self, barycentric: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def residuals(self, barycentric: Floats) -> tuple[Floats, Floats]:
         """Distances and their differences from the wanted ones, both (k, q), at coordinates (q, 3) in the triangles."""
         squares = sum(self.squares[c] * barycentric[:, c] for c in range(3)) - squared_offsets(barycentric, self.sides)
         distances = np.sqrt(np.maximum(squares, _NEAREST**2 * self.sides.max(axis=1) + _TINY))
@@ -93,13 +88,11 @@ class LocalStress:
         difference[self.owner, np.arange(len(self.owner))] = 0
         return distances, difference
 
-    def value(self, barycentric: NDArray[np.float64], difference: NDArray[np.float64]) -> NDArray[np.float64]:
+    def value(self, barycentric: Floats, difference: Floats) -> Floats:
         """Stress (q,) at coordinates (q, 3) with these differences of distances (k, q)."""
         return (self.linear * barycentric).sum(axis=1) + 2 * self.pair.cost(difference).sum(axis=0)
 
-    def derivatives(
-        self, barycentric: NDArray[np.float64], distances: NDArray[np.float64], difference: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def derivatives(self, barycentric: Floats, distances: Floats, difference: Floats) -> tuple[Floats, Floats]:
         """Gradient (2, q) by the last two coordinates, and Hessian (3, q: 11, 12, 22) with linearised distances."""
         _, s, t = barycentric.T
         first, second, third = self.sides.T
@@ -119,7 +112,7 @@ class LocalStress:
         hessian = 2 * np.stack([np.einsum("jq,jq,jq->q", curvature, along[a], along[b]) for a, b in _ENTRIES])
         return gradient, hessian
 
-    def minimise(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def minimise(self) -> tuple[Floats, Floats]:
         """Minimise in every triangle by some Gauss-Newton steps from its centroid.
 
         Returns
@@ -142,9 +135,7 @@ class LocalStress:
         return best, least
 
 
-def minimum_in_triangle(
-    gradient: NDArray[np.float64], hessian: NDArray[np.float64], barycentric: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def minimum_in_triangle(gradient: Floats, hessian: Floats, barycentric: Floats) -> Floats:
     """Minimise convex quadratic functions over a triangle, exactly.
 
     Parameters

@@ -3,38 +3,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from ...runtime.arrays import Bools, Ints
 from ...runtime.errors import MatchError
-from ...runtime.progress import Progress, run, within
-from .dual_ascent import dual_ascent_steps, pair_model
+from ...runtime.progress import Progress, Steps, run, within
+from ..problem import MatchingProblem
+from .dual_ascent import PairModel, dual_ascent_steps, pair_model
 from .enumeration import Enumeration
 from .exclusion import Exclusion
 from .gilmore_lawler import gilmore_lawler_steps
-from .incumbent import TOLERANCE, Incumbent
+from .incumbent import Incumbent
 from .local_search import beam_search
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...runtime.progress import Steps
-    from ..problem import MatchingProblem
-    from .dual_ascent import PairModel
-
-__all__ = [
-    "TOLERANCE",
-    "BoundedMatching",
-    "Exclusion",
-    "branch_and_bound",
-    "branch_and_bound_steps",
-    "distinct_matchings_steps",
-]
 
 Method = Literal["auto", "dual ascent", "gilmore-lawler"]
 """How a search bounds its nodes."""
@@ -61,12 +46,12 @@ class BoundedMatching:
     lower_bound : float
         No matching that keeps to the exclusions costs less; equal to `cost` when proven.
     proven : bool
-        Whether no matching costs less than ``(1 - TOLERANCE) * cost``.
+        Whether no matching costs less than ``(1 - TOLERANCE) * cost``, see `incumbent`.
     nodes : int
         Nodes of the search tree visited.
     """
 
-    assignment: NDArray[np.int64]
+    assignment: Ints
     cost: float
     lower_bound: float
     proven: bool
@@ -78,7 +63,7 @@ def branch_and_bound(
     *,
     node_limit: int = 1_000_000,
     exclusions: Sequence[Exclusion] = (),
-    initial: Sequence[NDArray[np.int64]] = (),
+    initial: Sequence[Ints] = (),
     method: Method = "auto",
 ) -> BoundedMatching | None:
     """Minimise the distortion exactly; see `branch_and_bound_steps`."""
@@ -92,7 +77,7 @@ def branch_and_bound_steps(
     *,
     node_limit: int = 1_000_000,
     exclusions: Sequence[Exclusion] = (),
-    initial: Sequence[NDArray[np.int64]] = (),
+    initial: Sequence[Ints] = (),
     method: Method = "auto",
 ) -> Steps[BoundedMatching | None]:
     """Minimise the distortion exactly.
@@ -135,8 +120,8 @@ def branch_and_bound_steps(
     fewest labels left, each node being bounded by the cheapest label of each open point.  Where that takes too long,
     the subtree is split at its top and each part is bounded anew by dual ascent.
 
-    A proof holds up to `TOLERANCE`, relative to the cost.  Memory peaks at about four times the table of all pairs of
-    pairs, (n m)^2 numbers.
+    A proof holds up to `incumbent.TOLERANCE`, relative to the cost.  Memory peaks at about four times the table of all
+    pairs of pairs, (n m)^2 numbers.
     """
     _check(problem)
     feasible = _feasible_matchings(problem, exclusions)
@@ -221,7 +206,7 @@ def _check(problem: MatchingProblem) -> None:
         raise MatchError("Some descriptor differences are not numbers.")
 
 
-def _feasible_matchings(problem: MatchingProblem, exclusions: Sequence[Exclusion]) -> list[NDArray[np.int64]] | None:
+def _feasible_matchings(problem: MatchingProblem, exclusions: Sequence[Exclusion]) -> list[Ints] | None:
     """Return some feasible matchings, or None if an exclusion allows none."""
     try:
         _, cheapest = linear_sum_assignment(problem.linear)
@@ -241,11 +226,11 @@ class _Node:
     """A subtree: the matchings that agree with `matched` where that is not -1, and with the choice, if there is one."""
 
     bound: float
-    matched: NDArray[np.int64]  # (n,) candidates, -1 where open
+    matched: Ints  # (n,) candidates, -1 where open
     model: PairModel  # of the open points
     choice: tuple[int, int] | None = None  # row and label in the model that are still to be taken
 
-    def chosen(self) -> tuple[PairModel, NDArray[np.int64]]:
+    def chosen(self) -> tuple[PairModel, Ints]:
         """Carry out the choice: the model of the remaining points, and the candidates of the others."""
         if self.choice is None:
             return self.model, self.matched
@@ -279,7 +264,7 @@ class _Search:
             return max(root.bound, (yield from self._gilmore_lawler(model.alive)))
         return (yield from self._dual_ascent(root))
 
-    def _gilmore_lawler(self, allowed: NDArray[np.bool_]) -> Steps[float]:
+    def _gilmore_lawler(self, allowed: Bools) -> Steps[float]:
         bound, self.nodes = yield from gilmore_lawler_steps(self.incumbent, allowed, self.node_limit)
         return bound
 

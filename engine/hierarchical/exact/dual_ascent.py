@@ -3,25 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ...runtime.progress import Progress
-from ..problem import forbidding_cost
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...runtime.progress import Steps
-    from ..problem import MatchingProblem
-    from .exclusion import Exclusion
-
-__all__ = ["PairModel", "assignment_duals", "dual_ascent_steps", "pair_model"]
+from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.progress import Progress, Steps
+from ..problem import MatchingProblem, forbidding_cost
+from .exclusion import Exclusion
 
 
 @dataclass(eq=False)
@@ -58,16 +49,16 @@ class PairModel:
         Lagrange multipliers of the exclusions, not negative, already charged to `unary` and `constant`.
     """
 
-    points: NDArray[np.int64]
-    labels: NDArray[np.int64]
+    points: Ints
+    labels: Ints
     constant: float
-    unary: NDArray[np.float64]
-    pair: NDArray[np.float64]
-    alive: NDArray[np.bool_]
+    unary: Floats
+    pair: Floats
+    alive: Bools
     cap: float
-    moved: NDArray[np.bool_]
-    needed: NDArray[np.int64]
-    multipliers: NDArray[np.float64]
+    moved: Bools
+    needed: Ints
+    multipliers: Floats
 
     def eliminate(self, limit: float) -> bool:
         """Rule out, in place, the labels that no matching cheaper than `limit` uses.
@@ -216,7 +207,7 @@ def dual_ascent_steps(
     return model
 
 
-def _rounds(count: int) -> list[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+def _rounds(count: int) -> list[tuple[Ints, Ints]]:
     """All pairs of `count` points, in rounds of disjoint pairs (the circle method of a tournament)."""
     players = list(range(count + count % 2))
     rounds = []
@@ -229,9 +220,7 @@ def _rounds(count: int) -> list[tuple[NDArray[np.int64], NDArray[np.int64]]]:
     return rounds
 
 
-def _shake_hands(
-    unary: NDArray[np.float64], table: NDArray[np.float64], i: NDArray[np.int64], j: NDArray[np.int64]
-) -> None:
+def _shake_hands(unary: Floats, table: Floats, i: Ints, j: Ints) -> None:
     """Move costs between labels and pair tables, (p, K, K) for the p disjoint pairs (i, j), in place."""
     table += unary[i][:, :, None]
     table += unary[j][:, None, :]
@@ -245,9 +234,7 @@ def _shake_hands(
     unary[j] = second
 
 
-def assignment_duals(
-    cost: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+def assignment_duals(cost: Floats) -> tuple[Floats, Floats, Ints]:
     """Solve the linear assignment problem and its dual.
 
     Parameters

@@ -4,18 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...runtime.arrays import Bools, Floats, Ints
+from .dual_ascent import PairModel
 from .exclusion import exclusion_surcharge
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .dual_ascent import PairModel
-
-__all__ = ["Enumeration"]
 
 _BATCH = 200_000  # numbers in the tables of a batch of nodes: some milliseconds of work
 
@@ -24,13 +19,13 @@ _BATCH = 200_000  # numbers in the tables of a batch of nodes: some milliseconds
 class _Block:
     """Nodes of equal depth, w of them: partial matchings."""
 
-    bound: NDArray[np.float64]  # (w,) no matching below the node costs less
-    spent: NDArray[np.float64]  # (w,) cost of the points matched
-    unary: NDArray[np.float64]  # (w, k, K) cost of each label beside the points matched; meaningless in matched rows
-    lowest: NDArray[np.float64]  # (w, k) its minimum over labels; zero in matched rows
-    matched: NDArray[np.bool_]  # (w, k)
-    chosen: NDArray[np.int64]  # (w, k) label, where matched
-    needed: NDArray[np.int64]  # (w, e) points that each exclusion still needs
+    bound: Floats  # (w,) no matching below the node costs less
+    spent: Floats  # (w,) cost of the points matched
+    unary: Floats  # (w, k, K) cost of each label beside the points matched; meaningless in matched rows
+    lowest: Floats  # (w, k) its minimum over labels; zero in matched rows
+    matched: Bools  # (w, k)
+    chosen: Ints  # (w, k) label, where matched
+    needed: Ints  # (w, e) points that each exclusion still needs
 
     def take(self, nodes: NDArray[np.intp] | slice) -> _Block:
         """Return some of the nodes."""
@@ -90,7 +85,7 @@ class Enumeration:
         """Whether nothing is left to visit."""
         return not self._stack
 
-    def step(self, limit: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def step(self, limit: float) -> tuple[Floats, Ints]:
         """Branch the most promising nodes of the deepest block.
 
         Returns

@@ -4,14 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["Exclusion", "exclusion_surcharge"]
+from ...runtime.arrays import Bools, Floats, Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,23 +22,17 @@ class Exclusion:
         At least this many points have to be moved away.
     """
 
-    moved: NDArray[np.bool_]
+    moved: Bools
     count: int
 
-    def allows(self, assignment: NDArray[np.int64]) -> bool:
+    def allows(self, assignment: Ints) -> bool:
         """Say whether an assignment (n,) of candidate numbers is far enough away."""
         return int(self.moved[np.arange(len(assignment)), assignment].sum()) >= self.count
 
 
 def exclusion_surcharge(
-    unary: NDArray[np.float64],
-    open_rows: NDArray[np.bool_],
-    moved: NDArray[np.bool_],
-    needed: NDArray[np.int64],
-    *,
-    multiplier: float,
-    cap: float,
-) -> NDArray[np.float64]:
+    unary: Floats, open_rows: Bools, moved: Bools, needed: Ints, *, multiplier: float, cap: float
+) -> Floats:
     """Bound what an exclusion adds to the sum of the cheapest labels.
 
     Parameters

@@ -4,22 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...runtime.progress import Progress
+from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.progress import Progress, Steps
+from ..problem import MatchingProblem
 from .dual_ascent import assignment_duals
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...runtime.progress import Steps
-    from ..problem import MatchingProblem
-    from .exclusion import Exclusion
-    from .incumbent import Incumbent
-
-__all__ = ["gilmore_lawler_bound", "gilmore_lawler_steps"]
+from .exclusion import Exclusion
+from .incumbent import Incumbent
 
 _NODES_PER_STEP = 128
 
@@ -51,7 +44,7 @@ def gilmore_lawler_bound(problem: MatchingProblem) -> float:
     return float(u.sum() + v.sum())
 
 
-def _inner_costs(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+def _inner_costs(x: Floats, y: Floats) -> Floats:
     """Least sum of squared differences of the distances from a point to all others (k,) and from a candidate to k - 1.
 
     Both sets of distances are sorted, so the best choice is monotone: a dynamic program over the sorted distances,
@@ -87,10 +80,10 @@ class _Node:
 
     bound: float
     spent: float
-    points: NDArray[np.int64]  # (k,)
-    candidates: NDArray[np.int64]  # (l,)
-    linear: NDArray[np.float64]  # (k, l) cost of each pair beside the points matched; the cap where ruled out
-    matched: NDArray[np.int64]  # (n,) candidates, -1 where open
+    points: Ints  # (k,)
+    candidates: Ints  # (l,)
+    linear: Floats  # (k, l) cost of each pair beside the points matched; the cap where ruled out
+    matched: Ints  # (n,) candidates, -1 where open
     choice: tuple[int, int] | None = None  # row and column still to be taken
 
     def chosen(self, problem: MatchingProblem) -> _Node:
@@ -108,7 +101,7 @@ class _Node:
         return _Node(self.bound, self.spent + float(self.linear[i, a]), points, candidates, linear, matched)
 
 
-def gilmore_lawler_steps(incumbent: Incumbent, allowed: NDArray[np.bool_], node_limit: int) -> Steps[tuple[float, int]]:
+def gilmore_lawler_steps(incumbent: Incumbent, allowed: Bools, node_limit: int) -> Steps[tuple[float, int]]:
     """Search depth first for the best matching, bounding every node by Gilmore and Lawler.
 
     Far fewer and far dearer nodes than enumeration under a dual bound.  It wins where every candidate has to be taken,
@@ -181,7 +174,7 @@ def _children(node: _Node, incumbent: Incumbent) -> list[_Node]:
     ]
 
 
-def _price(exclusion: Exclusion, node: _Node, excess: NDArray[np.float64], cap: float) -> float:
+def _price(exclusion: Exclusion, node: _Node, excess: Floats, cap: float) -> float:
     """Bound what an exclusion costs beyond the best assignment, given the excess of each pair (k, l)."""
     done = np.flatnonzero(node.matched >= 0)
     needed = exclusion.count - int(exclusion.moved[done, node.matched[done]].sum())

@@ -3,22 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-from ..problem import forbidding_cost
+from ...runtime.arrays import Ints
+from ..problem import MatchingProblem, forbidding_cost
+from .exclusion import Exclusion
 from .local_search import improve_matching
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ..problem import MatchingProblem
-    from .exclusion import Exclusion
-
-__all__ = ["TOLERANCE", "Incumbent"]
 
 TOLERANCE = 1e-7
 """Relative tolerance of a proof: no matching costs less than ``(1 - TOLERANCE)`` times a proven one."""
@@ -48,7 +40,7 @@ class Incumbent:
         self.problem = problem
         self.exclusions = exclusions
         self.cap = forbidding_cost(problem)
-        self.assignment: NDArray[np.int64] | None = None
+        self.assignment: Ints | None = None
         self.cost = np.inf
 
     @property
@@ -59,7 +51,7 @@ class Incumbent:
         # The second part is for an optimum near zero, as of a shape matched to itself: there, rounding decides.
         return self.cost - TOLERANCE * abs(self.cost) - 1e-13 * self.cap
 
-    def feasible(self, assignment: NDArray[np.int64]) -> bool:
+    def feasible(self, assignment: Ints) -> bool:
         """Say whether an array is a matching, with no forbidden pair, that keeps to the exclusions."""
         n, m = self.problem.size
         return bool(
@@ -71,7 +63,7 @@ class Incumbent:
             and all(exclusion.allows(assignment) for exclusion in self.exclusions)
         )
 
-    def offer(self, assignment: NDArray[np.int64], *, improve: bool = False) -> None:
+    def offer(self, assignment: Ints, *, improve: bool = False) -> None:
         """Keep a matching if it is feasible and the best so far; optionally improve it by local search first."""
         if not self.feasible(assignment):
             return

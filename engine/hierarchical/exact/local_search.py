@@ -3,25 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-from .exclusion import exclusion_surcharge
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ..problem import MatchingProblem
-    from .dual_ascent import PairModel
-    from .exclusion import Exclusion
-
-__all__ = ["beam_search", "improve_matching"]
+from ...runtime.arrays import Floats, Ints
+from ..problem import MatchingProblem
+from .dual_ascent import PairModel
+from .exclusion import Exclusion, exclusion_surcharge
 
 
-def beam_search(model: PairModel, width: int) -> NDArray[np.int64]:
+def beam_search(model: PairModel, width: int) -> Ints:
     """Match point after point, keeping the most promising partial matchings.
 
     Parameters
@@ -72,9 +64,7 @@ def beam_search(model: PairModel, width: int) -> NDArray[np.int64]:
     return model.labels[np.arange(k), labels]
 
 
-def _surcharge(
-    model: PairModel, unary: NDArray[np.float64], partial: NDArray[np.int64], order: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def _surcharge(model: PairModel, unary: Floats, partial: Ints, order: Ints) -> Floats:
     """Bound what the exclusions add to the cost of partial matchings (w, t) of the first t points of `order`."""
     result = np.zeros(len(partial))
     done = order[: partial.shape[1]]
@@ -86,9 +76,7 @@ def _surcharge(
     return result
 
 
-def improve_matching(
-    problem: MatchingProblem, assignment: NDArray[np.int64], exclusions: Sequence[Exclusion] = ()
-) -> NDArray[np.int64]:
+def improve_matching(problem: MatchingProblem, assignment: Ints, exclusions: Sequence[Exclusion] = ()) -> Ints:
     """Move one point to a free candidate or swap two points, whichever gains most, while anything gains.
 
     Parameters
@@ -126,9 +114,7 @@ def improve_matching(
             current[[i, k]] = current[[k, i]]
 
 
-def _move_and_swap_gains(
-    problem: MatchingProblem, current: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _move_and_swap_gains(problem: MatchingProblem, current: Ints) -> tuple[Floats, Floats]:
     """Gain of moving each point to each candidate (n, m), and of swapping each two points (n, n)."""
     rows = np.arange(len(current))
     x, y, weight = problem.source_distances, problem.target_distances, 2 * problem.quadratic_weight

@@ -3,17 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..triangle_mesh import TriangleMesh
-
-__all__ = ["neighbour_means", "vertex_adjacency"]
+from ...runtime.arrays import Floats
+from ..triangle_mesh import TriangleMesh
 
 
 def vertex_adjacency(mesh: TriangleMesh) -> csr_array:
@@ -23,7 +17,7 @@ def vertex_adjacency(mesh: TriangleMesh) -> csr_array:
     return csr_array(coo_array((np.ones(2 * len(a)), ends), shape=(n, n)))
 
 
-def neighbour_means(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
+def neighbour_means(mesh: TriangleMesh, values: Floats) -> Floats:
     """Mean of values per vertex (n,) over each vertex and its neighbours."""
     (first, second), n = mesh.edges.T, mesh.vertex_count
     sums = values + np.bincount(first, values[second], n) + np.bincount(second, values[first], n)

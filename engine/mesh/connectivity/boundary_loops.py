@@ -4,18 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...runtime.arrays import Floats, Ints
 from .halfedges import triangle_slots
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["BoundaryLoops", "boundary_loops"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +31,12 @@ class BoundaryLoops:
         Area of the fan from the loop to its centre.
     """
 
-    half_edges: NDArray[np.int64]
-    tails: NDArray[np.int64]
-    heads: NDArray[np.int64]
-    labels: NDArray[np.int64]
-    centres: NDArray[np.float64]
-    areas: NDArray[np.float64]
+    half_edges: Ints
+    tails: Ints
+    heads: Ints
+    labels: Ints
+    centres: Floats
+    areas: Floats
 
     @property
     def count(self) -> int:
@@ -47,9 +44,7 @@ class BoundaryLoops:
         return len(self.areas)
 
 
-def boundary_loops(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], half_edges: NDArray[np.int64]
-) -> BoundaryLoops:
+def boundary_loops(vertices: Floats, triangles: Ints, half_edges: Ints) -> BoundaryLoops:
     """Find the boundary loops of an oriented surface.
 
     Parameters

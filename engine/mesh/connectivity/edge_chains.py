@@ -3,17 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["edge_chains"]
+from ...runtime.arrays import Ints
 
 
-def edge_chains(edges: NDArray[np.int64]) -> list[tuple[list[int], list[int]]]:
+def edge_chains(edges: Ints) -> list[tuple[list[int], list[int]]]:
     """Join edges to chains.
 
     Parameters

@@ -4,18 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
 
+from ...runtime.arrays import Bools, Floats, Ints
 from ..unit_vectors import unit_vectors
 from .triangle_components import triangle_components
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["EdgeGroups", "following", "group_half_edges", "pair_half_edges", "repeated_triangles", "triangle_slots"]
 
 _MOST_TRIANGLES = 64
 """An edge of more triangles than this is left open: each of its triangles could only be paired by chance."""
@@ -37,23 +32,23 @@ class EdgeGroups:
         How many half-edges each edge has: one at a boundary, two inside a manifold.
     """
 
-    order: NDArray[np.int64]
-    starts: NDArray[np.int64]
-    counts: NDArray[np.int64]
+    order: Ints
+    starts: Ints
+    counts: Ints
 
 
-def following(half_edges: NDArray[np.int64]) -> NDArray[np.int64]:
+def following(half_edges: Ints) -> Ints:
     """Return the next half-edge of the same triangle for each half-edge."""
     return half_edges + np.where(half_edges % 3 == 2, -2, 1)
 
 
-def triangle_slots(triangles: NDArray[np.int64], half_edges: NDArray[np.int64], shift: int) -> NDArray[np.int64]:
+def triangle_slots(triangles: Ints, half_edges: Ints, shift: int) -> Ints:
     """Return a vertex of each half-edge's triangle: where it starts (shift 0), ends (1), or the opposite one (2)."""
     triangle, slot = np.divmod(half_edges, 3)
     return triangles[triangle, (slot + shift) % 3]
 
 
-def group_half_edges(triangles: NDArray[np.int64], vertex_count: int) -> EdgeGroups:
+def group_half_edges(triangles: Ints, vertex_count: int) -> EdgeGroups:
     """Sort half-edges by the edge they belong to.
 
     Parameters
@@ -80,7 +75,7 @@ def group_half_edges(triangles: NDArray[np.int64], vertex_count: int) -> EdgeGro
     return EdgeGroups(order, starts, np.diff(starts, append=len(order)))
 
 
-def repeated_triangles(triangles: NDArray[np.int64], groups: EdgeGroups) -> NDArray[np.bool_]:
+def repeated_triangles(triangles: Ints, groups: EdgeGroups) -> Bools:
     """Say of each triangle whether an earlier one has the same three vertices, whichever way round, (m,)."""
     repeated = np.zeros(len(triangles), bool)
     # Two triangles with the same vertices share an edge, and are opposite to it at the same vertex.
@@ -97,9 +92,7 @@ def repeated_triangles(triangles: NDArray[np.int64], groups: EdgeGroups) -> NDAr
     return repeated
 
 
-def pair_half_edges(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups
-) -> NDArray[np.int64]:
+def pair_half_edges(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> Ints:
     """Find for each half-edge the one of the triangle that the surface goes on with across its edge.
 
     Parameters
@@ -135,7 +128,7 @@ def pair_half_edges(
     return twins
 
 
-def _crowded(groups: EdgeGroups, most: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _crowded(groups: EdgeGroups, most: int) -> tuple[Ints, Ints]:
     """Half-edges of the edges with more than two, but no more than `most`, and the number of the edge of each."""
     edges = np.flatnonzero((groups.counts > 2) & (groups.counts <= most))
     counts = groups.counts[edges]
@@ -144,9 +137,7 @@ def _crowded(groups: EdgeGroups, most: int) -> tuple[NDArray[np.int64], NDArray[
     return groups.order[place], group
 
 
-def _crowded_pairs(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups, patches: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _crowded_pairs(vertices: Floats, triangles: Ints, groups: EdgeGroups, patches: Ints) -> tuple[Ints, Ints]:
     """Pair half-edges at the edges of more than two triangles; `patches` (m,) says which hang together elsewhere."""
     half_edges, group = _crowded(groups, _MOST_TRIANGLES)
     if not len(half_edges):
@@ -174,7 +165,7 @@ def _crowded_pairs(
     return half_edges[one[order[chosen]]], half_edges[other[order[chosen]]]
 
 
-def _greedy(one: NDArray[np.int64], other: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _greedy(one: Ints, other: Ints, count: int) -> Ints:
     """Choose pairs, given best first, so that none of `count` members is in two: indices of the chosen."""
     left, chosen = np.arange(len(one)), []
     while len(left):
@@ -189,7 +180,7 @@ def _greedy(one: NDArray[np.int64], other: NDArray[np.int64], count: int) -> NDA
     return np.concatenate(chosen) if chosen else left
 
 
-def _counting_order(keys: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _counting_order(keys: Ints, count: int) -> Ints:
     """Stable order that sorts keys (k,) from 0 to count - 1: the transposition of a sparse matrix."""
     k = len(keys)
     rows = csr_array((np.ones(k, np.int8), keys.astype(np.int32), np.arange(k + 1, dtype=np.int32)), shape=(k, count))

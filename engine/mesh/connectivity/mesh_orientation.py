@@ -4,20 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from .boundary_loops import boundary_loops
+from ...runtime.arrays import Bools, Floats, Ints
+from .boundary_loops import BoundaryLoops, boundary_loops
 from .triangle_components import neighbour_graph, symmetric_components, triangle_components, triangle_neighbours
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .boundary_loops import BoundaryLoops
-
-__all__ = ["Orientation", "enclosed_volumes", "inward_components", "orient_consistently", "turn_triangles"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,14 +27,12 @@ class Orientation:
         The pairs of half-edges, without those at which a one-sided surface has to be cut open.
     """
 
-    components: NDArray[np.int64]
-    turned: NDArray[np.bool_]
-    twins: NDArray[np.int64]
+    components: Ints
+    turned: Bools
+    twins: Ints
 
 
-def orient_consistently(
-    triangles: NDArray[np.int64], areas: NDArray[np.float64], twins: NDArray[np.int64]
-) -> Orientation:
+def orient_consistently(triangles: Ints, areas: Floats, twins: Ints) -> Orientation:
     """Find the triangles to turn over, so that neighbours agree.
 
     Parameters
@@ -103,9 +94,7 @@ def orient_consistently(
     return Orientation(components, turned, twins)
 
 
-def turn_triangles(
-    triangles: NDArray[np.int64], twins: NDArray[np.int64], turned: NDArray[np.bool_]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def turn_triangles(triangles: Ints, twins: Ints, turned: Bools) -> tuple[Ints, Ints]:
     """Turn triangles over by exchanging their last two corners.
 
     Parameters
@@ -135,12 +124,7 @@ def turn_triangles(
     return triangles, moved
 
 
-def inward_components(
-    vertices: NDArray[np.float64],
-    triangles: NDArray[np.int64],
-    twins: NDArray[np.int64],
-    components: NDArray[np.int64],
-) -> NDArray[np.bool_]:
+def inward_components(vertices: Floats, triangles: Ints, twins: Ints, components: Ints) -> Bools:
     r"""Find the components whose triangles look inward.
 
     Parameters
@@ -175,12 +159,7 @@ def inward_components(
     return volumes < -doubt
 
 
-def enclosed_volumes(
-    vertices: NDArray[np.float64],
-    triangles: NDArray[np.int64],
-    twins: NDArray[np.int64],
-    components: NDArray[np.int64],
-) -> NDArray[np.float64]:
+def enclosed_volumes(vertices: Floats, triangles: Ints, twins: Ints, components: Ints) -> Floats:
     """Volumes of components, (c,), with lids on their openings: below zero if their triangles look inward.
 
     The parameters are those of `inward_components`.
@@ -189,12 +168,7 @@ def enclosed_volumes(
     return _enclosed_volumes(vertices, triangles, components, loops)
 
 
-def _enclosed_volumes(
-    vertices: NDArray[np.float64],
-    triangles: NDArray[np.int64],
-    components: NDArray[np.int64],
-    loops: BoundaryLoops,
-) -> NDArray[np.float64]:
+def _enclosed_volumes(vertices: Floats, triangles: Ints, components: Ints, loops: BoundaryLoops) -> Floats:
     """Volumes of components; openings are closed by fans to their centres, so that no volume depends on the origin."""
     count = int(components.max()) + 1
     # Volumes about a point of the component itself, without which few digits would be left far from the origin.
@@ -211,7 +185,7 @@ def _enclosed_volumes(
     return volumes
 
 
-def _triple_product(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> NDArray[np.float64]:
+def _triple_product(a: Floats, b: Floats, c: Floats) -> Floats:
     """Return the determinant of each three vectors, (k,)."""
     (a_x, a_y, a_z), (b_x, b_y, b_z), (c_x, c_y, c_z) = a.T, b.T, c.T
     return a_x * (b_y * c_z - b_z * c_y) + a_y * (b_z * c_x - b_x * c_z) + a_z * (b_x * c_y - b_y * c_x)

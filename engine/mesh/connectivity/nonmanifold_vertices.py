@@ -3,26 +3,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...runtime.arrays import Bools, Ints
 from .halfedges import following
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["several_fans", "split_fans"]
 
 _LONGEST_WALK = 1000
 """Most steps around a vertex: longer ones, at the hub of thousands of triangles, cost more than they save."""
 
 
-def split_fans(
-    triangles: NDArray[np.int64], twins: NDArray[np.int64], vertex_count: int
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def split_fans(triangles: Ints, twins: Ints, vertex_count: int) -> tuple[Ints, Ints]:
     """Give each fan of triangles a vertex of its own.
 
     Parameters
@@ -71,7 +63,7 @@ def split_fans(
     return split.reshape(-1, 3), vertex_of_fan[extra]
 
 
-def several_fans(tail: NDArray[np.int64], twins: NDArray[np.int64], vertex_count: int) -> NDArray[np.bool_]:
+def several_fans(tail: Ints, twins: Ints, vertex_count: int) -> Bools:
     """Find the vertices at which several fans of triangles touch.
 
     Parameters
@@ -106,6 +98,6 @@ def several_fans(tail: NDArray[np.int64], twins: NDArray[np.int64], vertex_count
     return left > 0
 
 
-def _next_around(twins: NDArray[np.int64], corners: NDArray[np.int64]) -> NDArray[np.int64]:
+def _next_around(twins: Ints, corners: Ints) -> Ints:
     """For corners, named by the half-edges that start there, the next around the same vertex; -1 at the boundary."""
     return twins[following(following(corners))]

@@ -3,19 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["neighbour_graph", "symmetric_components", "triangle_components", "triangle_neighbours"]
+from ...runtime.arrays import Ints
 
 
-def triangle_components(twins: NDArray[np.int64]) -> NDArray[np.int64]:
+def triangle_components(twins: Ints) -> Ints:
     """Find the components of triangles that hang together across paired half-edges.
 
     Parameters
@@ -31,18 +26,18 @@ def triangle_components(twins: NDArray[np.int64]) -> NDArray[np.int64]:
     return symmetric_components(neighbour_graph(triangle_neighbours(twins)))
 
 
-def triangle_neighbours(twins: NDArray[np.int64]) -> NDArray[np.int64]:
+def triangle_neighbours(twins: Ints) -> Ints:
     """Return the triangle across each side of each triangle, (m, 3); at a boundary the triangle itself."""
     return (np.where(twins >= 0, twins, np.arange(len(twins))) // 3).reshape(-1, 3)
 
 
-def neighbour_graph(neighbours: NDArray[np.int64]) -> csr_array:
+def neighbour_graph(neighbours: Ints) -> csr_array:
     """Make a graph of the neighbours (k, 3) of k nodes."""
     k = len(neighbours)
     return csr_array((np.ones(3 * k, np.int8), neighbours.ravel(), 3 * np.arange(k + 1)), shape=(k, k))
 
 
-def symmetric_components(graph: csr_array) -> NDArray[np.int64]:
+def symmetric_components(graph: csr_array) -> Ints:
     """Find the connected components of a symmetric graph of k nodes: the number of that of each, (k,)."""
     # They are its strong components, too, which are found without a transposed copy of the graph.
     return connected_components(graph, directed=True, connection="strong")[1].astype(np.int64)

@@ -3,21 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from .halfedges import triangle_slots
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .halfedges import EdgeGroups
-
-__all__ = ["weld_boundaries"]
+from ...runtime.arrays import Bools, Floats, Ints
+from .halfedges import EdgeGroups, triangle_slots
 
 _TOLERANCE = 0.01
 """How far apart two vertices may be to be one, as a part of the shortest edge at either."""
@@ -26,9 +18,7 @@ _NEIGHBOURS = 8
 """How many other places near a vertex are compared: about six corners meet at a vertex of a mesh of loose triangles."""
 
 
-def weld_boundaries(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups
-) -> NDArray[np.int64]:
+def weld_boundaries(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> Ints:
     """Find which vertices at boundaries are one and the same point of the surface.
 
     Parameters
@@ -73,7 +63,7 @@ def weld_boundaries(
     return representatives
 
 
-def _equal_rows(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _equal_rows(points: Floats) -> tuple[Ints, Ints]:
     """Give each different row of points (k, 3) a number: the number of each (k,), and the first row of each number."""
     # A hash of the bits sorts as one integer; that two different points share it is checked, and as good as impossible.
     bits = np.ascontiguousarray(points + 0.0).view(np.uint64)  # minus zero becomes zero
@@ -88,9 +78,7 @@ def _equal_rows(points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray
     return numbers, order[new]
 
 
-def _shortest_edges(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], groups: EdgeGroups, wanted: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _shortest_edges(vertices: Floats, triangles: Ints, groups: EdgeGroups, wanted: Bools) -> Floats:
     """Length of the shortest edge at each wanted vertex that is longer than zero, (n,); elsewhere infinite."""
     edges = groups.order[groups.starts]
     tail, head = (triangle_slots(triangles, edges, shift) for shift in (0, 1))
@@ -104,9 +92,7 @@ def _shortest_edges(
     return shortest
 
 
-def _close_pairs(
-    points: NDArray[np.float64], radius: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _close_pairs(points: Floats, radius: Floats) -> tuple[Ints, Ints]:
     """Pairs of points (k, 3) that are closer than the radius (k,) of both."""
     finite = np.isfinite(radius)
     count = min(_NEIGHBOURS + 1, len(points))

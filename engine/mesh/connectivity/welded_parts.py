@@ -5,20 +5,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from ...runtime.arrays import Bools, Floats, Ints
 from ..triangle_mesh import TriangleMesh
 from .halfedges import group_half_edges
 from .vertex_welding import weld_boundaries
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["WeldedParts"]
 
 _SMALL = 0.1
 """Size of the largest part that counts as small, in units of the root of the area of the whole surface."""
@@ -41,9 +36,9 @@ class WeldedParts:
     """
 
     mesh: TriangleMesh
-    welded: NDArray[np.int64]
-    triangles: NDArray[np.int64]
-    labels: NDArray[np.int64]
+    welded: Ints
+    triangles: Ints
+    labels: Ints
 
     @classmethod
     def of(cls, mesh: TriangleMesh) -> WeldedParts:
@@ -76,7 +71,7 @@ class WeldedParts:
         return TriangleMesh(self.positions, self.triangles)
 
     @cached_property
-    def edges(self) -> NDArray[np.int64]:
+    def edges(self) -> Ints:
         """Each edge between welded vertices once, smaller index first, (e, 2)."""
         tail, head = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
         keys = np.unique(np.minimum(tail, head) * self.welded_count + np.maximum(tail, head))
@@ -88,36 +83,35 @@ class WeldedParts:
         return int(self.labels.max()) + 1
 
     @property
-    def vertex_labels(self) -> NDArray[np.int64]:
+    def vertex_labels(self) -> Ints:
         """The part that each vertex belongs to, (n,)."""
         return self.labels[self.welded]
 
     @cached_property
-    def positions(self) -> NDArray[np.float64]:
+    def positions(self) -> Floats:
         """Where the welded vertices are, (w, 3)."""
         return self.mean_over(np.ones(self.mesh.vertex_count, bool)) @ self.mesh.vertices
 
     @cached_property
-    def sizes(self) -> NDArray[np.float64]:
+    def sizes(self) -> Floats:
         """Length of the longest side of each part's bounding box, (p,)."""
         positions, labels = self.mesh.vertices, self.vertex_labels
         low, high = np.full((self.part_count, 3), np.inf), np.full((self.part_count, 3), -np.inf)
         np.minimum.at(low, labels, positions)
         np.maximum.at(high, labels, positions)
-        sizes: NDArray[Any] = (high - low).max(axis=1)
-        return sizes
+        return (high - low).max(axis=1)
 
     @cached_property
-    def small(self) -> NDArray[np.bool_]:
+    def small(self) -> Bools:
         """Say of each part whether it is small beside the whole, (p,): an eye, a button, a tooth; not a trouser leg."""
         return self.sizes <= _SMALL * np.sqrt(self.mesh.area)
 
-    def best_of(self, values: NDArray[np.float64]) -> NDArray[np.int64]:
+    def best_of(self, values: Floats) -> Ints:
         """Return, for each welded vertex, that of the vertices it is made of which has the largest value (n,): (w,)."""
         order = np.lexsort((-values, self.welded))
         return order[np.searchsorted(self.welded[order], np.arange(self.welded_count))]
 
-    def mean_over(self, chosen: NDArray[np.bool_]) -> csr_array:
+    def mean_over(self, chosen: Bools) -> csr_array:
         """Return the matrix (w, n) that averages values over the chosen vertices (n,) that each welded one is made of.
 
         Rows of welded vertices of which none is chosen are empty.

@@ -5,26 +5,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...mesh.polygons import Polygons
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
+from ...runtime.progress import Steps
 from .corner_transfer import carry_corner_values, carry_point_marks, carry_point_values
 from .edge_tracing import nearest_edge_values, trace_edges_steps
 from .face_correspondence import FacePlaces
 from .face_transfer import carry_face_values
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.polygons import Polygons
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...runtime.progress import Steps
-
-__all__ = ["CarriedValues", "Crossing", "Domain", "carry_values_steps"]
 
 Domain = Literal["POINT", "EDGE", "FACE", "CORNER"]
 """What has the values."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -14,15 +13,10 @@ from scipy.sparse.csgraph import connected_components
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.halfedges import following, group_half_edges, pair_half_edges
 from ...mesh.connectivity.triangle_components import triangle_components
+from ...mesh.polygons import Polygons
 from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MeshError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.polygons import Polygons
-
-__all__ = ["CornerSheets", "cut_into_sheets"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,10 +37,10 @@ class CornerSheets:
         Which half-edges are at a cut, or at a boundary of the uncut surface.
     """
 
-    values: NDArray[np.float64]
-    labels: NDArray[np.int64]
+    values: Floats
+    labels: Ints
     surface: TriangleMesh
-    borders: NDArray[np.bool_]
+    borders: Bools
 
     @cached_property
     def search(self) -> ClosestPoints:
@@ -59,7 +53,7 @@ class CornerSheets:
         return int(self.labels.max()) + 1
 
     @cached_property
-    def border_vertices(self) -> NDArray[np.bool_]:
+    def border_vertices(self) -> Bools:
         """Which vertices of the cut surface are at a border."""
         triangle, slot = np.divmod(np.flatnonzero(self.borders), 3)
         result = np.zeros(self.surface.vertex_count, bool)
@@ -68,14 +62,14 @@ class CornerSheets:
         return result
 
     @cached_property
-    def border_ends(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def border_ends(self) -> tuple[Floats, Floats]:
         """Where the half-edges at borders begin and end, (b, 3) each."""
         triangle, slot = np.divmod(np.flatnonzero(self.borders), 3)
         ends = (self.surface.triangles[triangle, end] for end in (slot, (slot + 1) % 3))
         first, second = (self.surface.vertices[end] for end in ends)
         return first, second
 
-    def is_at_border(self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def is_at_border(self, triangles: Ints, barycentric: Floats) -> Bools:
         """Say which places, triangles (k,) and coordinates (k, 3), are on a border."""
         absent = barycentric <= 0
         # Half-edge i is opposite to corner i + 2.
@@ -83,12 +77,12 @@ class CornerSheets:
         corner = self.surface.triangles[triangles, barycentric.argmax(axis=1)]
         return on_side | ((absent.sum(axis=1) >= 2) & self.border_vertices[corner])
 
-    def at(self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, triangles: Ints, barycentric: Floats) -> Floats:
         """Interpolate the values at places, (k, d)."""
         return np.einsum("kc,kcd->kd", barycentric, self.values[triangles])
 
     @cached_property
-    def gradients(self) -> NDArray[np.float64]:
+    def gradients(self) -> Floats:
         """How values change with the place around each vertex of the cut surface, (w, d, 3): the mean by area."""
         a, b, c = (self.surface.vertices[corner] for corner in self.surface.triangles.T)
         normals = self.surface.triangle_normals
@@ -106,17 +100,13 @@ class CornerSheets:
         areas = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2
         return float(np.sqrt(areas.sum() / self.surface.area))
 
-    def beyond(
-        self, triangles: NDArray[np.int64], barycentric: NDArray[np.float64], offsets: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def beyond(self, triangles: Ints, barycentric: Floats, offsets: Floats) -> Floats:
         """Continue the values linearly from places by offsets in space, (k, 3): what to add to `at`, (k, d)."""
         slopes = np.einsum("kc,kcdx->kdx", barycentric, self.gradients[self.surface.triangles[triangles]])
         return np.einsum("kdx,kx->kd", slopes, offsets)
 
 
-def cut_into_sheets(
-    mesh: TriangleMesh, polygons: Polygons, values: NDArray[np.float64], tolerance: float
-) -> CornerSheets:
+def cut_into_sheets(mesh: TriangleMesh, polygons: Polygons, values: Floats, tolerance: float) -> CornerSheets:
     """Cut a surface along all edges across which corner values jump.
 
     Parameters

@@ -3,25 +3,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.polygons import Polygons
+from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MatchError, MeshError
 from .charts import cut_into_sheets
 from .deformation_gradients import surface_frames
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ...mesh.polygons import Polygons
-    from ...mesh.surface_map import SurfaceMap
-    from .face_correspondence import FacePlaces
-
-__all__ = ["carry_corner_values", "carry_normals", "carry_point_marks", "carry_point_values", "turned_normals"]
+from .face_correspondence import FacePlaces
 
 _SAME = 1e-3
 """Values that differ by less than this part of their range are the same; a byte has steps four times as large."""
@@ -87,7 +83,7 @@ def carry_point_values(values: ArrayLike, target_to_source: SurfaceMap) -> NDArr
     return target_to_source.transfer(array)
 
 
-def carry_point_marks(values: NDArray[np.float64], source_to_target: SurfaceMap) -> NDArray[np.float64]:
+def carry_point_marks(values: Floats, source_to_target: SurfaceMap) -> Floats:
     """Carry numbers that mark single vertices of the source, (n_x,), such as creases, to single ones of the target.
 
     Each goes to the vertex nearest to its place; of several that meet there the largest counts.  All others are zero.
@@ -99,12 +95,8 @@ def carry_point_marks(values: NDArray[np.float64], source_to_target: SurfaceMap)
 
 
 def carry_normals(
-    normals: NDArray[np.float64],
-    source: Polygons,
-    places: FacePlaces,
-    target: TriangleMesh,
-    rotations: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    normals: Floats, source: Polygons, places: FacePlaces, target: TriangleMesh, rotations: Floats
+) -> Floats:
     """Carry normals at the corners of faces that differ from those of the surface.
 
     What is carried is how they deviate from the smooth normals of the source: where they do not, the target gets its
@@ -147,11 +139,11 @@ def carry_normals(
 
 
 def turned_normals(
-    normals: NDArray[np.float64],
-    corner_vertices: NDArray[np.int64],
+    normals: Floats,
+    corner_vertices: Ints,
     mesh: TriangleMesh,
-    positions: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    positions: Floats,
+) -> Floats:
     """Turn normals at the corners of faces as a deformation turns the surface.
 
     As in `carry_normals`, what is kept is how they deviate from the smooth normals.  At seams that the mesh was cut
@@ -190,16 +182,14 @@ def turned_normals(
     return unit_vectors(np.einsum("lij,lj->li", whole[homes], normals), _CANCELLED)
 
 
-def _interpolated(
-    values: NDArray[np.float64], source: Polygons, places: FacePlaces, tolerance: float
-) -> NDArray[np.float64]:
+def _interpolated(values: Floats, source: Polygons, places: FacePlaces, tolerance: float) -> Floats:
     """Carry real values (l_x, d), interpolated on the sheets on which they are continuous."""
     sheets = cut_into_sheets(places.image, source, values, tolerance)
     found = places.on_sheets(sheets)
     return sheets.at(found.triangles, found.barycentric)
 
 
-def _shortest_rotations(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+def _shortest_rotations(start: Floats, end: Floats) -> Floats:
     """Rotations that turn unit vectors (n, 3) into others by the least angle; none where these are opposite."""
     axis, cosine = np.cross(start, end), np.einsum("nd,nd->n", start, end)
     zero = np.zeros(len(axis))

@@ -3,18 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.polygons import Polygons
-
-__all__ = ["groups_of", "jumps", "weld"]
+from ...mesh.polygons import Polygons
+from ...runtime.arrays import Bools, Floats, Ints
 
 _WELD = 0.25
 """Corners that meet on the same sheet belong together if they differ by less than this part of the edge there."""
@@ -32,13 +26,7 @@ _LARGE = 20.0
 """How many times the area of a face the parts on both sides have, so that no small part is eaten up."""
 
 
-def weld(
-    values: NDArray[np.float64],
-    polygons: Polygons,
-    labels: NDArray[np.int64],
-    known: NDArray[np.bool_],
-    tolerance: float,
-) -> NDArray[np.float64]:
+def weld(values: Floats, polygons: Polygons, labels: Ints, known: Bools, tolerance: float) -> Floats:
     """Give corners that meet at an edge of two faces on one sheet the same values, if they nearly are already.
 
     Parameters
@@ -73,7 +61,7 @@ def weld(
     return means[group]
 
 
-def jumps(values: NDArray[np.float64], polygons: Polygons, tolerance: float) -> NDArray[np.bool_]:
+def jumps(values: Floats, polygons: Polygons, tolerance: float) -> Bools:
     """Say of each edge (e,) whether corner values (l, d) differ by more than a tolerance between its faces."""
     meeting = polygons.meeting_corners
     apart = (np.abs(values[meeting[:, :, 1]] - values[meeting[:, :, 0]]) > tolerance).any(axis=(1, 2))
@@ -82,7 +70,7 @@ def jumps(values: NDArray[np.float64], polygons: Polygons, tolerance: float) -> 
     return found
 
 
-def groups_of(pairs: NDArray[np.int64], count: int) -> tuple[NDArray[np.int64], int]:
+def groups_of(pairs: Ints, count: int) -> tuple[Ints, int]:
     """Find the group of each of `count` things that hang together by pairs (p, 2), and the number of groups."""
     graph = coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     groups, group = connected_components(graph, directed=False)

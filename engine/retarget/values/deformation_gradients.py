@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import diags_array
@@ -13,15 +12,10 @@ from scipy.spatial import cKDTree
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MeshError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ..rig.fitted_rig import FittedRig
-
-__all__ = ["LocalFrames", "bone_frames", "surface_frames"]
+from ..rig.fitted_rig import FittedRig
 
 _RADIUS = 0.1
 """Over what distance Jacobians are averaged, in sqrt(area): about the size of a face, which turns as a whole."""
@@ -53,8 +47,8 @@ class LocalFrames:
         How many times as long they become on the whole: root of the mean growth of areas.
     """
 
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
+    rotations: Floats
+    scales: Floats
     overall: float
 
     def __len__(self) -> int:
@@ -63,13 +57,13 @@ class LocalFrames:
     def __repr__(self) -> str:
         return f"<LocalFrames: {len(self)} vertices, {self.overall:.3g} times as large>"
 
-    def turned(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    def turned(self, vectors: Floats) -> Floats:
         """Turn vectors (..., n, 3), one for each vertex, without a change of length."""
         return np.einsum("nij,...nj->...ni", self.rotations, vectors)
 
 
 def surface_frames(
-    mesh: TriangleMesh, images: NDArray[np.float64], *, radius: float = _RADIUS, mirrored: bool = False
+    mesh: TriangleMesh, images: Floats, *, radius: float = _RADIUS, mirrored: bool = False
 ) -> LocalFrames:
     r"""Find what a deformation does to a surface from positions before and after.
 
@@ -154,7 +148,7 @@ def bone_frames(rig: FittedRig, otherwise: LocalFrames) -> LocalFrames:
     return LocalFrames(rotations, scales, otherwise.overall)
 
 
-def _bearers(mesh: TriangleMesh) -> NDArray[np.int64]:
+def _bearers(mesh: TriangleMesh) -> Ints:
     """For each vertex of a small piece, such as a lash, the nearest of what it lies on; for others themselves, (n,)."""
     bearers = np.arange(mesh.vertex_count)
     parts = WeldedParts.of(mesh)
@@ -174,7 +168,7 @@ def _bearers(mesh: TriangleMesh) -> NDArray[np.int64]:
     return bearers
 
 
-def _sides(points: NDArray[np.float64], triangles: NDArray[np.int64], side: float) -> NDArray[np.float64]:
+def _sides(points: Floats, triangles: Ints, side: float) -> Floats:
     """Two sides of each triangle and a normal of the length of a mean side, as columns, (m, 3, 3)."""
     a, b, c = (points[corner] for corner in triangles.T)
     first, second = b - a, c - a
@@ -184,14 +178,14 @@ def _sides(points: NDArray[np.float64], triangles: NDArray[np.int64], side: floa
     return np.stack([first, second, normal], axis=2)
 
 
-def _median(values: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
+def _median(values: Floats, weights: Floats) -> float:
     """Median of values of such weights."""
     order = np.argsort(values, kind="stable")
     total = np.cumsum(weights[order])
     return float(values[order[np.searchsorted(total, total[-1] / 2)]])
 
 
-def _spread(mesh: TriangleMesh, sums: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+def _spread(mesh: TriangleMesh, sums: Floats, radius: float) -> Floats:
     """Let integrals over the vertices' areas (n, k) spread like heat, and divide them by the area that they come from.
 
     A vertex that no heat reaches, without a triangle, gets the mean.
@@ -208,14 +202,13 @@ def _spread(mesh: TriangleMesh, sums: NDArray[np.float64], radius: float) -> NDA
     return np.where(reached, heat[:, :-1] / np.where(reached, heat[:, -1:], 1), mean)
 
 
-def _bounded(scales: NDArray[np.float64]) -> NDArray[np.float64]:
+def _bounded(scales: Floats) -> Floats:
     """Bound scales (n,) around their middle."""
     middle = float(np.maximum(np.median(scales), _TINY))
-    bounded: NDArray[np.float64] = scales.clip(middle / _LARGEST_STRETCH, middle * _LARGEST_STRETCH)
-    return bounded
+    return scales.clip(middle / _LARGEST_STRETCH, middle * _LARGEST_STRETCH)
 
 
-def _orthogonal(matrices: NDArray[np.float64], handedness: float) -> NDArray[np.float64]:
+def _orthogonal(matrices: Floats, handedness: float) -> Floats:
     """Orthogonal matrices of such a determinant, 1 or -1, that are nearest to matrices (n, 3, 3)."""
     left, _, right = np.linalg.svd(matrices)
     left[:, :, 2] *= (handedness * np.sign(np.linalg.det(left @ right)))[:, None]

@@ -5,25 +5,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ...mesh.connectivity.edge_chains import edge_chains
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MatchError
-from ...runtime.progress import Progress
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...runtime.progress import Steps
-
-__all__ = ["TracedEdges", "nearest_edge_values", "trace_edges_steps"]
+from ...runtime.progress import Progress, Steps
 
 _PIECE = 8.0
 """Length of the pieces that a line is traced in, in edges of the target: short enough that no piece has a short cut
@@ -63,15 +58,15 @@ class TracedEdges:
         How many chains of marked edges run where the target has nothing: inside a mouth that it lacks, say.
     """
 
-    values: NDArray[np.float64]
+    values: Floats
     lost: int
 
 
 def trace_edges_steps(
-    marked: NDArray[np.int64],
+    marked: Ints,
     values: ArrayLike,
     source: TriangleMesh,
-    edges: NDArray[np.int64],
+    edges: Ints,
     *,
     source_to_target: SurfaceMap,
     target_to_source: SurfaceMap,
@@ -132,11 +127,7 @@ def trace_edges_steps(
 
 
 def nearest_edge_values(
-    values: NDArray[Any],
-    source: TriangleMesh,
-    source_edges: NDArray[np.int64],
-    edges: NDArray[np.int64],
-    target_to_source: SurfaceMap,
+    values: NDArray[Any], source: TriangleMesh, source_edges: Ints, edges: Ints, target_to_source: SurfaceMap
 ) -> NDArray[Any]:
     """Carry a value of each edge of the source, (e_x, ...), to the edges of the target, (e_y, ...): from the nearest.
 
@@ -157,11 +148,7 @@ class _Tracer:
     """The edges of the target as they lie on the source."""
 
     def __init__(
-        self,
-        source: TriangleMesh,
-        edges: NDArray[np.int64],
-        source_to_target: SurfaceMap,
-        target_to_source: SurfaceMap,
+        self, source: TriangleMesh, edges: Ints, source_to_target: SurfaceMap, target_to_source: SurfaceMap
     ) -> None:
         self._vertices = source.vertices
         self._images = target_to_source.positions
@@ -176,9 +163,7 @@ class _Tracer:
         self._reach = np.bincount(tail, np.tile(self._lengths, 2), n) / np.maximum(np.bincount(tail, minlength=n), 1)
         self._used = np.bincount(tail, minlength=n) > 0
 
-    def trace(
-        self, chain: NDArray[np.int64], values: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]] | None:
+    def trace(self, chain: Ints, values: Floats) -> tuple[Ints, Floats] | None:
         """Trace a chain of c + 1 vertices and c edges with values; return edges of the target and their values.
 
         None if the target has nothing where the chain runs.
@@ -198,14 +183,14 @@ class _Tracer:
         middles = self._images[self._edges[path]].mean(axis=1)
         return path, values[segment[cKDTree(samples).query(middles)[1]]] if len(path) else np.zeros(0)
 
-    def _counterparts(self, chain: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def _counterparts(self, chain: Ints) -> tuple[Ints, Floats]:
         """For vertices of the source the vertex of the target that lies nearest on the source, and how far away."""
         corners = self._corners[chain]
         away = np.linalg.norm(self._images[corners] - self._vertices[chain][:, None], axis=2)
         best = np.where(self._used[corners], away, np.inf).argmin(axis=1)[:, None]
         return np.take_along_axis(corners, best, axis=1)[:, 0], np.take_along_axis(away, best, axis=1)[:, 0]
 
-    def _anchors(self, points: NDArray[np.float64], missed: NDArray[np.float64], step: float) -> NDArray[np.int64]:
+    def _anchors(self, points: Floats, missed: Floats, step: float) -> Ints:
         """Choose places along a chain, both ends among them, where it is to pass exactly.
 
         Those are the best of each piece, those where the target has a vertex in the same place, and bends.
@@ -221,7 +206,7 @@ class _Tracer:
             chosen.add(int(near[missed[near].argmin()]))
         return _with_bends(points, sorted(chosen), step)
 
-    def _extend(self, route: list[int], end: int, samples: NDArray[np.float64], step: float) -> None:
+    def _extend(self, route: list[int], end: int, samples: Floats, step: float) -> None:
         """Lead a route on to a vertex, along samples (s, 3) of the line; there may be no way."""
         start = route[-1]
         if start == end:
@@ -241,9 +226,7 @@ class _Tracer:
             else:
                 route.append(vertex)
 
-    def _cheapest(
-        self, inside: NDArray[np.int64], start: int, end: int, samples: NDArray[np.float64], step: float
-    ) -> list[int] | None:
+    def _cheapest(self, inside: Ints, start: int, end: int, samples: Floats, step: float) -> list[int] | None:
         """Vertices of the cheapest path within a corridor, without its start; None if there is no path."""
         graph = self._graph[inside][:, inside].tocsr()
         numbers = graph.data - 1
@@ -263,7 +246,7 @@ class _Tracer:
             backwards.append(int(before[backwards[-1]]))
         return [int(vertex) for vertex in inside[backwards[-2::-1]]]
 
-    def _edges_between(self, route: list[int]) -> NDArray[np.int64]:
+    def _edges_between(self, route: list[int]) -> Ints:
         """Edges between successive vertices, as far as there are any."""
         vertices = np.array(route)
         while len(vertices) > 3 and vertices[0] == vertices[-1] and vertices[1] == vertices[-2]:
@@ -274,7 +257,7 @@ class _Tracer:
         return numbers[numbers > 0] - 1
 
 
-def _with_bends(points: NDArray[np.float64], chosen: list[int], step: float) -> NDArray[np.int64]:
+def _with_bends(points: Floats, chosen: list[int], step: float) -> Ints:
     """Add places to some along a line until it stays within a step of the straight lines between them."""
     left, kept = list(pairwise(chosen)), set(chosen)
     while left:
@@ -289,16 +272,14 @@ def _with_bends(points: NDArray[np.float64], chosen: list[int], step: float) -> 
     return np.array(sorted(kept))
 
 
-def _from_segment(
-    points: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _from_segment(points: Floats, start: Floats, end: Floats) -> Floats:
     """Distances of points (k, 3) from a straight line between two others."""
     along = end - start
     part = ((points - start) @ along / max(float(along @ along), _TINY)).clip(0, 1)
     return np.linalg.norm(points - start - part[:, None] * along, axis=1)
 
 
-def _sampled(points: NDArray[np.float64], spacing: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _sampled(points: Floats, spacing: float) -> tuple[Floats, Ints]:
     """Points along a line (c + 1, 3), its own among them, and the number of the segment of each."""
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     # An even number of parts, so that the middles of segments are among them.
@@ -310,12 +291,7 @@ def _sampled(points: NDArray[np.float64], spacing: float) -> tuple[NDArray[np.fl
     return np.concatenate([samples, points[-1:]]), np.append(segment, len(parts) - 1)
 
 
-def _check(
-    source: TriangleMesh,
-    edges: NDArray[np.int64],
-    source_to_target: SurfaceMap,
-    target_to_source: SurfaceMap,
-) -> None:
+def _check(source: TriangleMesh, edges: Ints, source_to_target: SurfaceMap, target_to_source: SurfaceMap) -> None:
     """Make sure that all belong together."""
     known = (len(source_to_target), target_to_source.image_vertex_count)
     if known != (source.vertex_count, source.vertex_count):

@@ -5,24 +5,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...mesh.closest_points import ClosestPoints
+from ...mesh.closest_points import ClosestPoints, FoundPoints
+from ...mesh.polygons import Polygons
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.closest_points import FoundPoints
-    from ...mesh.polygons import Polygons
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .charts import CornerSheets
-
-__all__ = ["CornerPlaces", "FacePlaces", "FaceSamples", "FaceSeats"]
+from .charts import CornerSheets
 
 _TOWARDS_CORNER = 2 / 3
 """How far from the centre of a face towards each corner it is sampled: about the middle of what lies nearest there."""
@@ -49,14 +42,14 @@ class FaceSeats:
         Coordinates in it.
     """
 
-    triangles: NDArray[np.int64]
-    barycentric: NDArray[np.float64]
+    triangles: Ints
+    barycentric: Floats
 
-    def positions(self, surface: TriangleMesh) -> NDArray[np.float64]:
+    def positions(self, surface: TriangleMesh) -> Floats:
         """Where the places are in space, (f, 3)."""
         return _positions(surface, self.triangles, self.barycentric)
 
-    def nearest_vertices(self, surface: TriangleMesh) -> NDArray[np.int64]:
+    def nearest_vertices(self, surface: TriangleMesh) -> Ints:
         """Vertex of the surface, or of the same surface after cuts, that is nearest to each place in its triangle."""
         return surface.triangles[self.triangles, self.barycentric.argmax(axis=1)]
 
@@ -79,19 +72,19 @@ class CornerPlaces:
         The places of the faces that this holds for.
     """
 
-    triangles: NDArray[np.int64]
-    barycentric: NDArray[np.float64]
-    offsets: NDArray[np.float64]
-    near_border: NDArray[np.bool_]
+    triangles: Ints
+    barycentric: Floats
+    offsets: Floats
+    near_border: Bools
     seats: FaceSeats
 
     @cached_property
-    def is_beyond(self) -> NDArray[np.bool_]:
+    def is_beyond(self) -> Bools:
         """Which corners lie beyond the border of the sheet, (l,)."""
         return self.offsets.any(axis=1)
 
     @property
-    def nearest_slots(self) -> NDArray[np.int64]:
+    def nearest_slots(self) -> Ints:
         """Which corner of its triangle is nearest to each, (l,)."""
         return self.barycentric.argmax(axis=1)
 
@@ -110,9 +103,9 @@ class FaceSamples:
         How much each counts.
     """
 
-    faces: NDArray[np.int64]
-    triangles: NDArray[np.int64]
-    weights: NDArray[np.float64]
+    faces: Ints
+    triangles: Ints
+    weights: Floats
 
 
 class FacePlaces:
@@ -164,13 +157,13 @@ class FacePlaces:
         self._extent = float(np.ptp(image.vertices, axis=0).max())
 
     @cached_property
-    def reaches(self) -> NDArray[np.float64]:
+    def reaches(self) -> Floats:
         """Distance from the centre of each face to the image of its farthest corner, (f,)."""
         away = np.linalg.norm(self.images - self.centres[self.polygons.corner_faces], axis=1)
         return np.maximum.reduceat(away, self.polygons.starts[:-1]) if len(away) else away
 
     @cached_property
-    def confidence(self) -> NDArray[np.float64]:
+    def confidence(self) -> Floats:
         """Mean confidence of the map at the corners of each face, (f,)."""
         return self.polygons.face_means(self.map.confidence[self.polygons.corner_vertices])
 
@@ -230,7 +223,7 @@ class FacePlaces:
             offsets[index] = self.images[index] - _positions(self.image, triangles[index], barycentric[index])
         return CornerPlaces(triangles, barycentric, offsets, near_border, seats)
 
-    def _walked(self, sheets: CornerSheets, seats: FaceSeats, corners: NDArray[np.int64]) -> FoundPoints:
+    def _walked(self, sheets: CornerSheets, seats: FaceSeats, corners: Ints) -> FoundPoints:
         """Walk from the seats of faces towards the images of some corners (k,), within sheets."""
         faces = self.polygons.corner_faces[corners]
         images = self.images[corners]
@@ -240,16 +233,14 @@ class FacePlaces:
         starts = FaceSeats(first.triangles, first.barycentric).nearest_vertices(sheets.surface)
         return sheets.search.walk(images, starts)
 
-    def seated_beside(
-        self, sheets: CornerSheets, seats: FaceSeats, faces: NDArray[np.int64], neighbours: NDArray[np.int64]
-    ) -> FaceSeats:
+    def seated_beside(self, sheets: CornerSheets, seats: FaceSeats, faces: Ints, neighbours: Ints) -> FaceSeats:
         """Move some faces (k,) to the sheets on which other faces (k,) lie."""
         found = sheets.search.walk(self.centres[faces], seats.nearest_vertices(sheets.surface)[neighbours])
         triangles, barycentric = seats.triangles.copy(), seats.barycentric.copy()
         triangles[faces], barycentric[faces] = found.triangles, found.barycentric
         return FaceSeats(triangles, barycentric)
 
-    def _is_clear(self, sheets: CornerSheets) -> NDArray[np.bool_]:
+    def _is_clear(self, sheets: CornerSheets) -> Bools:
         """Say of each face whether no border of a sheet is within its reach."""
         first, second = sheets.border_ends
         if not len(first):
@@ -259,8 +250,6 @@ class FacePlaces:
         return away - half > self.reaches
 
 
-def _positions(
-    mesh: TriangleMesh, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _positions(mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -> Floats:
     """Where places on a mesh are in space, (k, 3)."""
     return np.einsum("kc,kcd->kd", barycentric, mesh.vertices[mesh.triangles[triangles]])

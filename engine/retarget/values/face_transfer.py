@@ -3,19 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from ...mesh.polygons import Polygons
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import MatchError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ...mesh.polygons import Polygons
-    from .face_correspondence import FacePlaces, FaceSamples
-
-__all__ = ["carry_face_values", "majority"]
+from .face_correspondence import FacePlaces, FaceSamples
 
 
 def carry_face_values(values: ArrayLike, source: Polygons, places: FacePlaces) -> NDArray[Any]:
@@ -53,9 +49,7 @@ def carry_face_values(values: ArrayLike, source: Polygons, places: FacePlaces) -
     return array[first[chosen]]
 
 
-def majority(
-    codes: NDArray[np.int64], owners: NDArray[np.int64], weights: NDArray[np.float64], count: int
-) -> NDArray[np.int64]:
+def majority(codes: Ints, owners: Ints, weights: Floats, count: int) -> Ints:
     """Find the code that weighs most among those of each owner.
 
     Parameters
@@ -82,7 +76,7 @@ def majority(
     return chosen
 
 
-def _means(values: NDArray[np.float64], samples: FaceSamples, count: int) -> NDArray[np.float64]:
+def _means(values: Floats, samples: FaceSamples, count: int) -> Floats:
     """Mean of values (s, ...) at samples over each face, (count, ...)."""
     columns = values.reshape(len(values), -1).T
     total = np.bincount(samples.faces, samples.weights, count)

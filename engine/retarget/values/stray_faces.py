@@ -3,18 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ...mesh.polygons import Polygons
+from ...runtime.arrays import Bools, Floats, Ints
 from .corner_welding import groups_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.polygons import Polygons
-
-__all__ = ["splinters", "teeth"]
 
 _SPLINTER = 0.005
 """Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
@@ -28,9 +21,7 @@ _LARGE = 20.0
 _TINY = float(np.finfo(float).tiny)
 
 
-def splinters(
-    polygons: Polygons, seams: NDArray[np.bool_], labels: NDArray[np.int64], areas: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def splinters(polygons: Polygons, seams: Bools, labels: Ints, areas: Floats) -> tuple[Ints, Ints]:
     """Find faces that were cut off from the rest of their sheet, and for each a neighbour to go with instead.
 
     Parameters
@@ -65,13 +56,7 @@ def splinters(
     return faces, across[first, 1]
 
 
-def teeth(
-    polygons: Polygons,
-    seams: NDArray[np.bool_],
-    movable: NDArray[np.bool_],
-    areas: NDArray[np.float64],
-    lengths: NDArray[np.float64],
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def teeth(polygons: Polygons, seams: Bools, movable: Bools, areas: Floats, lengths: Floats) -> tuple[Ints, Ints]:
     """Find faces that reach from one part into another, so that the seam would be shorter without them.
 
     Parameters

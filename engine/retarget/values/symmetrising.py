@@ -4,24 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError
-from .deformation_gradients import surface_frames
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .deformation_gradients import LocalFrames
-
-__all__ = ["Symmetriser"]
+from .deformation_gradients import LocalFrames, surface_frames
 
 _LEAST_CONFIDENCE = 0.02
 """Places where the map to the mirror image is trusted less keep what they have."""
@@ -48,14 +41,14 @@ class Symmetriser:
     """
 
     mirror: SurfaceMap
-    own: NDArray[np.float64]
+    own: Floats
     frames: LocalFrames
 
     def __repr__(self) -> str:
         return f"<Symmetriser: {len(self.own)} vertices>"
 
     @classmethod
-    def of(cls, mesh: TriangleMesh, mirror: SurfaceMap, hints: NDArray[np.float64]) -> Symmetriser:
+    def of(cls, mesh: TriangleMesh, mirror: SurfaceMap, hints: Floats) -> Symmetriser:
         """Tell the sides apart.
 
         Parameters
@@ -86,12 +79,12 @@ class Symmetriser:
         own[mirror.confidence < _LEAST_CONFIDENCE] = 1.0
         return cls(mirror, own, surface_frames(mesh, mirror.positions, mirrored=True))
 
-    def values(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def values(self, values: Floats) -> Floats:
         """Make values (n, ...) at the vertices symmetric."""
         own = self.own.reshape(-1, *[1] * (values.ndim - 1))
         return own * values + (1 - own) * self.mirror.transfer(values)
 
-    def weights(self, weights: csr_array, partners: NDArray[np.int64]) -> csr_array:
+    def weights(self, weights: csr_array, partners: Ints) -> csr_array:
         """Make weights symmetric.
 
         Parameters
@@ -114,7 +107,7 @@ class Symmetriser:
         result.eliminate_zeros()
         return result
 
-    def offsets(self, offsets: NDArray[np.float64], partners: NDArray[np.int64]) -> NDArray[np.float64]:
+    def offsets(self, offsets: Floats, partners: Ints) -> Floats:
         """Make offsets (k, n, 3) of shape keys symmetric; `partners` (k,) are the keys of the other side."""
         own = self.own[:, None]
         mirrored = np.empty_like(offsets)
@@ -122,12 +115,12 @@ class Symmetriser:
             mirrored[number] = self.mirrored_offsets(offsets[other])
         return own * offsets + (1 - own) * mirrored
 
-    def mirrored_offsets(self, offsets: NDArray[np.float64]) -> NDArray[np.float64]:
+    def mirrored_offsets(self, offsets: Floats) -> Floats:
         """Take offsets (n, 3) of all vertices to the mirror images, both ways."""
         return self.mirror.transfer(self.frames.turned(offsets))
 
 
-def _sides(mesh: TriangleMesh, mirror: SurfaceMap, hints: NDArray[np.float64]) -> NDArray[np.float64]:
+def _sides(mesh: TriangleMesh, mirror: SurfaceMap, hints: Floats) -> Floats:
     """Find a smooth function that is positive on the good side, negative on the other, zero if not known, (n,)."""
     odd = hints - mirror.transfer(hints)
     largest = float(np.abs(odd).max(initial=0.0))
@@ -147,7 +140,7 @@ def _sides(mesh: TriangleMesh, mirror: SurfaceMap, hints: NDArray[np.float64]) -
     return np.where(np.abs(smooth) > _NOTHING * np.abs(smooth).max(), smooth, 0.0)
 
 
-def _in_the_middle(mesh: TriangleMesh, mirror: SurfaceMap) -> NDArray[np.bool_]:
+def _in_the_middle(mesh: TriangleMesh, mirror: SurfaceMap) -> Bools:
     """Tell which vertices are, up to an edge, their own mirror images, (n,)."""
     a, b = mesh.edges.T
     n = mesh.vertex_count

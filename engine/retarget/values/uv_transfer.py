@@ -4,26 +4,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ...mesh.polygons import Polygons
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
-from ...runtime.progress import Progress
-from .charts import cut_into_sheets
+from ...runtime.progress import Progress, Steps
+from .charts import CornerSheets, cut_into_sheets
 from .corner_welding import jumps, weld
+from .face_correspondence import CornerPlaces, FacePlaces
 from .stray_faces import splinters, teeth
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ...mesh.polygons import Polygons
-    from ...runtime.progress import Steps
-    from .charts import CornerSheets
-    from .face_correspondence import CornerPlaces, FacePlaces
-
-__all__ = ["CarriedUVs", "carry_uvs_steps"]
 
 _SAME = 1e-5
 """UVs that differ by less than this part of the extent of the layer are the same; Blender's own rule for a layer that
@@ -63,9 +56,9 @@ class CarriedUVs:
         How many of the others lie mostly where the map has no confidence.
     """
 
-    uvs: NDArray[np.float64]
-    seams: NDArray[np.bool_]
-    islands: NDArray[np.int64]
+    uvs: Floats
+    seams: Bools
+    islands: Ints
     island_count: int
     lost: int
     untrusted: int
@@ -75,9 +68,7 @@ class CarriedUVs:
 
 
 @can_go_beside
-def carry_uvs_steps(
-    uvs: ArrayLike, source: Polygons, places: FacePlaces, areas: NDArray[np.float64]
-) -> Steps[CarriedUVs]:
+def carry_uvs_steps(uvs: ArrayLike, source: Polygons, places: FacePlaces, areas: Floats) -> Steps[CarriedUVs]:
     """Carry UVs at the corners of the source's faces to those of the target's.
 
     The source is cut into its islands.  Each face of the target takes the island, and the place there, under its
@@ -136,7 +127,7 @@ def carry_uvs_steps(
     return CarriedUVs(carried, seams, islands, sheets.count, lost, untrusted)
 
 
-def _laid_out(places: FacePlaces, sheets: CornerSheets, corners: CornerPlaces, tolerance: float) -> NDArray[np.float64]:
+def _laid_out(places: FacePlaces, sheets: CornerSheets, corners: CornerPlaces, tolerance: float) -> Floats:
     """UVs (l, 2) of faces, whose corners have these places on islands."""
     seats = corners.seats
     carried = sheets.at(corners.triangles, corners.barycentric)
@@ -158,12 +149,8 @@ def _laid_out(places: FacePlaces, sheets: CornerSheets, corners: CornerPlaces, t
 
 
 def _strays(
-    seams: NDArray[np.bool_],
-    sheets: CornerSheets,
-    corners: CornerPlaces,
-    places: FacePlaces,
-    areas: NDArray[np.float64],
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    seams: Bools, sheets: CornerSheets, corners: CornerPlaces, places: FacePlaces, areas: Floats
+) -> tuple[Ints, Ints]:
     """Find faces that go better with a neighbour's island, and these neighbours, (k,) each."""
     polygons = places.polygons
     stray, beside = splinters(polygons, seams, sheets.labels[corners.seats.triangles], areas)
@@ -176,9 +163,7 @@ def _strays(
     return np.append(stray, tooth[fresh]), np.append(beside, next_to[fresh])
 
 
-def _misplaced(
-    islands: NDArray[np.int64], count: int, confidence: NDArray[np.float64], areas: NDArray[np.float64]
-) -> tuple[int, int]:
+def _misplaced(islands: Ints, count: int, confidence: Floats, areas: Floats) -> tuple[int, int]:
     """Count the islands that no face lies on, and of the others those without confidence, by the area of faces."""
     covered = np.bincount(islands, areas, count)
     doubtful = np.bincount(islands, areas * (confidence < _LEAST_CONFIDENCE), count)

@@ -3,20 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array
 
+from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_map import SurfaceMap
+from ...runtime.arrays import Bools, Floats, Ints
 from .skin_weights import with_rows
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.connectivity.welded_parts import WeldedParts
-    from ...mesh.surface_map import SurfaceMap
-
-__all__ = ["with_rigid_parts", "with_single_bones"]
 
 _ALIKE = 1e-3
 """Rows of weights that differ by less than this in each entry are the same."""
@@ -32,7 +25,7 @@ def with_rigid_parts(
     source_parts: WeldedParts,
     surface_map: SurfaceMap,
     *,
-    free: NDArray[np.bool_] | None = None,
+    free: Bools | None = None,
 ) -> csr_array:
     """Let parts move as one whose counterparts do.
 
@@ -79,9 +72,7 @@ def with_rigid_parts(
     return with_rows(weights, vertices, source_weights[first[counterpart[labels[vertices]]]])
 
 
-def with_single_bones(
-    weights: csr_array, parts: WeldedParts, chosen: NDArray[np.bool_], bones: NDArray[np.bool_] | None = None
-) -> csr_array:
+def with_single_bones(weights: csr_array, parts: WeldedParts, chosen: Bools, bones: Bools | None = None) -> csr_array:
     """Let parts move by one bone each: the one that has the most weight there.
 
     Parameters
@@ -116,7 +107,7 @@ def with_single_bones(
     return with_rows(weights, changed, csr_array((data, where), shape=(len(changed), weights.shape[1])))
 
 
-def _rigid_rows(weights: csr_array, parts: WeldedParts) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def _rigid_rows(weights: csr_array, parts: WeldedParts) -> tuple[Ints, Bools]:
     """Return the first vertex of each part (p,), and whether all its vertices have the same weights (p,)."""
     labels = parts.vertex_labels
     first = np.unique(labels, return_index=True)[1]
@@ -126,9 +117,7 @@ def _rigid_rows(weights: csr_array, parts: WeldedParts) -> tuple[NDArray[np.int6
     return first, ~loose
 
 
-def _shared_rows(
-    votes: csr_array, rows: csr_array, rigid: NDArray[np.bool_]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _shared_rows(votes: csr_array, rows: csr_array, rigid: Bools) -> tuple[Floats, Ints]:
     """Find what most of each part lies on: of the votes (p, q), those for rigid parts with the same weights (q, g).
 
     Returns

@@ -6,21 +6,15 @@ Some columns may be locked: they keep what they have, and the others share what 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, diags_array, vstack
 
+from ...mesh.surface_map import SurfaceMap
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError, RigError
-
-if TYPE_CHECKING:
-    from typing import Any
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-
-__all__ = ["carried", "limited", "mixed", "normalised", "pruned", "row_differences", "row_sums", "with_rows"]
 
 _STEEPNESS = 4
 """How steeply weights fade that come close to the first one that is cut off."""
@@ -60,12 +54,7 @@ def carried(weights: csr_array, surface_map: SurfaceMap) -> csr_array:
 
 
 def mixed(
-    before: csr_array,
-    new: csr_array,
-    factor: ArrayLike = 1.0,
-    *,
-    add: bool = False,
-    locked: NDArray[np.bool_] | None = None,
+    before: csr_array, new: csr_array, factor: ArrayLike = 1.0, *, add: bool = False, locked: Bools | None = None
 ) -> csr_array:
     """Mix new weights into those that were there.
 
@@ -105,7 +94,7 @@ def mixed(
     return _clean(csr_array(faded + added + before @ diags_array((~free).astype(float))))
 
 
-def limited(weights: csr_array, count: int, *, locked: NDArray[np.bool_] | None = None) -> csr_array:
+def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> csr_array:
     r"""Leave each vertex its largest weights only.
 
     Parameters
@@ -163,7 +152,7 @@ def limited(weights: csr_array, count: int, *, locked: NDArray[np.bool_] | None 
     return _clean(result)
 
 
-def pruned(weights: csr_array, threshold: float, *, locked: NDArray[np.bool_] | None = None) -> csr_array:
+def pruned(weights: csr_array, threshold: float, *, locked: Bools | None = None) -> csr_array:
     """Remove tiny weights.
 
     Parameters
@@ -189,7 +178,7 @@ def pruned(weights: csr_array, threshold: float, *, locked: NDArray[np.bool_] | 
     return _clean(result)
 
 
-def normalised(weights: csr_array, *, locked: NDArray[np.bool_] | None = None) -> csr_array:
+def normalised(weights: csr_array, *, locked: Bools | None = None) -> csr_array:
     """Scale the weights of each vertex so that they sum to one.
 
     Parameters
@@ -216,7 +205,7 @@ def normalised(weights: csr_array, *, locked: NDArray[np.bool_] | None = None) -
     return _clean(result)
 
 
-def row_sums(weights: csr_array) -> NDArray[np.float64]:
+def row_sums(weights: csr_array) -> Floats:
     """Sum the weights of each vertex, (m,)."""
     sums: NDArray[Any] = np.bincount(
         np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr)), weights.data, weights.shape[0]
@@ -224,12 +213,12 @@ def row_sums(weights: csr_array) -> NDArray[np.float64]:
     return sums.astype(np.float64)  # without entries there are whole numbers
 
 
-def row_differences(one: csr_array, other: csr_array) -> NDArray[np.float64]:
+def row_differences(one: csr_array, other: csr_array) -> Floats:
     """Sum the differences of the weights of each vertex, (m,): 0 if they are the same, 2 if they share no bone."""
     return row_sums(csr_array(abs(one - other)))
 
 
-def with_rows(weights: csr_array, rows: NDArray[np.int64], new: csr_array) -> csr_array:
+def with_rows(weights: csr_array, rows: Ints, new: csr_array) -> csr_array:
     """Replace rows (k,) of weights (m, g) by new ones (k, g)."""
     if not len(rows):
         return weights
@@ -238,7 +227,7 @@ def with_rows(weights: csr_array, rows: NDArray[np.int64], new: csr_array) -> cs
     return csr_array(vstack([weights, new], format="csr")[order])
 
 
-def _free(locked: NDArray[np.bool_] | None, count: int) -> NDArray[np.bool_]:
+def _free(locked: Bools | None, count: int) -> Bools:
     """Say of each column (g,) whether it is not locked."""
     if locked is None:
         return np.ones(count, bool)

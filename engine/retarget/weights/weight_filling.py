@@ -3,24 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
+from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MeshError, RigError
 from .skin_weights import with_rows
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.connectivity.welded_parts import WeldedParts
-
-__all__ = ["filled"]
 
 _LEAST_WEIGHT = 1e-7
 """Weights below this, which is what rounding leaves of a zero, are dropped."""
@@ -29,7 +22,7 @@ _LEAST_STIFFNESS = 1e-9
 """Weight of a bond between all neighbours, as a part of the mean stiffness."""
 
 
-def filled(weights: csr_array, trusted: NDArray[np.bool_], parts: WeldedParts) -> csr_array:
+def filled(weights: csr_array, trusted: Bools, parts: WeldedParts) -> csr_array:
     r"""Give the vertices that are not trusted the weights of those around them.
 
     Parameters
@@ -81,7 +74,7 @@ def filled(weights: csr_array, trusted: NDArray[np.bool_], parts: WeldedParts) -
     return with_rows(weights, rejected, values[parts.welded[rejected]])
 
 
-def _harmonic(values: csr_array, gaps: NDArray[np.bool_], parts: WeldedParts) -> csr_array:
+def _harmonic(values: csr_array, gaps: Bools, parts: WeldedParts) -> csr_array:
     """Continue values (w, g) harmonically into gaps (w,): the rows of these."""
     unknown = np.flatnonzero(gaps)
     if not len(unknown):
@@ -103,7 +96,7 @@ def _harmonic(values: csr_array, gaps: NDArray[np.bool_], parts: WeldedParts) ->
     return csr_array((result.data, columns[result.indices], result.indptr), (len(unknown), values.shape[1]))
 
 
-def _stiffness(positions: NDArray[np.float64], triangles: NDArray[np.int64]) -> csr_array:
+def _stiffness(positions: Floats, triangles: Ints) -> csr_array:
     """Return the Laplacian (k, k) of a piece of surface; without an area, as if all edges were alike."""
     count = len(positions)
     tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
@@ -118,7 +111,7 @@ def _stiffness(positions: NDArray[np.float64], triangles: NDArray[np.int64]) -> 
     return csr_array(surface + _LEAST_STIFFNESS * float(surface.diagonal().mean()) * alike)
 
 
-def _nearest(values: csr_array, apart: NDArray[np.int64], known: NDArray[np.bool_], parts: WeldedParts) -> csr_array:
+def _nearest(values: csr_array, apart: Ints, known: Bools, parts: WeldedParts) -> csr_array:
     """Take for welded vertices (k,) the values (w, g) of the nearest known ones, for small parts one mean."""
     if not len(apart):
         return csr_array((0, values.shape[1]))

@@ -3,22 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Ints
 from .skin_weights import row_differences
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.connectivity.welded_parts import WeldedParts
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["torn_vertices"]
 
 _STRETCH = 3.0
 """An edge that a map stretches by more may be torn."""
@@ -33,9 +26,7 @@ _TORN_EDGES = 1 / 3
 """Part of its edges from which a vertex that is on no island is torn away as well."""
 
 
-def torn_vertices(
-    weights: csr_array, surface_map: SurfaceMap, parts: WeldedParts, image: TriangleMesh
-) -> NDArray[np.bool_]:
+def torn_vertices(weights: csr_array, surface_map: SurfaceMap, parts: WeldedParts, image: TriangleMesh) -> Bools:
     """Find vertices that a map takes to another place than the surface around them.
 
     Parameters
@@ -71,7 +62,7 @@ def torn_vertices(
     return rejected[parts.welded]
 
 
-def _islands(parts: WeldedParts, whole: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _islands(parts: WeldedParts, whole: Bools) -> Bools:
     """Say of each welded vertex (w,) whether what whole edges (e,) join it to is small beside the rest of its part."""
     a, b = parts.edges[whole].T
     graph = csr_array((np.ones(len(a), np.int8), (a, b)), shape=(parts.welded_count, parts.welded_count))
@@ -79,10 +70,9 @@ def _islands(parts: WeldedParts, whole: NDArray[np.bool_]) -> NDArray[np.bool_]:
     sizes = np.bincount(islands)[islands]
     largest = np.zeros(parts.part_count, np.int64)
     np.maximum.at(largest, parts.labels, sizes)
-    small: NDArray[Any] = sizes <= _ISLAND * largest[parts.labels]
-    return small
+    return sizes <= _ISLAND * largest[parts.labels]
 
 
-def _degrees(parts: WeldedParts, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _degrees(parts: WeldedParts, chosen: Bools) -> Ints:
     """Count the chosen edges (e,) at each welded vertex, (w,)."""
     return np.bincount(parts.edges[chosen].ravel(), minlength=parts.welded_count)

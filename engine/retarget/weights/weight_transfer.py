@@ -4,27 +4,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array, hstack
 
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools
 from ...runtime.background import can_go_beside
-from ...runtime.progress import Progress
+from ...runtime.progress import Progress, Steps
 from .rigid_parts import with_rigid_parts, with_single_bones
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
 from .weight_filling import filled
 from .weight_rejection import torn_vertices
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...runtime.progress import Steps
-
-__all__ = ["CarriedWeights", "Columns", "carry_weights_steps", "put_in"]
 
 _ROUNDING = 1e-9
 
@@ -42,7 +36,7 @@ class CarriedWeights:
     """
 
     weights: csr_array
-    torn: NDArray[np.bool_]
+    torn: Bools
 
     def __repr__(self) -> str:
         return f"<CarriedWeights: {self.weights.shape[0]} vertices, {self.weights.shape[1]} groups>"
@@ -64,9 +58,9 @@ class Columns:
         Whether the shared columns that are neither new nor locked give way to the new ones.
     """
 
-    locked: NDArray[np.bool_]
-    new: NDArray[np.bool_]
-    shared: NDArray[np.bool_]
+    locked: Bools
+    new: Bools
+    shared: Bools
     yielding: bool = False
 
     def __repr__(self) -> str:
@@ -80,7 +74,7 @@ def carry_weights_steps(
     target: TriangleMesh,
     target_to_source: SurfaceMap,
     *,
-    telling: NDArray[np.bool_] | None = None,
+    telling: Bools | None = None,
     fill: bool = True,
     fill_alone: bool = False,
     rigid: bool = True,
@@ -197,7 +191,7 @@ def put_in(
     return joined
 
 
-def _given_way(bones: csr_array, fixed: NDArray[np.bool_], locked: NDArray[np.bool_]) -> csr_array:
+def _given_way(bones: csr_array, fixed: Bools, locked: Bools) -> csr_array:
     """Let the columns that are fixed but not locked make room for those that are not fixed."""
     result = normalised(bones, locked=~fixed | locked)
     over = np.flatnonzero(row_sums(result) > 1 + _ROUNDING)

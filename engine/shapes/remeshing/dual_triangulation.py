@@ -4,18 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .surface_cells import SurfaceCells
-
-__all__ = ["DualTriangulation", "dual_triangulation", "manifold_part"]
+from ...runtime.arrays import Bools, Ints
+from .surface_cells import SurfaceCells
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +25,11 @@ class DualTriangulation:
         The regions around which the triangles are no manifold, or not one like the surface.
     """
 
-    triangles: NDArray[np.int64]
-    faulty: NDArray[np.bool_]
+    triangles: Ints
+    faulty: Bools
 
 
-def dual_triangulation(cells: SurfaceCells, regions: NDArray[np.int64], count: int) -> DualTriangulation:
+def dual_triangulation(cells: SurfaceCells, regions: Ints, count: int) -> DualTriangulation:
     """Triangulate regions of cells.
 
     Parameters
@@ -99,7 +94,7 @@ def dual_triangulation(cells: SurfaceCells, regions: NDArray[np.int64], count: i
     return DualTriangulation(triangles, faulty)
 
 
-def manifold_part(triangles: NDArray[np.int64], vertex_count: int) -> NDArray[np.int64]:
+def manifold_part(triangles: Ints, vertex_count: int) -> Ints:
     """Leave out triangles until the rest is a manifold, and of that take the part of most triangles.
 
     Parameters
@@ -134,12 +129,12 @@ def manifold_part(triangles: NDArray[np.int64], vertex_count: int) -> NDArray[np
     return kept[parts == np.bincount(parts).argmax()]
 
 
-def _edge_keys(tail: NDArray[np.int64], head: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _edge_keys(tail: Ints, head: Ints, count: int) -> Ints:
     """One number for each edge, whatever its direction."""
     return np.minimum(tail, head) * count + np.maximum(tail, head)
 
 
-def _edge_faults(triangles: NDArray[np.int64], count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _edge_faults(triangles: Ints, count: int) -> tuple[Ints, Ints]:
     """Vertices of half-edges that occur more than once, and vertices of edges with only one triangle."""
     tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     keys, counts = np.unique(tail * count + head, return_counts=True)
@@ -148,7 +143,7 @@ def _edge_faults(triangles: NDArray[np.int64], count: int) -> tuple[NDArray[np.i
     return crowded, np.concatenate(np.divmod(open_, count))
 
 
-def _fan_counts(triangles: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _fan_counts(triangles: Ints, count: int) -> Ints:
     """Into how many fans the triangles around each vertex fall that hang together across edges, (count,)."""
     tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     half_edges = np.arange(len(tail))

@@ -3,19 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array
 
 from ...mesh.unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .surface_cells import SurfaceCells
-
-__all__ = ["vertex_density"]
+from ...runtime.arrays import Floats
+from .surface_cells import SurfaceCells
 
 _BY_CURVATURE = 0.75
 """Share of the vertices that go where the surface bends; the others are spread evenly."""
@@ -35,7 +28,7 @@ _FLAT = 1e-6
 _TINY = np.finfo(float).tiny
 
 
-def vertex_density(cells: SurfaceCells) -> NDArray[np.float64]:
+def vertex_density(cells: SurfaceCells) -> Floats:
     r"""Tell how densely a surface should be covered with vertices, as it bends more in some places than in others.
 
     A triangle with sides h is about :math:`\kappa h^2 / 8` away from a surface with the curvature :math:`\kappa`, so

@@ -5,18 +5,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["SurfaceCells", "grid_labels", "nearest_members"]
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 
 _LEAST_LENGTH = 1e-9  # of sqrt(area): an edge of length zero is no edge for a sparse graph
 _ASIDE = (1e-5, 3e-5, 2e-5)  # of sqrt(area): any direction that edges of a mesh are unlikely to have
@@ -53,15 +50,15 @@ class SurfaceCells:
         sqrt(area) of the surface.
     """
 
-    labels: NDArray[np.int64]
-    positions: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    areas: NDArray[np.float64]
-    at_boundary: NDArray[np.bool_]
-    characteristics: NDArray[np.int64]
-    pairs: NDArray[np.int64]
-    pair_characteristics: NDArray[np.int64]
-    triples: NDArray[np.int64]
+    labels: Ints
+    positions: Floats
+    normals: Floats
+    areas: Floats
+    at_boundary: Bools
+    characteristics: Ints
+    pairs: Ints
+    pair_characteristics: Ints
+    triples: Ints
     unit: float
 
     @property
@@ -70,7 +67,7 @@ class SurfaceCells:
         return len(self.positions)
 
     @classmethod
-    def build(cls, mesh: TriangleMesh, labels: NDArray[np.int64]) -> SurfaceCells:
+    def build(cls, mesh: TriangleMesh, labels: Ints) -> SurfaceCells:
         """Gather the vertices of a mesh by labels (n,), numbered from 0, every number used, each cell connected."""
         count = int(labels.max()) + 1
         sizes = np.bincount(labels, minlength=count)
@@ -120,16 +117,16 @@ class SurfaceCells:
         )
 
     @cached_property
-    def component_labels(self) -> NDArray[np.int64]:
+    def component_labels(self) -> Ints:
         """Number of the connected component of each cell, (c,)."""
         return connected_components(self.graph, directed=False)[1].astype(np.int64)
 
-    def dissolved(self, mesh: TriangleMesh, cells: NDArray[np.bool_]) -> SurfaceCells:
+    def dissolved(self, mesh: TriangleMesh, cells: Bools) -> SurfaceCells:
         """Return the cells of the same mesh with some (c,) replaced by one cell for each of their vertices."""
         labels = np.where(cells[self.labels], self.count + np.arange(len(self.labels)), self.labels)
         return SurfaceCells.build(mesh, np.unique(labels, return_inverse=True)[1].reshape(-1))
 
-    def nearest_vertices(self, vertices: NDArray[np.float64]) -> NDArray[np.int64]:
+    def nearest_vertices(self, vertices: Floats) -> Ints:
         """Find the vertex of each cell that is nearest to its centre, (c,).
 
         Parameters
@@ -148,7 +145,7 @@ class SurfaceCells:
         return nearest_members(labels, np.einsum("nd,nd->n", offsets, offsets), self.count)
 
 
-def nearest_members(groups: NDArray[np.int64], distances: NDArray[np.float64], count: int) -> NDArray[np.int64]:
+def nearest_members(groups: Ints, distances: Floats, count: int) -> Ints:
     """For each of `count` groups, the member with the least distance: the first of several; -1 for an empty group."""
     least = np.full(count, np.inf)
     np.minimum.at(least, groups, distances)
@@ -158,7 +155,7 @@ def nearest_members(groups: NDArray[np.int64], distances: NDArray[np.float64], c
     return nearest
 
 
-def grid_labels(mesh: TriangleMesh, size: float) -> NDArray[np.int64]:
+def grid_labels(mesh: TriangleMesh, size: float) -> Ints:
     """Gather the vertices that lie in the same cube of a grid and hang together there.
 
     Parameters

@@ -4,23 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats, Ints
 from ...runtime.progress import Progress, Steps
 from .dual_triangulation import DualTriangulation, dual_triangulation
 from .sizing_field import vertex_density
 from .surface_cells import SurfaceCells, nearest_members
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["VoronoiRegions", "spread_regions_steps"]
 
 _LABEL = "Simplifying the mesh"
 _SPACING = 0.75  # least distance of seeds, in units of sqrt(area / vertices)
@@ -49,18 +43,18 @@ class VoronoiRegions:
     """
 
     cells: SurfaceCells
-    seeds: NDArray[np.int64]
-    labels: NDArray[np.int64]
-    distances: NDArray[np.float64]
+    seeds: Ints
+    labels: Ints
+    distances: Floats
     dual: DualTriangulation
 
     @classmethod
-    def around(cls, cells: SurfaceCells, seeds: NDArray[np.int64]) -> VoronoiRegions:
+    def around(cls, cells: SurfaceCells, seeds: Ints) -> VoronoiRegions:
         """Divide a surface into the regions of seeds (k,); every component has a seed."""
         distances, labels = _nearest_seeds(cells, seeds)
         return cls(cells, seeds, labels, distances, dual_triangulation(cells, labels, len(seeds)))
 
-    def with_seeds(self, added: NDArray[np.int64]) -> VoronoiRegions:
+    def with_seeds(self, added: Ints) -> VoronoiRegions:
         """Return the regions that there are with further seeds (q,)."""
         # A seed takes no cell from another that is farther from it than any now is from its own.
         distances, labels = _nearest_seeds(self.cells, added, limit=float(self.distances.max()))
@@ -141,7 +135,7 @@ def spread_regions_steps(cells: SurfaceCells, count: int) -> Steps[VoronoiRegion
     return VoronoiRegions.around(cells, seeds)
 
 
-def _poisson_disk(cells: SurfaceCells, count: int, density: NDArray[np.float64]) -> NDArray[np.int64]:
+def _poisson_disk(cells: SurfaceCells, count: int, density: Floats) -> Ints:
     """Choose cells in random order, each unless a chosen one is too near for the density there.
 
     Of many small cells only some are asked, so that there are as many to choose from for each seed everywhere.
@@ -172,9 +166,7 @@ def _poisson_disk(cells: SurfaceCells, count: int, density: NDArray[np.float64])
     return candidates[chosen]
 
 
-def _nearest_seeds(
-    cells: SurfaceCells, seeds: NDArray[np.int64], limit: float = np.inf
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _nearest_seeds(cells: SurfaceCells, seeds: Ints, limit: float = np.inf) -> tuple[Floats, Ints]:
     """Distance from the nearest seed, and which it is, (c,) each; infinite and any beyond a limit."""
     distances, _, sources = dijkstra(
         cells.graph, directed=True, indices=seeds, min_only=True, return_predecessors=True, limit=limit

@@ -10,12 +10,12 @@ from scipy.optimize import linear_sum_assignment
 from engine.hierarchical.exact import branch_and_bound as module
 from engine.hierarchical.exact import incumbent as incumbent_module
 from engine.hierarchical.exact.branch_and_bound import (
-    TOLERANCE,
-    Exclusion,
     branch_and_bound,
     branch_and_bound_steps,
     distinct_matchings_steps,
 )
+from engine.hierarchical.exact.exclusion import Exclusion
+from engine.hierarchical.exact.incumbent import TOLERANCE
 from engine.hierarchical.problem import MatchingProblem
 from engine.runtime.errors import MatchError
 from engine.runtime.progress import Progress, run

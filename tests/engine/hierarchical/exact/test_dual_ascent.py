@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
-from engine.hierarchical.exact.branch_and_bound import Exclusion
 from engine.hierarchical.exact.dual_ascent import assignment_duals, dual_ascent_steps, pair_model
+from engine.hierarchical.exact.exclusion import Exclusion
 from engine.hierarchical.problem import MatchingProblem
 from engine.runtime.progress import run
 from tests.problems import all_costs, brute_force, random_problem, shape_problem

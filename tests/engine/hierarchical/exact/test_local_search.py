@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
-from engine.hierarchical.exact.branch_and_bound import Exclusion
 from engine.hierarchical.exact.dual_ascent import dual_ascent_steps, pair_model
+from engine.hierarchical.exact.exclusion import Exclusion
 from engine.hierarchical.exact.local_search import beam_search, improve_matching
 from engine.hierarchical.problem import MatchingProblem
 from engine.runtime.progress import run
