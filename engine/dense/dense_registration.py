@@ -21,7 +21,7 @@ from .dense_hypotheses import USUAL, LandmarkStart, MapHypothesis, Selection, ma
 from .initial_maps import RoughSearch
 from .landmark_selection import steered_hypotheses_steps
 from .proposers import PROPOSERS, Contest, are_distinct, contenders
-from .registered_hypotheses import Candidate, CloseFit, Follower, at_vertices
+from .registered_hypotheses import Candidate, CloseFit, Follower, Settling, at_vertices
 
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""
@@ -157,6 +157,7 @@ def registered_pair_steps(
         begin, end = (0.6 + 0.1 * (number + i) / len(proposers) for i in (0, 1))
         candidates = yield from within(propose(contest, candidates), begin, end)
     fits = yield from within(_contest_steps(contest, candidates if hopeful else candidates[:1]), 0.7, 0.9)
+    follow = follow if hopeful else replace(follow, settling=Settling(disagree=()))
     closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
     best = closest.candidate
     others = [candidate for candidate in candidates if candidate is not best]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, RISE
 from ..hierarchical.settings import MatchSettings
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
@@ -24,6 +24,7 @@ from .partial_match import (
     has_border,
     is_as_alike,
     is_better_part,
+    part_credibility,
     part_matched_steps,
     piece_matched_steps,
     shows_all_of_part,
@@ -206,8 +207,10 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     is_part = min(overlap.shares) < _SMALL_PART and shows_all_of_part(result, of_source=of_source)
     if is_part and is_as_alike(result, enough):
         return result
+    # It wins if it is more credible, so it is given up as soon as it cannot be.
+    least = max(CREDIBLE, part_credibility(result, of_source=of_source)) - RISE
     try:
-        other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
+        other = yield from within(_whole_steps(x, y, replace(task, least=least), _FIRST_AFTER), _CLOSER, 1.0)
     except MatchError:
         return result
     return other if is_better_part(other, result, CREDIBLE, of_source=of_source) else result

@@ -29,6 +29,7 @@ __all__ = [
     "has_border",
     "is_as_alike",
     "is_better_part",
+    "part_credibility",
     "part_matched_steps",
     "piece_matched_steps",
     "shows_all_of_part",
@@ -226,7 +227,7 @@ def is_better_part(other: MatchResult, result: MatchResult, least: float, *, of_
     """Say whether a match with less of a surface is more credible than that with more of it, and credible enough."""
     if other.quality is not None and is_less_alike(other.quality.likeness, least):
         return False
-    return _credibility(other, of_source=of_source) > _credibility(result, of_source=of_source)
+    return part_credibility(other, of_source=of_source) > part_credibility(result, of_source=of_source)
 
 
 def shows_all_of_part(result: MatchResult, *, of_source: bool) -> bool:
@@ -240,8 +241,8 @@ def is_as_alike(result: MatchResult, enough: float) -> bool:
     return result.quality is not None and not is_less_alike(result.quality.likeness, enough)
 
 
-def _credibility(result: MatchResult, *, of_source: bool) -> float:
-    """Compare matches: larger is more credible; all of what may be a part should have a partner."""
+def part_credibility(result: MatchResult, *, of_source: bool) -> float:
+    """Compare matches with a part: larger is more credible; all of it should have a partner."""
     quality = result.quality
     if quality is None:
         return -np.inf
