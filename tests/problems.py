@@ -4,15 +4,18 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.hierarchical.exact.branch_and_bound import branch_and_bound_steps
 from engine.hierarchical.problem import MatchingProblem
+from engine.runtime.progress import run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from engine.hierarchical.exact.branch_and_bound import BoundedMatching
     from engine.hierarchical.exact.exclusion import Exclusion
 
 
@@ -80,3 +83,8 @@ def relabelled(problem: MatchingProblem, rows: NDArray[np.int64], columns: NDArr
         problem.target_distances[np.ix_(columns, columns)],
         problem.quadratic_weight,
     )
+
+
+def branch_and_bound(problem: MatchingProblem, **options: Any) -> BoundedMatching | None:
+    """Minimise the distortion exactly, in one go."""
+    return run(branch_and_bound_steps(problem, **options))

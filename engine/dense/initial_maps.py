@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry.best_distinct import best_distinct
 from ..runtime.arrays import Floats, Ints
 from ..runtime.parallel_map import beside_steps, shared_steps
-from ..runtime.progress import Progress, Steps, within
+from ..runtime.progress import Progress, Steps, in_turn, within
 from ..shapes.extremities import spread_extremities
 from .extremity_search import beam_matchings
 from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
@@ -202,10 +202,7 @@ def _searched_steps(
     best = offered[: search.kept[sign]]
     fitting = relative.best(offered[len(best) :], sign, _FITTING[sign])
     maps = [absolute.maps(images, sign) for images in best] + [relative.maps(images, sign) for images in fitting]
-    leads = []
-    for number, points in enumerate(maps):
-        begin, end = ((number + i) / len(maps) for i in (0, 1))
-        leads.append((yield from within(_refined_steps(x, y, points), begin, end)))
+    leads = yield from in_turn(_refined_steps(x, y, points) for points in maps)
     return leads[: len(best)], leads[len(best) :]
 
 

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import chain
 
 import numpy as np
 
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, in_turn, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
 from .dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps
@@ -128,14 +130,12 @@ def _completed_steps(
     """
     if any(h.orientation > 0 and agrees(x, y, landmarks, h) for h in judged):
         return judged
-    more: list[MapHypothesis] = []
-    for number, start in enumerate(starts):
-        steps = map_hypotheses_steps(x, y, [start], search=False, domains=judged[0].domains)
-        more += yield from within(steps, number / len(starts), (number + 1) / len(starts))
+    propose = partial(map_hypotheses_steps, x, y, search=False, domains=judged[0].domains)
+    more = chain.from_iterable((yield from in_turn(propose([start]) for start in starts)))
     return sorted(judged + _judged(x, y, landmarks, more), key=lambda h: h.score)
 
 
-def _judged(x: Shape, y: Shape, landmarks: Landmarks, hypotheses: list[MapHypothesis]) -> list[MapHypothesis]:
+def _judged(x: Shape, y: Shape, landmarks: Landmarks, hypotheses: Iterable[MapHypothesis]) -> list[MapHypothesis]:
     judged = [replace(h, score=h.score + _PENALTY * landmark_distance(x, y, landmarks, h)) for h in hypotheses]
     return sorted(judged, key=lambda h: h.score)
 

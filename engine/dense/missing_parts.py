@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..mesh.connectivity.adjacency import neighbour_means
+from ..mesh.connectivity.components import joined_components
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
@@ -93,9 +92,7 @@ def _gaps(places: Floats, target: TriangleMesh, back: SurfacePoints) -> Floats:
 
 def _parts(mesh: TriangleMesh, chosen: Bools) -> Ints:
     """Find the connected parts of the chosen vertices (n,): the number of each one's part, (n,); others are alone."""
-    n, (a, b) = mesh.vertex_count, mesh.edges[chosen[mesh.edges].all(axis=1)].T
-    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(n, n))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    return joined_components(mesh.vertex_count, *mesh.edges[chosen[mesh.edges].all(axis=1)].T)
 
 
 def _mostly(mesh: TriangleMesh, marked: Bools) -> Bools:

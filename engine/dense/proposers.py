@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import compress
+from itertools import chain, compress
 from operator import is_
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
 from ..runtime.arrays import Floats
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, in_turn, within
 from ..shapes.landmarks import Landmarks
 from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
@@ -128,10 +128,7 @@ def _limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
 def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
     """Propose long bodies turned back about their axes, and how else they might lie, for all that may be chosen."""
     chosen = contenders(contest, candidates)
-    ways: list[Candidate] = []
-    for number, candidate in enumerate(chosen):
-        begin, end = ((number + i) / len(chosen) for i in (0, 1))
-        ways += yield from within(contest.follow.rolled_back_steps(candidate), begin, end)
+    ways = list(chain.from_iterable((yield from in_turn(map(contest.follow.rolled_back_steps, chosen)))))
     if len(ways) == len(chosen) and all(map(is_, ways, chosen)):
         return candidates
     others = [candidate for candidate in candidates if not any(candidate is c for c in chosen)]

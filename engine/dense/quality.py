@@ -171,8 +171,7 @@ def assess_maps(
     confidence = float(np.average(_confidence(source, target, there, known, trips), weights=source.vertex_areas))
     confidence *= max(orientation, 0.0) * probability_chosen(margin) * probability_right(likeness)
     numbers = orientation, distortion, coverage, disagreement, margin, confidence
-    quality = MatchQuality(*numbers, "", source_coverage, likeness)
-    return replace(quality, sentence=_sentence(quality))
+    return _worded(MatchQuality(*numbers, "", source_coverage, likeness))
 
 
 def with_pieces(quality: MatchQuality, alone: float, share: float) -> MatchQuality:
@@ -187,28 +186,24 @@ def with_pieces(quality: MatchQuality, alone: float, share: float) -> MatchQuali
     share : float
         Mean confidence of the whole surface, as a part of that of the main part.
     """
-    more = replace(quality, pieces_alone=alone, confidence=min(share * quality.confidence, 1.0))
-    return replace(more, sentence=_sentence(more))
+    return _worded(replace(quality, pieces_alone=alone, confidence=min(share * quality.confidence, 1.0)))
 
 
 def with_alternatives(quality: MatchQuality, count: int) -> MatchQuality:
     """Say of a map, too, how many others are about as credible, and offered."""
-    more = replace(quality, alternatives=count)
-    return replace(more, sentence=_sentence(more))
+    return _worded(replace(quality, alternatives=count))
 
 
 def of_covered_part(quality: MatchQuality, share: float, *, of_source: bool) -> MatchQuality:
     """Say of a map, too, that it was made with only so large a part of the source, or of the target."""
     if of_source:
-        more = replace(quality, source_coverage=share * quality.source_coverage)
-    else:
-        more = replace(quality, coverage=share * quality.coverage)
-    return replace(more, sentence=_sentence(more))
+        return _worded(replace(quality, source_coverage=share * quality.source_coverage))
+    return _worded(replace(quality, coverage=share * quality.coverage))
 
 
-def _sentence(quality: MatchQuality) -> str:
-    """Say the worst that is known."""
-    return _doubt(quality) or _difference(quality)
+def _worded(quality: MatchQuality) -> MatchQuality:
+    """Say in a sentence the worst of what is known."""
+    return replace(quality, sentence=_doubt(quality) or _difference(quality))
 
 
 def _doubt(quality: MatchQuality) -> str:
@@ -229,7 +224,7 @@ def _difference(quality: MatchQuality) -> str:
     """Say how much the shapes differ."""
     distortion, disagreement = quality.distortion, quality.disagreement
     if min(quality.coverage, quality.source_coverage) < _WHOLE:
-        return _without_partner(quality)
+        return _missing(quality.source_coverage, quality.coverage)
     if quality.pieces_alone > _FEW:
         share = _percentage(quality.pieces_alone)
         return f"Separate pieces, {share} of a mesh, have no counterpart on the other: check where they went."
@@ -238,11 +233,6 @@ def _difference(quality: MatchQuality) -> str:
     if disagreement > 0.008 or distortion > 0.2:
         return "The shapes correspond, with some stretching where they differ."
     return "The shapes correspond closely."
-
-
-def _without_partner(quality: MatchQuality) -> str:
-    """Say which of the shapes has more that the other lacks."""
-    return _missing(quality.source_coverage, quality.coverage)
 
 
 def _missing(source: float, target: float) -> str:

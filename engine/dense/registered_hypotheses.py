@@ -35,12 +35,9 @@ from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
 from ..shapes.shape import Shape
 from .credibility import likeness, registered_score
-from .dense_hypotheses import MapHypothesis, assessed_everywhere, hypothesis_of, refined_hypothesis_steps
+from .dense_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
 from .functional_maps import PointMaps
-from .initial_maps import MapLead
-from .spectral_domain import MapDomain
 
-_Common = tuple["Follower", MapDomain, MapDomain]
 Trips = tuple[Floats, Floats]
 
 _SMOOTH = 40
@@ -175,11 +172,8 @@ class Follower:
         return state | {"x": self.x.lean(), "y": self.y.lean()}
 
     def all_steps(self, hypotheses: Sequence[MapHypothesis]) -> Steps[list[Candidate]]:
-        """Follow up several hypotheses between the same domains; see `steps`."""
-        if not hypotheses:
-            return []
-        items = [(_lead_of(hypothesis), hypothesis.extension.known) for hypothesis in hypotheses]
-        found = yield from shared_steps(_followed_steps, (self, *hypotheses[0].domains), items)
+        """Follow up several hypotheses; see `steps`."""
+        found = yield from shared_steps(_followed_steps, self, hypotheses)
         return [Candidate(hypothesis, *rest) for hypothesis, rest in zip(hypotheses, found, strict=True)]
 
     def steps(self, hypothesis: MapHypothesis) -> Steps[Candidate]:
@@ -242,10 +236,8 @@ class Follower:
         return Candidate(hypothesis, registration, score, likeness(hypothesis.score, registration.cost), isometry)
 
     def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
-        """Register several candidates closely, between the same domains; see `close_steps`."""
-        items = [(_lead_of(c.hypothesis), (c.registration, c.score, c.likeness, c.isometry)) for c in candidates]
-        common = self, *candidates[0].hypothesis.domains
-        found = yield from shared_steps(_closely_followed_steps, common, items)
+        """Register several candidates closely; see `close_steps`."""
+        found = yield from shared_steps(_closely_followed_steps, self, candidates)
         return [CloseFit(candidate, *rest) for candidate, rest in zip(candidates, found, strict=True)]
 
     def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
@@ -256,7 +248,7 @@ class Follower:
         def register_all_steps(starts: list[Floats], stage: Stage = FINE) -> Steps[list[Registration]]:
             """Register from several positions."""
             items = [(start, stage, isometry) for start in starts]
-            return (yield from shared_steps(_registered_steps, (self, *candidate.hypothesis.domains), items))
+            return (yield from shared_steps(_registered_steps, self, items))
 
         if self.ties is None:
             way = untwisted(self.x, source, target, positions, isometry)
@@ -359,40 +351,29 @@ class Follower:
     def vertex_maps(self, registration: Registration) -> PointMaps:
         """Take the maps of a registration between all vertices."""
         on_target, on_source = registration.on_target, registration.on_source
-        return PointMaps(
-            self.target.triangles[on_target.triangles, on_target.barycentric.argmax(axis=1)],
-            self.source.triangles[on_source.triangles, on_source.barycentric.argmax(axis=1)],
+        there, back = (
+            on_target.nearest_vertices(self.target.triangles),
+            on_source.nearest_vertices(self.source.triangles),
         )
+        return PointMaps(there, back)
 
 
-def _lead_of(hypothesis: MapHypothesis) -> MapLead:
-    """Return a hypothesis without what all of them share."""
-    return MapLead(hypothesis.points, hypothesis.score, hypothesis.orientation, hypothesis.terms, hypothesis.origin)
-
-
-def _followed_steps(
-    common: _Common, item: tuple[MapLead, PointMaps | None]
-) -> Steps[tuple[Registration, float, float, float]]:
+def _followed_steps(follow: Follower, hypothesis: MapHypothesis) -> Steps[tuple[Registration, float, float, float]]:
     """Find what `Follower.steps` does, beside the hypothesis."""
-    follow, x, y = common
-    found = yield from follow.steps(hypothesis_of((x, y), *item))
+    found = yield from follow.steps(hypothesis)
     return found.registration, found.score, found.likeness, found.isometry
 
 
-def _closely_followed_steps(
-    common: _Common, item: tuple[MapLead, tuple[Registration, float, float, float]]
-) -> Steps[tuple[Registration, Registration, float]]:
+def _closely_followed_steps(follow: Follower, candidate: Candidate) -> Steps[tuple[Registration, Registration, float]]:
     """Find what `Follower.close_steps` does, beside the candidate."""
-    (follow, x, y), (lead, rest) = common, item
-    found = yield from follow.close_steps(Candidate(hypothesis_of((x, y), lead), *rest))
+    found = yield from follow.close_steps(candidate)
     return found.registration, found.reverse, found.score
 
 
-def _registered_steps(common: _Common, item: tuple[Floats, Stage, float]) -> Steps[Registration]:
+def _registered_steps(follow: Follower, item: tuple[Floats, Stage, float]) -> Steps[Registration]:
     """Register the source from some positions."""
-    follow, (start, stage, isometry) = common[0], item
-    steps = register_steps(follow.source, follow.target, start, (stage,), isometry=isometry, ties=follow.ties)
-    return (yield from steps)
+    start, stage, isometry = item
+    return register_steps(follow.source, follow.target, start, (stage,), isometry=isometry, ties=follow.ties)
 
 
 def at_vertices(surface: DeformableSurface, vertices: Ints) -> FoundPoints:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
@@ -58,8 +59,7 @@ class CornerTables:
     graph: csr_array
 
 
-@dataclass(frozen=True, eq=False)
-class _Corners:
+class _Corners(NamedTuple):
     """Corners in the plane: a at the origin, b at (l, 0), c at (x, y)."""
 
     c: Ints
@@ -69,8 +69,9 @@ class _Corners:
     x: Floats
     y: Floats
 
-    def __getitem__(self, index: Ints | Bools) -> _Corners:
-        return _Corners(self.c[index], self.a[index], self.b[index], self.l[index], self.x[index], self.y[index])
+    def at(self, index: Ints) -> _Corners:
+        """Take some of them."""
+        return _Corners._make(array[index] for array in self)
 
     def is_obtuse(self) -> Bools:
         """Say of each corner whether its angle exceeds a right one."""
@@ -101,18 +102,14 @@ def corner_tables(mesh: TriangleMesh) -> CornerTables:
 
     obtuse = corners.is_obtuse()
     split = np.flatnonzero(obtuse & sees)
-    near, d, dx, dy = corners[split], d[split], dx[split], dy[split]
+    near, d, dx, dy = corners.at(split), d[split], dx[split], dy[split]
     zero = np.zeros_like(dx)
     at_c, at_a, at_b, at_d = (np.stack(at, axis=1) for at in ((near.x, near.y), (zero, zero), (near.l, zero), (dx, dy)))
     left = _laid_out((near.c, near.a, d), at_c, at_a, at_d)
     right = _laid_out((near.c, d, near.b), at_c, at_d, at_b)
-    kept = corners[np.flatnonzero(~(obtuse & sees))]
-    parts = [kept, left, right]
-
-    fields = ("c", "a", "b", "l", "x", "y")
-    c, a, b, length, x, y = (np.concatenate([getattr(part, name) for part in parts]) for name in fields)
-    order = np.argsort(c, kind="stable")
-    c, a, b, length, x, y = (array[order] for array in (c, a, b, length, x, y))
+    kept = corners.at(np.flatnonzero(~(obtuse & sees)))
+    parts = _Corners._make(np.concatenate(arrays) for arrays in zip(kept, left, right, strict=True))
+    c, a, b, length, x, y = parts.at(np.argsort(parts.c, kind="stable"))
     return CornerTables(
         unit=unit,
         c=c,
@@ -160,7 +157,7 @@ def _behind(corners: _Corners) -> tuple[Ints, Floats, Floats]:
     first = np.flatnonzero(same & ~np.append(False, same[:-1]) & ~np.append(same[1:], False))
     behind = np.full(len(key), -1)
     behind[order[first]], behind[order[first + 1]] = order[first + 1], order[first]
-    there = corners[behind]
+    there = corners.at(behind)
     x = np.where(there.a == a, there.x, corners.l - there.x)
     return np.where(behind >= 0, there.c, -1), x, -there.y
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,8 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from .corner_tables import corner_tables
+
+Pause = TypeVar("Pause")
 
 # Lengths are in units of the mean edge length.  Those that are compared with distances are no simple fractions, so
 # that on regular grids no distance falls on a limit, where rounding would decide.
@@ -127,7 +130,7 @@ class GeodesicSolver:
         MeshError
             If a source is not a vertex of the mesh.
         """
-        checked = self._checked(sources)
+        checked = checked_sources(sources, self._vertex_count)
         result = np.empty((len(checked), self._vertex_count))
         for first, block in self.distances_in_blocks(checked):
             result[first : first + len(block)] = block
@@ -154,18 +157,12 @@ class GeodesicSolver:
         MeshError
             If a source is not a vertex of the mesh.
         """
-        checked = self._checked(sources)
+        checked = checked_sources(sources, self._vertex_count)
         size = max(1, _BLOCK // self._vertex_count)
         nothing = np.empty((0, self._vertex_count))
         for first in range(0, len(checked), size):
-            march = self._march(checked[first : first + size])
-            while True:
-                try:
-                    next(march)
-                except StopIteration as stop:
-                    yield first, stop.value
-                    break
-                yield first, nothing
+            block = yield from self._march(checked[first : first + size], (first, nothing))
+            yield first, block
 
     def path_lengths(self, sources: ArrayLike) -> Floats:
         """Compute the lengths of shortest paths in `graph` from each source to every vertex.
@@ -187,31 +184,15 @@ class GeodesicSolver:
         MeshError
             If a source is not a vertex of the mesh.
         """
-        lengths: Floats = dijkstra(self.graph, indices=self._checked(sources))
-        return lengths * self._unit
+        return dijkstra(self.graph, indices=checked_sources(sources, self._vertex_count)) * self._unit
 
-    def _checked(self, sources: ArrayLike) -> Ints:
-        array = np.asarray(sources)
-        if array.ndim != 1 or not (np.issubdtype(array.dtype, np.integer) or array.size == 0):
-            raise MeshError(
-                "The sources of distances should be a list of vertex indices, "
-                f"not an array of {array.dtype} of the shape {array.shape}."
-            )
-        bad = (array < 0) | (array >= self._vertex_count)
-        if bad.any():
-            raise MeshError(
-                f"Source {np.flatnonzero(bad)[0]} of distances is the vertex {array[bad][0]}, "
-                f"but the vertices are numbered 0 to {self._vertex_count - 1}."
-            )
-        return array.astype(np.int64)
-
-    def _march(self, sources: Ints) -> Generator[None, None, Floats]:
-        """Compute the distances (s, n) of one block of sources, in some steps."""
+    def _march(self, sources: Ints, pause: Pause) -> Generator[Pause, None, Floats]:
+        """Compute the distances (s, n) of one block of sources, and yield the same between its steps."""
         distances: Floats = dijkstra(self.graph, indices=sources)
-        yield
+        yield pause
         squares = np.square(distances)
         corner, pair, ends = self._in_order(distances)
-        yield
+        yield pause
         changed = np.zeros(squares.size, bool)
         memory = np.empty(6 * int(np.diff(ends).max(initial=0)))
         pauses = set(np.searchsorted(ends, ends[-1] * np.arange(1, _PAUSES + 1) / (_PAUSES + 1)).tolist())
@@ -219,7 +200,7 @@ class GeodesicSolver:
             if end > start:
                 self._relax(squares.ravel(), corner[start:end], pair[start:end], changed, memory)
             if group in pauses:
-                yield
+                yield pause
         np.sqrt(squares, out=distances)
         self._repair(squares.ravel(), self._jumps(distances))
         np.sqrt(squares, out=distances)
@@ -340,6 +321,23 @@ class GeodesicSolver:
             neighbour = np.repeat(pair - vertex, counts) + graph.indices.take(edge)
             reach = np.repeat(np.sqrt(new), counts) + (1 + _JUMP) * graph.data.take(edge)
             pair = np.unique(neighbour[squares.take(neighbour) > reach * reach])
+
+
+def checked_sources(sources: ArrayLike, count: int) -> Ints:
+    """Return the sources of distances (S,), or raise an error if they are not some of `count` vertices."""
+    array = np.asarray(sources)
+    if array.ndim != 1 or not (np.issubdtype(array.dtype, np.integer) or array.size == 0):
+        raise MeshError(
+            "The sources of distances should be a list of vertex indices, "
+            f"not an array of {array.dtype} of the shape {array.shape}."
+        )
+    bad = (array < 0) | (array >= count)
+    if bad.any():
+        raise MeshError(
+            f"Source {np.flatnonzero(bad)[0]} of distances is the vertex {array[bad][0]}, "
+            f"but the vertices are numbered 0 to {count - 1}."
+        )
+    return array.astype(np.int64)
 
 
 def _spans(starts: Ints, index: Ints) -> tuple[Ints, Ints, Ints]:

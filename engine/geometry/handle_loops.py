@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
 from ..mesh.connectivity.adjacency import neighbour_means
 from ..mesh.connectivity.boundary_loops import boundary_loops
+from ..mesh.connectivity.edge_chains import way_to_root
 from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Ints
@@ -128,7 +128,7 @@ class _Loops:
         left = left[np.argsort(around[left], kind="stable")][:most]
         found = []
         for edge in rest[left]:
-            loop = _closed(_way(before, int(self._tails[edge])), _way(before, int(self._heads[edge])))
+            loop = _closed(way_to_root(before, self._tails[edge]), way_to_root(before, self._heads[edge]))
             steps = self._graph[loop, np.roll(loop, -1)] + self._graph[np.roll(loop, -1), loop]
             found.append((float(np.asarray(steps).sum()), loop))
         return sorted(found, key=lambda each: each[0])
@@ -151,14 +151,6 @@ def _creased(mesh: TriangleMesh) -> Bools:
     for _ in range(_SMOOTHING):
         mean, excess = neighbour_means(mesh, mean), neighbour_means(mesh, excess)
     return (mean < 0) | (excess > _SADDLE)
-
-
-def _way(before: NDArray[np.int32], vertex: int) -> list[int]:
-    """Follow a tree from a vertex to its root."""
-    way = [vertex]
-    while before[way[-1]] >= 0:
-        way.append(int(before[way[-1]]))
-    return way
 
 
 def _closed(one: list[int], other: list[int]) -> Ints:

@@ -6,11 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from ..mesh.connectivity.components import joined_components
+from ..mesh.connectivity.halfedges import group_half_edges
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, numbered
 
 _SLACK = 1e-6
 """By how much two sides of a triangle are at least longer than the third, in mean edge lengths."""
@@ -147,13 +147,9 @@ def _shared_sides(triangles: Ints, n: int) -> tuple[Ints, Bools]:
 
     The second array, (p,), tells whether both sides run in the same direction: the triangles look to opposite sides.
     """
-    tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    key = np.minimum(tail, head) * n + np.maximum(tail, head)
-    order = np.argsort(key, kind="stable")
-    same = np.diff(key[order]) == 0
-    first = np.flatnonzero(same & ~np.append(False, same[:-1]) & ~np.append(same[1:], False))
-    pairs = np.stack([order[first], order[first + 1]], axis=1)
-    return pairs, tail[pairs[:, 0]] == tail[pairs[:, 1]]
+    one, other = group_half_edges(triangles, n).pairs
+    tails = triangles.ravel()
+    return np.stack([one, other], axis=1), tails[one] == tails[other]
 
 
 def _oriented(triangles: Ints, lengths: Floats, n: int) -> tuple[Ints, Floats]:
@@ -165,12 +161,10 @@ def _oriented(triangles: Ints, lengths: Floats, n: int) -> tuple[Ints, Floats]:
     m = len(triangles)
     t, u = pairs.T // 3
     tails, heads = np.concatenate([t, t + m]), np.concatenate([u + m * turned, u + m * ~turned])
-    _, labels = connected_components(coo_array((np.ones(len(tails), bool), (tails, heads)), shape=(2 * m, 2 * m)))
+    labels = joined_components(2 * m, tails, heads)
     over = labels[:m] > labels[m:]
-    return (
-        np.where(over[:, None], triangles[:, [0, 2, 1]], triangles),
-        np.where(over[:, None], lengths[:, [2, 1, 0]], lengths),
-    )
+    turned_lengths = np.where(over[:, None], lengths[:, [2, 1, 0]], lengths)
+    return np.where(over[:, None], triangles[:, [0, 2, 1]], triangles), turned_lengths
 
 
 def _twins(triangles: Ints, n: int) -> Ints:
@@ -199,8 +193,7 @@ def _bad_sides(sides: Ints, twins: Ints, cotangents: Floats) -> Ints:
 def _independent(sides: Ints, twins: Ints, lengths: Floats) -> Ints:
     """Choose edges of which no two share a triangle: those that are the longest in both their triangles."""
     order = np.lexsort((sides, lengths.ravel()[sides]))
-    rank = np.empty(len(sides), np.int64)
-    rank[order] = np.arange(len(sides))
+    rank = numbered(order, len(sides))
     longest = np.full(len(lengths), -1)
     here, there = sides // 3, twins[sides] // 3
     np.maximum.at(longest, here, rank)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, numbered
 
 
 def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
@@ -27,8 +27,7 @@ def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
         vertex i in rows 2 i and 2 i + 1: the area-weighted mean over the triangles around it, in an orthonormal frame
         (e1, e2) of the tangent plane with e1 x e2 along the outward normal.  The choice of e1 is arbitrary.
     """
-    number = np.full(mesh.vertex_count, -1)
-    number[vertices] = np.arange(len(vertices))
+    number = numbered(vertices, mesh.vertex_count)
     owner = number[mesh.triangles.ravel()]  # the wanted vertex at each corner of each triangle, or -1
     corner = np.flatnonzero(owner >= 0)
     owner, triangle = owner[corner], corner // 3

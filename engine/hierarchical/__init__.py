@@ -13,7 +13,7 @@ Descriptors              `descriptors`: histograms of distances and their compar
                          `spectral_descriptors`: heat (and wave) kernel signatures;
                          `sign_sequences`: eigenfunctions up to their signs
 Samples of both shapes   `sampled_pair`: farthest point samples, their distances and descriptors
-Section 4, coarse step   `exact`: branch and bound with dual bounds (`branch_and_bound` is the way in);
+Section 4, coarse step   `exact`: branch and bound with dual bounds (the module `branch_and_bound` is the way in);
                          `sparse_hypotheses`: the true and the reflected answer of symmetric shapes
 Section 4, relaxed step  `relaxation`, solved by `quasi_newton`, projected to integers
 Section 4, hierarchy     `hierarchy`: levels of samples and neighbourhoods, until convergence

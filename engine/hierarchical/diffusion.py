@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..geometry.eigenpairs import Spectrum
+from ..geometry.geodesics import checked_sources
 from ..runtime.arrays import Floats, Ints
-from ..runtime.errors import MeshError, SettingsError
+from ..runtime.errors import SettingsError
 
 _MODES = 8.0
 """How many eigenfunctions, each counted by its weight, make up diffusion distances at the automatic time.
@@ -90,36 +89,12 @@ class DiffusionMetric:
         MeshError
             If a source is not a vertex of the mesh.
         """
-        checked = _checked_vertices(sources, len(self._points))
+        checked = checked_sources(sources, len(self._points))
         result = np.empty((len(checked), len(self._points)))
-        for first, block in self.distances_in_blocks(checked):
-            result[first : first + len(block)] = block
-        return result
-
-    def distances_in_blocks(self, sources: ArrayLike) -> Generator[tuple[int, Floats], None, None]:
-        """Compute the distances from each source to every vertex, a few sources at a time.
-
-        Parameters
-        ----------
-        sources : (S,) array_like of int
-            Vertex indices.
-
-        Yields
-        ------
-        first : int
-            Index in `sources` of the block's first source.
-        block : (s, n) array of float
-            Distances from `sources[first:first + s]`.
-
-        Raises
-        ------
-        MeshError
-            If a source is not a vertex of the mesh.
-        """
-        checked = _checked_vertices(sources, len(self._points))
         size = max(1, _BLOCK // len(self._points))
         for first in range(0, len(checked), size):
-            yield first, self._rows(checked[first : first + size])
+            result[first : first + size] = self._rows(checked[first : first + size])
+        return result
 
     def _rows(self, sources: Ints) -> Floats:
         rows = self._points[sources] @ self._points.T
@@ -195,7 +170,7 @@ def heat_kernel(spectrum: Spectrum, time: float, sources: ArrayLike) -> Floats:
         If a source is not a vertex of the mesh.
     """
     weights = np.exp(-spectrum.values * spectrum.area * _checked_time(time)) * spectrum.area
-    rows = spectrum.functions[_checked_vertices(sources, len(spectrum.functions))]
+    rows = spectrum.functions[checked_sources(sources, len(spectrum.functions))]
     return (rows * weights) @ spectrum.functions.T
 
 
@@ -203,19 +178,3 @@ def _checked_time(time: float) -> float:
     if not (np.isfinite(time) and time > 0):
         raise SettingsError(f"The time of diffusion should be greater than zero, but is {time}.")
     return float(time)
-
-
-def _checked_vertices(sources: ArrayLike, count: int) -> Ints:
-    array = np.asarray(sources)
-    if array.ndim != 1 or not (np.issubdtype(array.dtype, np.integer) or array.size == 0):
-        raise MeshError(
-            "The sources of distances should be a list of vertex indices, "
-            f"not an array of {array.dtype} of the shape {array.shape}."
-        )
-    bad = (array < 0) | (array >= count)
-    if bad.any():
-        raise MeshError(
-            f"Source {np.flatnonzero(bad)[0]} of distances is the vertex {array[bad][0]}, "
-            f"but the vertices are numbered 0 to {count - 1}."
-        )
-    return array.astype(np.int64)

@@ -23,6 +23,11 @@ def choice(default: str, label: str, description: str, choices: dict[str, tuple[
     return field(default=default, metadata={"label": label, "description": description, "choices": choices})
 
 
+def switch(label: str, description: str) -> Any:  # noqa: ANN401
+    """Declare a field that is on unless it is switched off."""
+    return field(default=True, metadata={"label": label, "description": description})
+
+
 @dataclass(frozen=True)
 class CheckedSettings:
     """Settings whose values are checked against what their fields declare.
@@ -78,21 +83,15 @@ class MatchSettings(CheckedSettings):
             ),
         },
     )
-    dense: bool = field(
-        default=True,
-        metadata={
-            "label": "Dense Map",
-            "description": "Find the corresponding point for every vertex of both meshes. "
-            "The matched points then lie where this map takes them",
-        },
+    dense: bool = switch(
+        "Dense Map",
+        "Find the corresponding point for every vertex of both meshes. "
+        "The matched points then lie where this map takes them",
     )
-    settle: bool = field(
-        default=True,
-        metadata={
-            "label": "Settle",
-            "description": "At last let the points leave the samples of the target and come to rest between its "
-            "vertices (hierarchical solver without a dense map)",
-        },
+    settle: bool = switch(
+        "Settle",
+        "At last let the points leave the samples of the target and come to rest between its "
+        "vertices (hierarchical solver without a dense map)",
     )
     metric: str = choice(
         "geodesic",

@@ -10,13 +10,14 @@ can speak.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
 from ..runtime.arrays import Floats, Ints
-from ..runtime.progress import Progress, Steps, within
+from ..runtime.progress import Progress, Steps, in_turn, within
 from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
@@ -120,14 +121,10 @@ def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
     count = -(-settings.hypotheses // _DENSE_SHARE) if settings.dense else settings.hypotheses
     variants = pair.variants(count)
     each = -(-count // len(variants))
-    found = []
-    for number, variant in enumerate(variants):
-        search = distinct_matchings_steps(
-            variant.problem(points, candidates), each, _DISTINCT, node_limit=settings.node_limit
-        )
-        matchings = yield from within(search, number / len(variants), (number + 1) / len(variants))
-        found += [Coarse(variant, matching) for matching in matchings]
-    return found
+    search = partial(distinct_matchings_steps, count=each, radius=_DISTINCT, node_limit=settings.node_limit)
+    found = yield from in_turn(search(variant.problem(points, candidates)) for variant in variants)
+    pairs = zip(variants, found, strict=True)
+    return [Coarse(variant, matching) for variant, matchings in pairs for matching in matchings]
 
 
 def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:

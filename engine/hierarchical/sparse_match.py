@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.arrays import Floats, Ints
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, in_turn, within
 from ..shapes.landmarks import placed_at_vertices
 from ..shapes.surface_distances import symmetric_roots
 from .compared.flat import flat_candidates, flat_steps
@@ -87,76 +88,54 @@ def solve_steps(pair: Pair, lap: Callable[[str], None]) -> Steps[list[Answer]]:
     lap("coarse")
     hypotheses = yield from within(choose_steps(coarse), 0.2, 0.6)
     if pair.settings.solver == "gmds":
-        answers = yield from within(_gmds_steps(hypotheses), 0.6, 1.0)
+        answers = yield from within(in_turn(map(_gmds_steps, hypotheses)), 0.6, 1.0)
         lap("gmds")
         return answers
     answers = yield from within(_finished_steps(hypotheses), 0.6, 0.8)
     lap("hierarchy")
     if pair.settings.settle and not pair.settings.dense:
-        answers = yield from within(_settled_steps(answers), 0.8, 1.0)
+        answers = yield from within(in_turn(map(_settled_steps, answers)), 0.8, 1.0)
         lap("settling")
     return answers
 
 
 def _finished_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
     """Go on from the level at which the hypotheses were compared to the finest."""
-    answers = []
-    for number, hypothesis in enumerate(hypotheses):
-        pair = hypothesis.coarse.pair
-        sizes = level_sizes(len(hypothesis.assignment), pair.settings.points)[1:]
-        finer = refine_steps(pair, hypothesis.assignment, sizes)
-        levels = yield from within(finer, number / len(hypotheses), (number + 1) / len(hypotheses))
-        answers.append(_at_samples(hypothesis, hypothesis.levels + levels, coarse_candidates(pair)))
-    return answers
+    pair, known = hypotheses[0].coarse.pair, len(hypotheses[0].assignment)
+    sizes = level_sizes(known, pair.settings.points)[1:]
+    found = yield from in_turn(refine_steps(h.coarse.pair, h.assignment, sizes) for h in hypotheses)
+    candidates = coarse_candidates(pair)
+    return [_at_samples(h, h.levels + levels, candidates) for h, levels in zip(hypotheses, found, strict=True)]
 
 
 def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
     settings = pair.settings
     candidates = flat_candidates(settings.points, pair.target.sample_count)
-    hypotheses = []
     variants = pair.variants(2)
-    for number, variant in enumerate(variants):
-        steps = flat_steps(variant, settings.points, candidates, count=2, node_limit=settings.node_limit)
-        found = yield from within(steps, number / len(variants), (number + 1) / len(variants))
-        hypotheses += [assess(Coarse(variant, matching), [Refined(matching.assignment, 0)]) for matching in found]
+    search = partial(flat_steps, points=settings.points, candidates=candidates, count=2, node_limit=settings.node_limit)
+    found = yield from in_turn(search(variant) for variant in variants)
+    hypotheses = [
+        assess(Coarse(variant, matching), [Refined(matching.assignment, 0)])
+        for variant, matchings in zip(variants, found, strict=True)
+        for matching in matchings
+    ]
     return [_at_samples(hypothesis, hypothesis.levels, candidates) for hypothesis in two_answers(hypotheses)]
 
 
-def _gmds_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
-    answers = []
-    for number, hypothesis in enumerate(hypotheses):
-        pair = hypothesis.coarse.pair
-        target, points = pair.target, pair.settings.points
-        at_coarse = hypothesis.levels[0].assignment
-        found = yield from within(
-            gmds_steps(
-                pair.source,
-                target,
-                points,
-                start=SurfacePoints.at_vertices(target.original, target.vertices[target.samples[at_coarse]]),
-                wanted=pair.source_distances[:points, :points],
-                distances=pair.target_metric,
-            ),
-            number / len(hypotheses),
-            (number + 1) / len(hypotheses),
-        )
-        levels = tuple(Level(level.points, level.sweeps, level.stress, level.target_points) for level in found.levels)
-        placed = target.surface.on_mesh(found.target_points)
-        distances = found.distances
-        if pair.landmarks:
-            placed, distances = yield from _at_landmarks_steps(pair, placed)
-        answers.append(
-            Answer(
-                hypothesis.coarse,
-                coarse_candidates(pair),
-                hypothesis.orientation,
-                placed,
-                distances,
-                _linear(pair, placed),
-                levels,
-            )
-        )
-    return answers
+def _gmds_steps(hypothesis: Hypothesis) -> Steps[Answer]:
+    coarse, pair = hypothesis.coarse, hypothesis.coarse.pair
+    target, points = pair.target, pair.settings.points
+    at_coarse = target.samples[hypothesis.levels[0].assignment]
+    start = SurfacePoints.at_vertices(target.original, target.vertices[at_coarse])
+    wanted = pair.source_distances[:points, :points]
+    steps = gmds_steps(pair.source, target, points, start=start, wanted=wanted, distances=pair.target_metric)
+    found = yield from steps
+    levels = tuple(Level(level.points, level.sweeps, level.stress, level.target_points) for level in found.levels)
+    placed, distances = target.surface.on_mesh(found.target_points), found.distances
+    if pair.landmarks:
+        placed, distances = yield from _at_landmarks_steps(pair, placed)
+    linear = _linear(pair, placed)
+    return Answer(coarse, coarse_candidates(pair), hypothesis.orientation, placed, distances, linear, levels)
 
 
 def _at_landmarks_steps(pair: Pair, points: SurfacePoints) -> Steps[tuple[SurfacePoints, Floats]]:
@@ -175,23 +154,16 @@ def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) 
         """Put samples of the target, by their numbers, on its mesh."""
         return SurfacePoints.at_vertices(target.mesh, target.samples[numbers])
 
-    return Answer(
-        hypothesis.coarse,
-        candidates,
-        hypothesis.orientation,
-        places(assignment),
-        pair.target_distances[np.ix_(assignment, assignment)],
-        pair.problem(len(assignment)).linear_cost(assignment),
-        tuple(
-            Level(
-                len(level.assignment),
-                level.iterations,
-                pair.problem(len(level.assignment)).cost(level.assignment),
-                target.surface.on_original(places(level.assignment)),
-            )
-            for level in levels
-        ),
-    )
+    def finished(level: Refined) -> Level:
+        """Say how a level ended."""
+        matched = level.assignment
+        cost = pair.problem(len(matched)).cost(matched)
+        return Level(len(matched), level.iterations, cost, target.surface.on_original(places(matched)))
+
+    distances = pair.target_distances[np.ix_(assignment, assignment)]
+    linear = pair.problem(len(assignment)).linear_cost(assignment)
+    known = hypothesis.coarse, candidates, hypothesis.orientation
+    return Answer(*known, places(assignment), distances, linear, tuple(map(finished, levels)))
 
 
 def at_samples(answer: Answer, levels: list[Refined]) -> Answer:
@@ -202,34 +174,26 @@ def at_samples(answer: Answer, levels: list[Refined]) -> Answer:
 def moved(answer: Answer, points: SurfacePoints) -> Answer:
     """Move the images of an answer to other points of the target; its metric was prepared for the nearest vertices."""
     pair = answer.coarse.pair
-    distances = symmetric_roots(pair.target_metric.squares_by_nearest(points))
+    return _at(answer, points, symmetric_roots(pair.target_metric.squares_by_nearest(points)))
+
+
+def _at(answer: Answer, points: SurfacePoints, distances: Floats) -> Answer:
+    """Put the images of an answer to points of the target, with these distances between them."""
+    pair = answer.coarse.pair
     there = replace(answer, points=points, distances=distances, linear=_linear(pair, points))
     on_original = pair.target.surface.on_original(points)
     last = replace(answer.levels[-1], distortion=there.distortion, target_points=on_original)
     return replace(there, levels=(*answer.levels[:-1], last))
 
 
-def _settled_steps(answers: list[Answer]) -> Steps[list[Answer]]:
+def _settled_steps(answer: Answer) -> Steps[Answer]:
     """Let the points leave the samples and come to rest anywhere on the surface, where that lowers the distortion."""
-    settled = []
-    for number, answer in enumerate(answers):
-        steps = within(_one_settled_steps(answer), number / len(answers), (number + 1) / len(answers))
-        settled.append((yield from steps))
-    return settled
-
-
-def _one_settled_steps(answer: Answer) -> Steps[Answer]:
     pair = answer.coarse.pair
     wanted = pair.source_distances[: len(answer.points), : len(answer.points)]
     stress = Stress(wanted, _holding(pair, len(answer.points)) if pair.landmarks else None)
     settled = yield from settle_steps(pair.target_metric, answer.points, stress)
-    better = replace(answer, points=settled.points, distances=settled.distances, linear=_linear(pair, settled.points))
-    if better.distortion >= answer.distortion:
-        return answer
-    last = replace(
-        answer.levels[-1], distortion=better.distortion, target_points=pair.target.surface.on_original(settled.points)
-    )
-    return replace(better, levels=(*answer.levels[:-1], last))
+    better = _at(answer, settled.points, settled.distances)
+    return better if better.distortion < answer.distortion else answer
 
 
 def _holding(pair: Pair, count: int) -> Floats:

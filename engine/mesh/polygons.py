@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
-from .triangle_mesh import TriangleMesh
+from .triangle_mesh import TriangleMesh, triangle_areas
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +102,7 @@ class Polygons:
 
     def face_areas(self, positions: Floats) -> Floats:
         """Area of each face, (f,), as that of the triangles; `positions` (n, 3) of the vertices."""
-        a, b, c = (positions[self.corner_vertices[corner]] for corner in self.triangle_corners.T)
-        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        areas = triangle_areas(positions, self.corner_vertices[self.triangle_corners])
         total: NDArray[Any] = np.bincount(self.triangle_faces, areas, self.face_count)
         return total
 

@@ -237,8 +237,7 @@ class SurfaceMap:
             units of the square root of the area: 1 where the map keeps lengths.  An edge without length has no stretch
             and is NaN.
         """
-        self._check_domain(domain)
-        self._check_image(image)
+        self._check(domain, image)
         a, b = domain.edges.T
         mapped = np.linalg.norm(self.positions[b] - self.positions[a], axis=1) / np.sqrt(image.area)
         original = domain.edge_lengths / np.sqrt(domain.area)
@@ -266,8 +265,7 @@ class SurfaceMap:
             1 if the triangle of the three mapped corners looks to the side of the image's normal there, -1 if to the
             other, 0 if it has no area: the sign of the Jacobian of the map.
         """
-        self._check_domain(domain)
-        self._check_image(image)
+        self._check(domain, image)
         normals = self.transfer(image.vertex_normals)
         signs = np.empty(domain.triangle_count, np.int8)
         for part in _parts(domain.triangle_count):
@@ -285,11 +283,13 @@ class SurfaceMap:
     def _area_share(domain: TriangleMesh, selected: Bools) -> float:
         return float(domain.triangle_areas[selected].sum() / domain.area)
 
-    def _check_domain(self, domain: TriangleMesh) -> None:
+    def _check(self, domain: TriangleMesh, image: TriangleMesh) -> None:
+        """Raise an error if these are not the meshes that the map leads from and to."""
         if domain.vertex_count != len(self):
             raise MatchError(
                 f"The map is one of {len(self)} vertices, but the mesh it is measured on has {domain.vertex_count}."
             )
+        self._check_image(image)
 
     def _check_image(self, image: TriangleMesh) -> None:
         if image.vertex_count != self.image_vertex_count:

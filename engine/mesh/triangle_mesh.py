@@ -10,11 +10,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, numbered
 from ..runtime.errors import MeshError
+from .connectivity.components import joined_components
 from .unit_vectors import unit_vectors
 
 _FARTHEST = 1e75
@@ -90,8 +89,7 @@ class TriangleMesh:
     @cached_property
     def _area_vectors(self) -> Floats:
         """Triangle normals times area, (m, 3)."""
-        a, b, c = (self.vertices[self.triangles[:, i]] for i in range(3))
-        return np.cross(b - a, c - a) / 2
+        return _area_vectors(self.vertices, self.triangles)
 
     @cached_property
     def triangle_areas(self) -> Floats:
@@ -158,15 +156,13 @@ class TriangleMesh:
 
         Vertices without a triangle are components of their own, at the end.
         """
-        n, (a, b) = self.vertex_count, self.edges.T
-        _, labels = connected_components(coo_array((np.ones(len(a), bool), (a, b)), shape=(n, n)), directed=False)
+        n = self.vertex_count
+        labels = joined_components(n, *self.edges.T)
         areas = np.bincount(labels, self.vertex_areas)
         # Ties by the first vertex, so that the numbering never depends on how the graph search walks.
         first = np.full(len(areas), n)
         np.minimum.at(first, labels, np.arange(n))
-        rank = np.empty(len(areas), np.int64)
-        rank[np.lexsort((first, -areas))] = np.arange(len(areas))
-        return rank[labels]
+        return numbered(np.lexsort((first, -areas)), len(areas))[labels]
 
     @property
     def component_count(self) -> int:
@@ -199,6 +195,17 @@ class TriangleMesh:
         triangles = np.flatnonzero(keep[self.triangles].all(axis=1))
         renumber = np.cumsum(keep) - 1
         return TriangleMesh(self.vertices[vertices], renumber[self.triangles[triangles]]), vertices, triangles
+
+
+def triangle_areas(vertices: Floats, triangles: Ints) -> Floats:
+    """Area of each of some triangles (m, 3) of vertices (n, 3): (m,)."""
+    return np.linalg.norm(_area_vectors(vertices, triangles), axis=1)
+
+
+def _area_vectors(vertices: Floats, triangles: Ints) -> Floats:
+    """Return the normals of triangles (m, 3) of vertices (n, 3) times their areas, (m, 3)."""
+    a, b, c = (vertices[corner] for corner in triangles.T)
+    return np.cross(b - a, c - a) / 2
 
 
 def _read_only(array: NDArray[Any]) -> NDArray[Any]:

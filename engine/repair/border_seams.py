@@ -10,9 +10,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
+from ..mesh.triangle_mesh import triangle_areas
 from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, marked
 
 _SMALLEST = 0.01
 """Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""
@@ -114,8 +116,7 @@ def seam_partners(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> Ints
     covered = np.zeros(count)
     covered[facing] = borders.lengths[facing]
     alongside = np.bincount(borders.loops, covered) / np.bincount(borders.loops, borders.lengths)
-    one = np.zeros(count, bool)
-    one[facing] = True
+    one = marked(facing, count)
     # The other border may go on elsewhere, as that of a scan does beyond a patch.
     joined = alongside[borders.loops] >= _ALONGSIDE
     mutual = one & (nearest[nearest] == np.arange(count)) & one[nearest]
@@ -169,12 +170,10 @@ def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Bo
     open_edges = groups.order[groups.starts[groups.counts == 1]]
     if not len(open_edges):
         return None, 0.0
-    a, b, c = vertices[triangles].transpose(1, 0, 2)
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    areas = triangle_areas(vertices, triangles)
     area = float(areas.sum())
     n = len(vertices)
-    ends = np.concatenate([triangles[:, :2], triangles[:, 1:]])
-    pieces = connected_components(_graph(ends[:, 0], ends[:, 1], n), directed=False)[1]
+    pieces = joined_components(n, triangles[:, :2].ravel(), triangles[:, 1:].ravel())
     sizes = np.bincount(pieces[triangles[:, 0]], areas, minlength=int(pieces.max()) + 1)
     tails, heads, tops = (triangle_slots(triangles, open_edges, shift) for shift in (0, 1, 2))
     large = sizes[pieces[tails]] > _SMALLEST * area

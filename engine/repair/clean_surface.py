@@ -12,7 +12,7 @@ from ..mesh.closest_points import ClosestPoints, facing
 from ..mesh.reflection import reflected_mesh
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, marked
 from .cleaning_notes import CleaningCounts
 
 
@@ -75,8 +75,7 @@ class SurfacePart:
     def _beside_holes(self, triangles: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """Move points in filled holes to the nearest of the triangles around holes."""
         corners, kept = self.mesh.triangles, self.original_triangles >= 0
-        at_hole = np.zeros(self.mesh.vertex_count, bool)
-        at_hole[corners[~kept]] = True
+        at_hole = marked(corners[~kept], self.mesh.vertex_count)
         around = kept & at_hole[corners].any(axis=1)
         if not self.mesh.triangle_areas[around].any():
             around = kept

@@ -6,13 +6,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.connectivity.boundary_loops import boundary_loops
+from ..mesh.connectivity.components import triangle_components
 from ..mesh.connectivity.halfedges import EdgeGroups, group_half_edges, pair_half_edges, repeated_triangles
 from ..mesh.connectivity.mesh_orientation import inward_components, orient_consistently, turn_triangles
 from ..mesh.connectivity.nonmanifold_vertices import split_fans
-from ..mesh.connectivity.triangle_components import triangle_components
 from ..mesh.connectivity.vertex_welding import weld_boundaries
-from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints
+from ..mesh.triangle_mesh import TriangleMesh, triangle_areas
+from ..runtime.arrays import Bools, Floats, Ints, marked, numbered
 from ..runtime.errors import MeshError
 from .border_seams import seam_partners
 from .clean_surface import CleanSurface, SurfacePart
@@ -109,6 +109,12 @@ class _Work:
             triangle = number[np.where(twins >= 0, twins // 3, -1)]
             self.twins = np.where(triangle >= 0, 3 * triangle + twins % 3, -1)
 
+    def move(self, vertices: Floats, moved: Ints) -> None:
+        """Put all vertices to where they are now, after some of them (k,) have moved."""
+        affected = np.flatnonzero(marked(moved, len(vertices))[self.triangles].any(axis=1))
+        self.vertices, self.areas = vertices, self.areas.copy()
+        self.areas[affected] = triangle_areas(vertices, self.triangles[affected])
+
     def turn(self, turned: Bools) -> None:
         """Turn triangles over."""
         if not turned.any():
@@ -131,21 +137,18 @@ def _weld(work: _Work) -> tuple[EdgeGroups, Ints]:
     n = len(work.vertices)
     groups = group_half_edges(work.triangles, n)
     representatives = weld_boundaries(work.vertices, work.triangles, groups)
-    moved = np.flatnonzero(representatives != np.arange(n))
-    if len(moved):
-        work.counts.welded = len(moved)
-        groups = _merged(work, representatives, moved)
+    groups, work.counts.welded = _merged(work, groups, representatives)
     partners = seam_partners(work.vertices, work.triangles, groups)
-    moved = np.flatnonzero(partners != np.arange(n))
-    if len(moved):
-        work.counts.joined = len(moved)
-        groups = _merged(work, partners, moved)
+    groups, work.counts.joined = _merged(work, groups, partners)
     return groups, partners[representatives]
 
 
-def _merged(work: _Work, representatives: Ints, moved: Ints) -> EdgeGroups:
-    """Let some vertices be `moved` to those that stand for them: the edges then."""
+def _merged(work: _Work, groups: EdgeGroups, representatives: Ints) -> tuple[EdgeGroups, int]:
+    """Let vertices be moved to those that stand for them (n,): the edges then, and how many were moved."""
     n = len(work.vertices)
+    moved = np.flatnonzero(representatives != np.arange(n))
+    if not len(moved):
+        return groups, 0
     # A welded vertex lies in the middle of its copies, so that their order does not matter.
     involved = np.unique(np.concatenate([moved, representatives[moved]]))
     homes, number = np.unique(representatives[involved], return_inverse=True)
@@ -154,21 +157,15 @@ def _merged(work: _Work, representatives: Ints, moved: Ints) -> EdgeGroups:
     shift = np.stack([np.bincount(number, axis) for axis in offsets.T], axis=1) / shares[:, None]
     vertices = work.vertices.copy()
     vertices[homes] += shift
-    work.vertices = vertices
-    triangles = representatives[work.triangles]
+    work.triangles = triangles = representatives[work.triangles]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    work.triangles = triangles
-    changed = np.zeros(n, bool)
-    changed[involved] = True
-    affected = np.flatnonzero(changed[triangles].any(axis=1))
-    work.areas = work.areas.copy()
-    work.areas[affected] = _areas(vertices, triangles[affected])
+    work.move(vertices, involved)
     work.counts.degenerate += int((~proper).sum())
     if not proper.all():
         work.keep(proper)
     if not len(work.triangles):
         raise MeshError("No triangle of the mesh has three different corners. Check its scale and its vertices.")
-    return group_half_edges(work.triangles, n)
+    return group_half_edges(work.triangles, n), len(moved)
 
 
 def _make_manifold(work: _Work, groups: EdgeGroups) -> None:
@@ -197,7 +194,7 @@ def _fill_pinched_gaps(work: _Work) -> None:
     work.twins = np.append(work.twins, half_edges.ravel())
     work.twins[half_edges.ravel()] = 3 * len(work.triangles) + np.arange(half_edges.size)
     work.triangles = np.concatenate([work.triangles, faces])
-    work.areas = np.append(work.areas, _areas(work.vertices, faces))
+    work.areas = np.append(work.areas, triangle_areas(work.vertices, faces))
     work.origins = np.append(work.origins, np.full(len(faces), -1))
     work.turned = np.append(work.turned, np.zeros(len(faces), bool))
     work.components = triangle_components(work.twins)
@@ -238,10 +235,7 @@ def _pull_in_spikes(work: _Work) -> None:
     spikes = find_spikes(work.vertices, work.triangles)
     work.counts.spikes = len(spikes)
     if len(spikes):
-        work.vertices = pulled_in(work.vertices, work.triangles, spikes)
-        affected = np.flatnonzero(np.isin(work.triangles, spikes).any(axis=1))
-        work.areas = work.areas.copy()
-        work.areas[affected] = _areas(work.vertices, work.triangles[affected])
+        work.move(pulled_in(work.vertices, work.triangles, spikes), spikes)
 
 
 def _in_parts(mesh: TriangleMesh, work: _Work, inward: Bools, representatives: Ints, name: str) -> CleanSurface:
@@ -252,8 +246,7 @@ def _in_parts(mesh: TriangleMesh, work: _Work, inward: Bools, representatives: I
     if not len(order):
         raise MeshError("Nothing of the mesh has an area once repeated and degenerate faces are left out.")
     order = order[: _MOST_PARTS + 1]
-    rank = np.full(len(areas), -1)
-    rank[order] = np.arange(len(order))
+    rank = numbered(order, len(areas))
     triangle_parts = rank[components]
 
     vertex_parts = np.full(len(work.vertices), -1)
@@ -343,9 +336,3 @@ def _images(vertex_parts: Ints, copied: Ints, representatives: Ints) -> Ints:
         first = np.append(True, candidates[order][1:] != candidates[order][:-1])
         best[candidates[order[first]]] = vertices[order[first]]
     return best[representatives]
-
-
-def _areas(vertices: Floats, triangles: Ints) -> Floats:
-    """Area of each triangle, (m,)."""
-    a, b, c = (vertices[corner] for corner in triangles.T)
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2

@@ -8,6 +8,7 @@ import numpy as np
 from ..mesh.connectivity.boundary_loops import BoundaryLoops
 from ..mesh.connectivity.halfedges import triangle_slots
 from ..mesh.connectivity.nonmanifold_vertices import several_fans
+from ..mesh.triangle_mesh import triangle_areas
 from ..runtime.arrays import Bools, Floats, Ints
 from .hole_filling import small_holes
 
@@ -80,6 +81,6 @@ def _in_sheets(vertices: Floats, triangles: Ints, gaps: Ints, area: float) -> Bo
     half_edges = gaps.ravel()
     tails, heads = (triangle_slots(triangles, half_edges, shift) for shift in (0, 1))
     a, b, c = vertices[tails.reshape(-1, 3)].transpose(1, 0, 2)
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    areas = triangle_areas(vertices, tails.reshape(-1, 3))
     loops = BoundaryLoops(half_edges, tails, heads, np.repeat(np.arange(len(gaps)), 3), (a + b + c) / 3, areas)
     return small_holes(vertices, triangles, loops, area)

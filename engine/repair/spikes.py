@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, marked
 
 _SLENDER = 1.0
 """Length of the shortest edge of a spike by the length of the ring around its foot: a horn is broader at its tip."""
@@ -47,8 +47,7 @@ def find_spikes(vertices: Floats, triangles: Ints) -> Ints:
 
 def pulled_in(vertices: Floats, triangles: Ints, spikes: Ints) -> Floats:
     """Move the tips of spikes (k,) into the middle of the rings around them: the new positions (n, 3)."""
-    tip = np.zeros(len(vertices), bool)
-    tip[spikes] = True
+    tip = marked(spikes, len(vertices))
     tails, heads = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     used = tip[tails] & ~tip[heads]  # one edge for each triangle around a tip
     tails, heads = tails[used], heads[used]

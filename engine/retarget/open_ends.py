@@ -6,11 +6,10 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from ..mesh.connectivity.components import joined_components
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats
 
 _COINCIDENT: Final = 1e-6
 """Vertices closer than this part of the diagonal of the bounding box are one: meshes are split at UV seams."""
@@ -51,9 +50,9 @@ def open_ends(mesh: TriangleMesh) -> int:
     points = np.zeros((int(place.max()) + 1, 3))
     points[place.ravel()] = mesh.vertices
     lengths = np.linalg.norm(points[border[:, 1]] - points[border[:, 0]], axis=1)
-    curve = _pieces(border, len(points))[border[:, 0]]
+    curve = joined_components(len(points), *border.T)[border[:, 0]]
     girths = np.bincount(curve, lengths)
-    piece = _pieces(edges, len(points))
+    piece = joined_components(len(points), *edges.T)
     count = 0
     for number in np.flatnonzero(girths > _LEAST_GIRTH * np.sqrt(mesh.area)):
         own = curve == number
@@ -61,12 +60,6 @@ def open_ends(mesh: TriangleMesh) -> int:
         others = corners[piece[corners[:, 0]] != piece[border[own][0, 0]]]
         count += abs(_winding_number(points[others] - middle)) < _FILLED
     return int(count)
-
-
-def _pieces(edges: Ints, count: int) -> Ints:
-    """Label the pieces that edges (e, 2) make of points, (count,)."""
-    graph = coo_array((np.ones(len(edges)), tuple(edges.T)), shape=(count, count))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
 def _winding_number(triangles: Floats) -> float:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Short names of the types of arrays; what shape an array has is said where it is used."""
+"""Short names of the types of arrays, whose shapes are said where they are used, and arrays made of indices."""
 
 from __future__ import annotations
 
@@ -9,3 +9,17 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+
+def marked(places: Ints, count: int) -> Bools:
+    """Mark some places, indices of any shape, among so many: (count,)."""
+    marks = np.zeros(count, bool)
+    marks[places] = True
+    return marks
+
+
+def numbered(places: Ints, count: int) -> Ints:
+    """Give some places (k,) among so many their numbers, from 0 in their order, (count,); all others are -1."""
+    numbers = np.full(count, -1)
+    numbers[places] = np.arange(len(places))
+    return numbers

@@ -10,7 +10,7 @@ from typing import Generic, Self, TypeVar
 
 from .blas_threads import on_one_thread
 from .errors import HierMatchError
-from .progress import Progress, Steps, within
+from .progress import Progress, Steps, in_turn, told, within
 from .worker import Helper, Task, present_helpers
 
 Common = TypeVar("Common")
@@ -88,11 +88,7 @@ def here_steps(
     work: Callable[[Common, Item], Steps[Result]], common: Common, items: Sequence[Item]
 ) -> Steps[list[Result]]:
     """Do the same with several items in this process alone; see `shared_steps`."""
-    results = []
-    for number, item in enumerate(items):
-        begin, end = ((number + i) / len(items) for i in (0, 1))
-        results.append((yield from within(work(common, item), begin, end)))
-    return results
+    return in_turn(work(common, item) for item in items)
 
 
 class _Sharing(Generic[Common, Item, Result]):
@@ -126,17 +122,14 @@ class _Sharing(Generic[Common, Item, Result]):
 
     def meanwhile_steps(self, own: Steps[Own], *, is_item: bool = False) -> Steps[Own]:
         """Do something here, and look after the helpers at each step."""
-        try:
-            while True:
-                try:
-                    progress = next(own)
-                except StopIteration as stop:
-                    return stop.value
-                self._look()
-                self._label = progress.label
-                yield Progress(self._fraction(progress.fraction), self._label) if is_item else progress
-        finally:
-            own.close()
+
+        def looking(progress: Progress) -> Progress:
+            """Look after the helpers."""
+            self._look()
+            self._label = progress.label
+            return Progress(self._fraction(progress.fraction), self._label) if is_item else progress
+
+        return told(own, looking)
 
     def __enter__(self) -> Self:
         return self

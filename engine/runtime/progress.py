@@ -7,7 +7,7 @@ A long computation is a generator that yields `Progress` in short steps and retu
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -87,13 +87,32 @@ def within(steps: Steps[Result], start: float, end: float, label: str | None = N
     object
         The computation's result.
     """
+
+    def rescaled(progress: Progress) -> Progress:
+        """Say the same of the longer computation."""
+        fraction = start + (end - start) * progress.fraction
+        return replace(progress, fraction=fraction, label=label or progress.label)
+
+    return told(steps, rescaled)
+
+
+def told(steps: Steps[Result], tell: Callable[[Progress], Progress]) -> Steps[Result]:
+    """Run a computation, and tell its progress in another way; what is told is called at each step."""
     try:
         while True:
             try:
                 progress = next(steps)
             except StopIteration as stop:
                 return stop.value
-            fraction = start + (end - start) * progress.fraction
-            yield replace(progress, fraction=fraction, label=label or progress.label)
+            yield tell(progress)
     finally:
         steps.close()
+
+
+def in_turn(parts: Iterable[Steps[Result]]) -> Steps[list[Result]]:
+    """Run computations one after the other, each as an equal part of a longer one: the list of their results."""
+    parts = list(parts)
+    results = []
+    for number, steps in enumerate(parts):
+        results.append((yield from within(steps, number / len(parts), (number + 1) / len(parts))))
+    return results

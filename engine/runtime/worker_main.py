@@ -15,7 +15,7 @@ from .blas_threads import one_thread
 from .errors import HierMatchError
 from .messages import pack, unpack
 from .pipes import can_take, has_more, receive, send
-from .progress import Preview, Steps, run
+from .progress import Preview, Progress, Steps, run, told
 
 READY = b"A helper of HierMatch is ready.\n"
 """What is written before the first reply."""
@@ -67,26 +67,21 @@ class _Work:
     def result(self, steps: Steps[Result]) -> Result | tuple[Result, list[str]]:
         """Do it; with what was warned of if it is followed."""
         if self._told is None:
-            return run(self._watched_steps(steps))
+            return run(told(steps, self._watch))
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("default")
-            result = run(self._watched_steps(steps))
+            result = run(told(steps, self._watch))
         return result, [str(warning.message) for warning in said]
 
-    def _watched_steps(self, steps: Steps[Result]) -> Steps[Result]:
-        """Look at each step whether the result is still wanted."""
-        while True:
-            try:
-                progress = next(steps)
-            except StopIteration as stop:
-                return stop.value
-            if has_more(self._orders):  # no order comes before a reply: the other side is gone
-                raise SystemExit
-            self._preview = progress.preview or self._preview
-            if self._told is not None and time.monotonic() - self._last >= _TOLD and can_take(self._told):
-                send(self._told, pack((None, replace(progress, preview=self._preview))))
-                self._last, self._preview = time.monotonic(), None
-            yield progress
+    def _watch(self, progress: Progress) -> Progress:
+        """Look at a step whether the result is still wanted, and tell how far it is."""
+        if has_more(self._orders):  # no order comes before a reply: the other side is gone
+            raise SystemExit
+        self._preview = progress.preview or self._preview
+        if self._told is not None and time.monotonic() - self._last >= _TOLD and can_take(self._told):
+            send(self._told, pack((None, replace(progress, preview=self._preview))))
+            self._last, self._preview = time.monotonic(), None
+        return progress
 
 
 def _reply(package: str, known: dict[int, Any], new: dict[int, bytes], order: bytes, doing: _Work) -> bytes:

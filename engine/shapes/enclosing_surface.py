@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 
 from ..mesh.area_samples import even_samples
 from ..mesh.closest_points import ClosestPoints, facing
+from ..mesh.connectivity.components import triangle_components
 from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
-from ..mesh.connectivity.triangle_components import triangle_components
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.clean_surface import CleanSurface, StandIn, SurfacePart
@@ -23,7 +23,7 @@ from ..repair.solid_indicator import solid_indicator
 from ..repair.surface_nets import surface_net
 from ..runtime.arrays import Bools, Ints
 from ..runtime.errors import MeshError
-from ..runtime.progress import Progress, Steps, within
+from ..runtime.progress import Progress, Steps, in_turn, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
 
@@ -125,8 +125,7 @@ def joined_shapes_steps(x: Shape, y: Shape, found: SurfaceMap, ends: tuple[Ints,
     across = (main & limbs[1][images]) | (limbs[0] & on_main[images])
     if areas @ across > _LEAST_MORE * areas[main | limbs[0]].sum():
         ends = np.flatnonzero(limbs[0]), np.flatnonzero(limbs[1])
-    x = yield from within(with_limbs_steps(x, "source", ends[0]), 0.0, 0.5)
-    y = yield from within(with_limbs_steps(y, "target", ends[1]), 0.5, 1.0)
+    x, y = yield from in_turn([with_limbs_steps(x, "source", ends[0]), with_limbs_steps(y, "target", ends[1])])
     return x, y
 
 

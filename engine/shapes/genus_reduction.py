@@ -11,12 +11,13 @@ from scipy.sparse.csgraph import dijkstra
 
 from ..geometry.handle_loops import genus, shortest_handle_loop_steps
 from ..mesh.connectivity.boundary_loops import boundary_loops
+from ..mesh.connectivity.edge_chains import way_to_root
 from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.clean_surface import SurfacePart
 from ..repair.hole_filling import fill_holes
-from ..runtime.arrays import Ints
+from ..runtime.arrays import Ints, numbered
 from ..runtime.progress import Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
@@ -128,8 +129,7 @@ def _on_dense(proxy: Proxy, mesh: TriangleMesh, loop: Ints) -> Ints:
         return loop
     ring = proxy.mesh.edges[np.isin(proxy.mesh.edges, loop).any(axis=1)]
     band = np.flatnonzero(np.isin(proxy.points.nearest_vertices, ring))
-    number = np.full(mesh.vertex_count, -1)
-    number[band] = np.arange(len(band))
+    number = numbered(band, mesh.vertex_count)
     inside = (number[mesh.edges] >= 0).all(axis=1)
     a, b = number[mesh.edges[inside]].T
     graph = coo_array((mesh.edge_lengths[inside], (a, b)), shape=(len(band),) * 2).tocsr()
@@ -141,10 +141,7 @@ def _on_dense(proxy: Proxy, mesh: TriangleMesh, loop: Ints) -> Ints:
     for i, end in enumerate(np.roll(stops, -1)):
         if not np.isfinite(distances[i, end]):
             return np.empty(0, np.int64)
-        back = [int(end)]
-        while back[-1] != stops[i]:
-            back.append(int(before[i, back[-1]]))
-        way += back[:0:-1]
+        way += way_to_root(before[i], end)[:0:-1]
     return band[_longest_simple(way)]
 
 

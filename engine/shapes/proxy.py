@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import csr_array, diags_array
 
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
+from ..mesh.connectivity.components import joined_components
 from ..mesh.edge_splitting import split_longest_edges
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, marked, numbered
 from ..runtime.progress import Progress, Steps, within
 from .remeshing.dual_triangulation import manifold_part
 from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
@@ -137,34 +137,30 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
     """
     if mesh.vertex_count <= _LARGE * vertices:
         return Proxy.identity(mesh)
-    count = vertices
-    regions = kept = None
-    for attempt, start in enumerate((0.0, 0.3)):
-        yield Progress(start, "Simplifying the mesh")
-        closed = _without_small_holes(mesh, _HOLE * np.sqrt(mesh.area / count))
-        yield Progress(start + 0.1, "Simplifying the mesh")
-        cells = SurfaceCells.build(
-            closed, grid_labels(closed, _CELL_SIZE * float(np.sqrt(closed.area / (_CELLS * count))))
-        )
-        yield Progress(start + 0.2, "Simplifying the mesh")
-        regions = yield from within(spread_regions_steps(cells, count), start + 0.2, start + 0.25)
-        yield Progress(start + 0.25, "Simplifying the mesh")
-        regions = regions.repaired(closed)
-        kept = (
-            manifold_part(regions.dual.triangles, len(regions.seeds))
-            if regions.dual.faulty.any()
-            else np.arange(len(regions.dual.triangles))
-        )
-        if attempt or len(kept) >= _GOOD_PART * len(regions.dual.triangles):
-            break
-        count = int(_FINER * count)
-    assert regions is not None  # noqa: S101 -- for the type checker
-    assert kept is not None  # noqa: S101
-    del closed, cells
+    regions, kept = yield from within(_divided_steps(mesh, vertices), 0.0, 0.3)
+    if len(kept) < _GOOD_PART * len(regions.dual.triangles):
+        regions, kept = yield from within(_divided_steps(mesh, int(_FINER * vertices)), 0.3, 0.6)
     if not len(kept) or len(regions.seeds) > mesh.vertex_count / 2:
         return Proxy.identity(mesh)
     yield Progress(0.6, "Simplifying the mesh")
     return (yield from _fitted(mesh, regions, kept))
+
+
+def _divided_steps(mesh: TriangleMesh, count: int) -> Steps[tuple[VoronoiRegions, Ints]]:
+    """Divide a mesh into about so many regions: these, and the triangles between them that are a manifold, (t,)."""
+    yield Progress(0.0, "Simplifying the mesh")
+    closed = _without_small_holes(mesh, _HOLE * np.sqrt(mesh.area / count))
+    yield Progress(0.33, "Simplifying the mesh")
+    cell_size = _CELL_SIZE * float(np.sqrt(closed.area / (_CELLS * count)))
+    cells = SurfaceCells.build(closed, grid_labels(closed, cell_size))
+    yield Progress(0.67, "Simplifying the mesh")
+    regions = yield from within(spread_regions_steps(cells, count), 0.67, 0.83)
+    yield Progress(0.83, "Simplifying the mesh")
+    regions = regions.repaired(closed)
+    triangles = regions.dual.triangles
+    if regions.dual.faulty.any():
+        return regions, manifold_part(triangles, len(regions.seeds))
+    return regions, np.arange(len(triangles))
 
 
 def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
@@ -174,14 +170,12 @@ def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
         return mesh
     n = mesh.vertex_count
     tail, head = mesh.triangles.ravel(), np.roll(mesh.triangles, -1, axis=1).ravel()
-    ends = np.zeros(n, bool)
-    ends[mesh.boundary_edges] = True
+    ends = marked(mesh.boundary_edges, n)
     near = np.flatnonzero(ends[tail] & ends[head])
     keys = np.minimum(tail[near], head[near]) * n + np.maximum(tail[near], head[near])
     border = near[np.isin(keys, low * n + high)]
     tail, head = tail[border], head[border]
-    graph = coo_array((np.ones(len(tail), np.int8), (tail, head)), shape=(n, n))
-    loops = np.unique(connected_components(graph, directed=False)[1][tail], return_inverse=True)[1].reshape(-1)
+    loops = np.unique(joined_components(n, tail, head)[tail], return_inverse=True)[1].reshape(-1)
     lengths = np.bincount(loops, np.linalg.norm(mesh.vertices[tail] - mesh.vertices[head], axis=1))
     small = lengths < perimeter
     closing = small[loops]
@@ -199,8 +193,7 @@ def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: Ints) -> Steps[Pr
     cells = regions.cells
     used, triangles = np.unique(regions.dual.triangles[kept], return_inverse=True)
     triangles = triangles.reshape(-1, 3)
-    number = np.full(len(regions.seeds), -1)
-    number[used] = np.arange(len(used))
+    number = numbered(used, len(regions.seeds))
     # Closed holes may have vertices that are not of the mesh.
     n = mesh.vertex_count
     place = number[regions.labels[cells.labels[:n]]]

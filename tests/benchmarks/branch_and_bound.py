@@ -26,10 +26,11 @@ from scipy.optimize import Bounds, LinearConstraint, milp, quadratic_assignment
 from scipy.sparse import coo_array
 
 from engine import MatchSettings, TriangleMesh, run
-from engine.hierarchical.exact.branch_and_bound import branch_and_bound, distinct_matchings_steps
+from engine.hierarchical.exact.branch_and_bound import distinct_matchings_steps
 from engine.hierarchical.problem import MatchingProblem
 from engine.hierarchical.sampled_pair import Pair
 from engine.shapes.shape import Shape
+from tests.problems import branch_and_bound
 from tests.shapes import creature
 
 PAIRS = "cat0:cat1,cat0:cat8,michael0:michael3,tr_reg_000:tr_reg_001"

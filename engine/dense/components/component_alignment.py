@@ -16,7 +16,7 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import DeformableSurface
 from ...registration.registration import FINE, LAST, Stage, register_steps
 from ...runtime.arrays import Floats, Ints
-from ...runtime.progress import Steps, within
+from ...runtime.progress import Steps, in_turn
 from .component_pairs import PartPair
 from .similarity_field import Surroundings
 
@@ -155,13 +155,9 @@ def _deformed_steps(
 ) -> Steps[FoundPoints]:
     """Deform a part onto its partner from each of some positions (n, 3), and take the most credible result."""
     source, target = (DeformableSurface(mesh, laplace_beltrami(mesh)) for mesh in (part, partner))
-    costs, found = [], []
-    for number, start in enumerate(starts):
-        steps = register_steps(source, target, target.in_unit_size(start), stages)
-        registration = yield from within(steps, number / len(starts), (number + 1) / len(starts))
-        costs.append(registration.cost * _strayed(pair, target.in_its_units(registration.positions)))
-        found.append(registration.on_target)
-    return found[int(np.argmin(costs))]
+    found = yield from in_turn(register_steps(source, target, target.in_unit_size(s), stages) for s in starts)
+    best = min(found, key=lambda one: one.cost * _strayed(pair, target.in_its_units(one.positions)))
+    return best.on_target
 
 
 def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: Floats) -> _Motion:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,11 @@ class _Places:
     normals: Floats
     image_normals: Floats
     areas: Floats
-    tree: cKDTree
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """Search for the nearest places."""
+        return cKDTree(self.positions, balanced_tree=False, compact_nodes=False)
 
 
 class Surroundings:
@@ -91,13 +96,8 @@ class Surroundings:
 
     def __init__(self, mesh: TriangleMesh, other: TriangleMesh, images: SurfacePoints) -> None:
         image_normals = unit_vectors(images.interpolate(other.vertex_normals))
-        self._levels = [
-            _places(
-                float(np.sqrt(mesh.area / mesh.vertex_count)),
-                (mesh.vertices, images.positions, mesh.vertex_normals, image_normals),
-                mesh.vertex_areas,
-            )
-        ]
+        vectors = mesh.vertices, images.positions, mesh.vertex_normals, image_normals
+        self._levels = [_Places(float(np.sqrt(mesh.area / mesh.vertex_count)), *vectors, mesh.vertex_areas)]
         while (coarser := _coarser(self._levels[-1])) is not None:
             self._levels.append(coarser)
         a, b, c = (images.positions[corner] for corner in mesh.triangles.T)
@@ -170,12 +170,6 @@ class Surroundings:
         result.scales[part], result.sources[part], result.targets[part] = scale, centre, target
 
 
-def _places(spacing: float, vectors: tuple[Floats, ...], areas: Floats) -> _Places:
-    """Put places together with their search tree."""
-    tree = cKDTree(vectors[0], balanced_tree=False, compact_nodes=False)
-    return _Places(spacing, vectors[0], vectors[1], vectors[2], vectors[3], areas, tree)
-
-
 def _coarser(places: _Places) -> _Places | None:
     """Average places in the cells of a grid, twice as far apart; none if too few would be left."""
     spacing = 2 * places.spacing
@@ -190,11 +184,11 @@ def _coarser(places: _Places) -> _Places | None:
     areas: NDArray[Any] = np.maximum(places.areas, 1e-9 * places.areas.mean())
     totals: NDArray[Any] = np.bincount(number, areas, count)
     vectors = (places.positions, places.images, places.normals, places.image_normals)
-    means = tuple(
+    positions, images, normals, image_normals = (
         np.stack([np.bincount(number, areas * axis, count) for axis in values.T], axis=1) / totals[:, None]
         for values in vectors
     )
-    return _places(spacing, means, totals)
+    return _Places(spacing, positions, images, normals, image_normals, totals)
 
 
 def _neighbours_together(points: Floats) -> Ints:

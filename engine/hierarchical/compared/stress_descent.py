@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from ...mesh.connectivity.components import joined_components
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints
@@ -299,7 +298,7 @@ class _TrianglesAround:
     def __init__(self, mesh: TriangleMesh) -> None:
         n, lengths = mesh.vertex_count, mesh.edge_lengths
         a, b = mesh.edges[lengths <= _NO_LENGTH * lengths.mean()].T
-        _, self._place = connected_components(coo_array((np.ones(len(a), bool), (a, b)), shape=(n, n)), directed=False)
+        self._place = joined_components(n, a, b)
         corners = self._place[mesh.triangles.ravel()]
         self._triangles = np.argsort(corners, kind="stable") // 3
         self._starts = np.append(0, np.cumsum(np.bincount(corners, minlength=n)))

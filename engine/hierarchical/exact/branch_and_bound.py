@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...runtime.arrays import Bools, Ints
 from ...runtime.errors import MatchError
-from ...runtime.progress import Progress, Steps, run, within
+from ...runtime.progress import Progress, Steps, told, within
 from ..problem import MatchingProblem
 from .dual_ascent import PairModel, dual_ascent_steps, pair_model
 from .enumeration import Enumeration
@@ -56,20 +56,6 @@ class BoundedMatching:
     lower_bound: float
     proven: bool
     nodes: int
-
-
-def branch_and_bound(
-    problem: MatchingProblem,
-    *,
-    node_limit: int = 1_000_000,
-    exclusions: Sequence[Exclusion] = (),
-    initial: Sequence[Ints] = (),
-    method: Method = "auto",
-) -> BoundedMatching | None:
-    """Minimise the distortion exactly; see `branch_and_bound_steps`."""
-    return run(
-        branch_and_bound_steps(problem, node_limit=node_limit, exclusions=exclusions, initial=initial, method=method)
-    )
 
 
 def branch_and_bound_steps(
@@ -289,13 +275,7 @@ class _Search:
 
     def _bounded(self, model: PairModel, sweeps: int, limit: float, tolerance: float) -> Steps[PairModel]:
         """Raise the bound of a model, which is used up."""
-        steps = dual_ascent_steps(model, sweeps, limit, tolerance)
-        while True:
-            try:
-                next(steps)
-            except StopIteration as stop:
-                return stop.value
-            yield self._progress()
+        return told(dual_ascent_steps(model, sweeps, limit, tolerance), lambda _: self._progress())
 
     def _explore(self, node: _Node, stack: list[_Node]) -> Steps[float]:
         """Search a subtree, or push its parts on the stack; the bound of what the node limit leaves unvisited."""

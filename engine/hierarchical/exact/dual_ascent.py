@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from ...runtime.arrays import Bools, Floats, Ints
@@ -82,18 +84,11 @@ class PairModel:
         count = int(self.alive.sum(axis=1).max(initial=0))
         order = np.argsort(np.where(self.alive, self.unary, np.inf), axis=1, kind="stable")[:, :count]
         rows = np.arange(len(self.points))
-        return PairModel(
-            self.points,
-            np.take_along_axis(self.labels, order, axis=1),
-            self.constant,
-            np.take_along_axis(self.unary, order, axis=1),
-            self.pair[rows[:, None, None, None], order[:, :, None, None], rows[:, None], order],
-            np.take_along_axis(self.alive, order, axis=1),
-            self.cap,
-            np.take_along_axis(self.moved, np.broadcast_to(order, (len(self.moved), *order.shape)), axis=2),
-            self.needed,
-            self.multipliers,
-        )
+        tables: tuple[NDArray[Any], ...] = self.labels, self.unary, self.alive
+        labels, unary, alive = (np.take_along_axis(table, order, axis=1) for table in tables)
+        pair = self.pair[rows[:, None, None, None], order[:, :, None, None], rows[:, None], order]
+        moved = np.take_along_axis(self.moved, np.broadcast_to(order, (len(self.moved), *order.shape)), axis=2)
+        return replace(self, labels=labels, unary=unary, pair=pair, alive=alive, moved=moved)
 
     def choose(self, row: int, label: int) -> PairModel:
         """Return the model of the other points once the point in `row` has taken `label`."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,7 @@ from .exclusion import exclusion_surcharge
 _BATCH = 200_000  # numbers in the tables of a batch of nodes: some milliseconds of work
 
 
-@dataclass(frozen=True, eq=False)
-class _Block:
+class _Block(NamedTuple):
     """Nodes of equal depth, w of them: partial matchings."""
 
     bound: Floats  # (w,) no matching below the node costs less
@@ -29,15 +28,7 @@ class _Block:
 
     def take(self, nodes: NDArray[np.intp] | slice) -> _Block:
         """Return some of the nodes."""
-        return _Block(
-            self.bound[nodes],
-            self.spent[nodes],
-            self.unary[nodes],
-            self.lowest[nodes],
-            self.matched[nodes],
-            self.chosen[nodes],
-            self.needed[nodes],
-        )
+        return _Block._make(array[nodes] for array in self)
 
 
 class Enumeration:

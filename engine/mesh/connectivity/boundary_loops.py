@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, numbered
+from .components import joined_components
 from .halfedges import triangle_slots
 
 
@@ -64,12 +63,9 @@ def boundary_loops(vertices: Floats, triangles: Ints, half_edges: Ints) -> Bound
     tails, heads = (triangle_slots(triangles, half_edges, shift) for shift in (0, 1))
     ends, number = np.unique(np.concatenate([tails, heads]), return_inverse=True)
     start, end = np.split(number.ravel(), 2)
-    graph = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(len(ends), len(ends)))
-    raw = connected_components(graph, directed=False)[1][start] if len(start) else start
+    raw = joined_components(len(ends), start, end)[start] if len(start) else start
     _, first, raw = np.unique(raw, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
-    labels = rank[raw.ravel()]
+    labels = numbered(np.argsort(first), len(first))[raw.ravel()]
 
     a, b = vertices[tails], vertices[heads]
     lengths = np.linalg.norm(b - a, axis=1)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Marked edges as lines: chains from one end or junction to the next, and closed loops."""
+"""Edges as lines: marked ones as chains from one end or junction to the next, and ways in a tree of edges."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...runtime.arrays import Ints
 
@@ -48,3 +49,11 @@ def edge_chains(edges: Ints) -> list[tuple[list[int], list[int]]]:
         for vertex in vertices:
             chains.extend(follow(vertex, edge) for edge in around[vertex] if edge in left)
     return chains
+
+
+def way_to_root(before: NDArray[np.int32], vertex: int) -> list[int]:
+    """Follow a tree from a vertex to its root, by the vertex before each one; that of the root is negative."""
+    way = [int(vertex)]
+    while before[way[-1]] >= 0:
+        way.append(int(before[way[-1]]))
+    return way

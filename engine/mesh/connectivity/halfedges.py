@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 
 from ...runtime.arrays import Bools, Floats, Ints
 from ..unit_vectors import unit_vectors
-from .triangle_components import triangle_components
+from .components import triangle_components
 
 _MOST_TRIANGLES = 64
 """An edge of more triangles than this is left open: each of its triangles could only be paired by chance."""
@@ -35,6 +35,12 @@ class EdgeGroups:
     order: Ints
     starts: Ints
     counts: Ints
+
+    @property
+    def pairs(self) -> tuple[Ints, Ints]:
+        """The two half-edges of each edge that has just two, (p,) each; the lower numbers first."""
+        doubles = self.starts[self.counts == 2]
+        return self.order[doubles], self.order[doubles + 1]
 
 
 def following(half_edges: Ints) -> Ints:
@@ -79,8 +85,7 @@ def repeated_triangles(triangles: Ints, groups: EdgeGroups) -> Bools:
     """Say of each triangle whether an earlier one has the same three vertices, whichever way round, (m,)."""
     repeated = np.zeros(len(triangles), bool)
     # Two triangles with the same vertices share an edge, and are opposite to it at the same vertex.
-    doubles = groups.starts[groups.counts == 2]
-    one, other = groups.order[doubles], groups.order[doubles + 1]
+    one, other = groups.pairs
     same = triangle_slots(triangles, one, 2) == triangle_slots(triangles, other, 2)
     repeated[other[same] // 3] = True
 
@@ -118,8 +123,7 @@ def pair_half_edges(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> In
     angle between them is obtuse.
     """
     twins = np.full(3 * len(triangles), -1)
-    doubles = groups.starts[groups.counts == 2]
-    one, other = groups.order[doubles], groups.order[doubles + 1]
+    one, other = groups.pairs
     twins[one], twins[other] = other, one
     if not (groups.counts > 2).any():
         return twins

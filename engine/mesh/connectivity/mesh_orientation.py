@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked, numbered
 from .boundary_loops import BoundaryLoops, boundary_loops
-from .triangle_components import neighbour_graph, symmetric_components, triangle_components, triangle_neighbours
+from .components import neighbour_graph, symmetric_components, triangle_components, triangle_neighbours
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +65,10 @@ def orient_consistently(triangles: Ints, areas: Floats, twins: Ints) -> Orientat
     if not disagree.any():
         return Orientation(components, turned, twins)
 
-    affected = np.zeros(int(components.max()) + 1, bool)
-    affected[components[np.flatnonzero(disagree) // 3]] = True
+    affected = marked(components[np.flatnonzero(disagree) // 3], int(components.max()) + 1)
     some = np.flatnonzero(affected[components])
     k = len(some)
-    number = np.empty(m, np.int64)
-    number[some] = np.arange(k)
-    neighbours = number[triangle_neighbours(twins)[some]]
+    neighbours = numbered(some, m)[triangle_neighbours(twins)[some]]
     crossing = disagree.reshape(-1, 3)[some]
     across = np.concatenate([neighbours + k * crossing, neighbours + k * ~crossing])
     cover = neighbour_graph(across)

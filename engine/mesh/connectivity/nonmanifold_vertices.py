@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from ...runtime.arrays import Bools, Ints
+from ...runtime.arrays import Bools, Ints, numbered
+from .components import joined_components
 from .halfedges import following
 
 _LONGEST_WALK = 1000
@@ -42,14 +41,11 @@ def split_fans(triangles: Ints, twins: Ints, vertex_count: int) -> tuple[Ints, I
     if not faulty.any():
         return triangles, np.empty(0, np.int64)
     corners = np.flatnonzero(faulty[tail])
-    number = np.full(len(tail), -1)
-    number[corners] = np.arange(len(corners))
+    number = numbered(corners, len(tail))
     around = _next_around(twins, corners)
     joined = around >= 0
-    graph = coo_array(
-        (np.ones(joined.sum(), np.int8), (np.flatnonzero(joined), number[around[joined]])), shape=(len(corners),) * 2
-    )
-    count, fans = connected_components(graph, directed=False)
+    fans = joined_components(len(corners), np.flatnonzero(joined), number[around[joined]])
+    count = int(fans.max()) + 1
     vertex_of_fan = np.empty(count, np.int64)
     vertex_of_fan[fans] = tail[corners]
     first = np.full(count, len(tail))
@@ -82,8 +78,7 @@ def several_fans(tail: Ints, twins: Ints, vertex_count: int) -> Bools:
         their vertices are found, too, but have perhaps one fan only.
     """
     open_start = np.flatnonzero(twins < 0)
-    start = np.full(vertex_count, -1)
-    start[tail] = np.arange(len(tail))
+    start = numbered(tail, vertex_count)
     start[tail[open_start]] = open_start  # a walk around a boundary vertex begins at the boundary
     left = np.bincount(tail, minlength=vertex_count)
     walking = np.flatnonzero(start >= 0)

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...runtime.arrays import Bools, Floats, Ints
+from .components import joined_components
 from .halfedges import EdgeGroups, triangle_slots
 
 _TOLERANCE = 0.01
@@ -54,8 +53,7 @@ def weld_boundaries(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> In
     radius = np.full(len(first), np.inf)
     np.minimum.at(radius, places, _TOLERANCE * shortest[boundary])
     one, other = _close_pairs(vertices[boundary[first]], radius)
-    graph = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(len(first), len(first)))
-    clusters = connected_components(graph, directed=False)[1][places]
+    clusters = joined_components(len(first), one, other)[places]
 
     earliest = np.full(int(clusters.max()) + 1, len(vertices))
     np.minimum.at(earliest, clusters, boundary)

@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
 from ...runtime.arrays import Bools, Floats, Ints
 from ..triangle_mesh import TriangleMesh
+from .components import joined_components
 from .halfedges import group_half_edges
 from .vertex_welding import weld_boundaries
 
@@ -50,9 +50,7 @@ class WeldedParts:
         triangles = welded[mesh.triangles]
         triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
         count = int(welded.max()) + 1
-        tail, head = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
-        graph = csr_array((np.ones(len(tail), np.int8), (tail, head)), shape=(count, count))
-        labels = connected_components(graph, directed=False)[1].astype(np.int64)
+        labels = joined_components(count, triangles[:, :2].ravel(), triangles[:, 1:].ravel())
         return cls(mesh, welded, triangles, labels)
 
     @property

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.connectivity.components import joined_components, triangle_components
 from ...mesh.connectivity.halfedges import following, group_half_edges, pair_half_edges
-from ...mesh.connectivity.triangle_components import triangle_components
 from ...mesh.polygons import Polygons
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
@@ -144,9 +142,8 @@ def cut_into_sheets(mesh: TriangleMesh, polygons: Polygons, values: Floats, tole
     open_twins = np.full(len(twins), -1)
     open_twins[one[joined]] = other[joined]
     tail, head = (np.concatenate([pair[0][joined], pair[1][joined]]) for pair in (ends, mates))
-    graph = coo_array((np.ones(len(tail), bool), (tail, head)), shape=(len(twins), len(twins)))
-    wedges, wedge = connected_components(graph, directed=False)
-    positions = np.empty((wedges, 3))
+    wedge = joined_components(len(twins), tail, head)
+    positions = np.empty((int(wedge.max()) + 1, 3))
     positions[wedge] = mesh.vertices[starts]
-    surface = TriangleMesh(positions, wedge.reshape(-1, 3).astype(np.int64))
+    surface = TriangleMesh(positions, wedge.reshape(-1, 3))
     return CornerSheets(at_triangles, triangle_components(open_twins), surface, open_twins < 0)

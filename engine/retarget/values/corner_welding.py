@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from ...mesh.connectivity.components import joined_components
 from ...mesh.polygons import Polygons
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked
 
 _WELD = 0.25
 """Corners that meet on the same sheet belong together if they differ by less than this part of the edge there."""
@@ -54,10 +53,10 @@ def weld(values: Floats, polygons: Polygons, labels: Ints, known: Bools, toleran
     part = np.where(known[meeting].all(axis=(1, 2)), _WELD, _WELD_GUESSES)
     close = apart.max(axis=1) <= np.maximum(part * lengths.min(axis=1), tolerance)
     joined = meeting[close & (labels[faces[:, 0]] == labels[faces[:, 1]])].reshape(-1, 2)
-    group, count = groups_of(joined, polygons.corner_count)
+    group = joined_components(polygons.corner_count, *joined.T)
     weights = np.where(known, 1.0, _UNKNOWN_WEIGHT)
-    total = np.bincount(group, weights, count)
-    means = np.stack([np.bincount(group, weights * part, count) / total for part in values.T], axis=1)
+    total = np.bincount(group, weights)
+    means = np.stack([np.bincount(group, weights * part) / total for part in values.T], axis=1)
     return means[group]
 
 
@@ -65,13 +64,4 @@ def jumps(values: Floats, polygons: Polygons, tolerance: float) -> Bools:
     """Say of each edge (e,) whether corner values (l, d) differ by more than a tolerance between its faces."""
     meeting = polygons.meeting_corners
     apart = (np.abs(values[meeting[:, :, 1]] - values[meeting[:, :, 0]]) > tolerance).any(axis=(1, 2))
-    found = np.zeros(len(polygons.edges), bool)
-    found[polygons.corner_edges[polygons.neighbours[apart, 0]]] = True
-    return found
-
-
-def groups_of(pairs: Ints, count: int) -> tuple[Ints, int]:
-    """Find the group of each of `count` things that hang together by pairs (p, 2), and the number of groups."""
-    graph = coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    groups, group = connected_components(graph, directed=False)
-    return group.astype(np.int64), int(groups)
+    return marked(polygons.corner_edges[polygons.neighbours[apart, 0]], len(polygons.edges))

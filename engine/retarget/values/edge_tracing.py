@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from ...mesh.connectivity.edge_chains import edge_chains
+from ...mesh.connectivity.edge_chains import edge_chains, way_to_root
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints
@@ -241,10 +241,7 @@ class _Tracer:
         _, before = dijkstra(weighted, directed=True, indices=int(first), return_predecessors=True)
         if before[last] < 0:
             return None
-        backwards = [int(last)]
-        while backwards[-1] != first:
-            backwards.append(int(before[backwards[-1]]))
-        return [int(vertex) for vertex in inside[backwards[-2::-1]]]
+        return inside[way_to_root(before, last)[-2::-1]].tolist()
 
     def _edges_between(self, route: list[int]) -> Ints:
         """Edges between successive vertices, as far as there are any."""

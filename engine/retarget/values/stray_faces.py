@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...mesh.connectivity.components import joined_components
 from ...mesh.polygons import Polygons
-from ...runtime.arrays import Bools, Floats, Ints
-from .corner_welding import groups_of
+from ...runtime.arrays import Bools, Floats, Ints, numbered
 
 _SPLINTER = 0.005
 """Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
@@ -43,8 +43,8 @@ def splinters(polygons: Polygons, seams: Bools, labels: Ints, areas: Floats) -> 
     pairs = polygons.neighbours
     sides = polygons.corner_faces[pairs]  # (p, 2)
     cut = seams[polygons.corner_edges[pairs[:, 0]]]
-    part, count = groups_of(sides[~cut], polygons.face_count)
-    area = np.bincount(part, areas, count)
+    part = joined_components(polygons.face_count, *sides[~cut].T)
+    area = np.bincount(part, areas)
     largest = np.zeros(int(labels.max(initial=0)) + 1)
     np.maximum.at(largest, labels, area[part])
     small = area[part] < _SPLINTER * largest[labels]
@@ -81,13 +81,13 @@ def teeth(polygons: Polygons, seams: Bools, movable: Bools, areas: Floats, lengt
     sides = polygons.corner_faces[pairs]  # (p, 2)
     edge = polygons.corner_edges[pairs[:, 0]]
     cut = seams[edge]
-    part, count = groups_of(sides[~cut], polygons.face_count)
-    area = np.bincount(part, areas, count)
+    part = joined_components(polygons.face_count, *sides[~cut].T)
+    area = np.bincount(part, areas)
     across = np.concatenate([sides[cut], sides[cut][:, ::-1]])
     face, other = across.T
     length = np.tile(lengths[edge[cut]], 2)
     # What counts is the length against one other part.
-    keys, group = np.unique(face * count + part[other], return_inverse=True)
+    keys, group = np.unique(face * polygons.face_count + part[other], return_inverse=True)
     against = np.bincount(group.ravel(), length, len(keys))[group.ravel()]
     outline = np.bincount(polygons.corner_faces, lengths[polygons.corner_edges], polygons.face_count)
     large = (area[part[face]] > _LARGE * areas[face]) & (area[part[other]] > _LARGE * areas[face])
@@ -97,8 +97,7 @@ def teeth(polygons: Polygons, seams: Bools, movable: Bools, areas: Floats, lengt
     beside = other[reaching][first]
     # Of two side by side only the better one goes.
     gain = (against / np.maximum(outline[face], _TINY))[reaching][first]
-    rank = np.full(polygons.face_count, -1)
-    rank[faces[np.lexsort((-faces, gain))]] = np.arange(len(faces))
+    rank = numbered(faces[np.lexsort((-faces, gain))], polygons.face_count)
     best = np.full(polygons.face_count, -1)
     np.maximum.at(best, sides[:, 0], rank[sides[:, 1]])
     np.maximum.at(best, sides[:, 1], rank[sides[:, 0]])

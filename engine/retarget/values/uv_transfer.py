@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...mesh.polygons import Polygons
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
@@ -46,8 +46,6 @@ class CarriedUVs:
         For each corner.
     seams : (e,) array of bool
         Edges across which the UVs jump.
-    islands : (f,) array of int
-        The island of the source that each face lies on.
     island_count : int
         How many islands the source has.
     lost : int
@@ -58,7 +56,6 @@ class CarriedUVs:
 
     uvs: Floats
     seams: Bools
-    islands: Ints
     island_count: int
     lost: int
     untrusted: int
@@ -124,7 +121,7 @@ def carry_uvs_steps(uvs: ArrayLike, source: Polygons, places: FacePlaces, areas:
         seats = places.seated_beside(sheets, seats, stray, beside)
     islands = sheets.labels[seats.triangles]
     lost, untrusted = _misplaced(islands, sheets.count, places.confidence, areas)
-    return CarriedUVs(carried, seams, islands, sheets.count, lost, untrusted)
+    return CarriedUVs(carried, seams, sheets.count, lost, untrusted)
 
 
 def _laid_out(places: FacePlaces, sheets: CornerSheets, corners: CornerPlaces, tolerance: float) -> Floats:
@@ -154,8 +151,7 @@ def _strays(
     """Find faces that go better with a neighbour's island, and these neighbours, (k,) each."""
     polygons = places.polygons
     stray, beside = splinters(polygons, seams, sheets.labels[corners.seats.triangles], areas)
-    straddling = np.zeros(polygons.face_count, bool)
-    straddling[polygons.corner_faces[corners.is_beyond]] = True
+    straddling = marked(polygons.corner_faces[corners.is_beyond], polygons.face_count)
     ends = places.map.positions[polygons.edges]
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     tooth, next_to = teeth(polygons, seams, straddling, areas, lengths)

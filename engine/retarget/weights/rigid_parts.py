@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked
 from .skin_weights import with_rows
 
 _ALIKE = 1e-3
@@ -112,8 +112,7 @@ def _rigid_rows(weights: csr_array, parts: WeldedParts) -> tuple[Ints, Bools]:
     labels = parts.vertex_labels
     first = np.unique(labels, return_index=True)[1]
     difference = abs(weights - weights[first[labels]]).tocoo()
-    loose = np.zeros(len(first), bool)
-    loose[labels[difference.coords[0][difference.data > _ALIKE]]] = True
+    loose = marked(labels[difference.coords[0][difference.data > _ALIKE]], len(first))
     return first, ~loose
 
 

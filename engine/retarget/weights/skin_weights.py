@@ -6,10 +6,8 @@ Some columns may be locked: they keep what they have, and the others share what 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags_array, vstack
 
 from ...mesh.surface_map import SurfaceMap
@@ -128,7 +126,7 @@ def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> c
         raise RigError(f"A vertex must keep one weight at least, not {count}.")
     free = _free(locked, weights.shape[1])
     result = _clean(weights.copy())
-    rows = np.repeat(np.arange(result.shape[0]), np.diff(result.indptr))
+    rows = _rows(result)
     is_free = free[result.indices]
     room = np.maximum(count - np.bincount(rows[~is_free], minlength=result.shape[0]), 0)
     entries = np.flatnonzero(is_free)
@@ -170,7 +168,7 @@ def pruned(weights: csr_array, threshold: float, *, locked: Bools | None = None)
         The others, unchanged.
     """
     result = _clean(weights.copy())
-    rows = np.repeat(np.arange(result.shape[0]), np.diff(result.indptr))
+    rows = _rows(result)
     largest = np.zeros(result.shape[0])
     np.maximum.at(largest, rows, result.data)
     tiny = (result.data < threshold) & (result.data < largest[rows]) & _free(locked, result.shape[1])[result.indices]
@@ -195,7 +193,7 @@ def normalised(weights: csr_array, *, locked: Bools | None = None) -> csr_array:
     """
     free = _free(locked, weights.shape[1])
     result = _clean(weights.copy())
-    rows = np.repeat(np.arange(result.shape[0]), np.diff(result.indptr))
+    rows = _rows(result)
     is_free = free[result.indices]
     taken = np.bincount(rows[~is_free], result.data[~is_free], result.shape[0])
     given = np.bincount(rows[is_free], result.data[is_free], result.shape[0])
@@ -207,9 +205,7 @@ def normalised(weights: csr_array, *, locked: Bools | None = None) -> csr_array:
 
 def row_sums(weights: csr_array) -> Floats:
     """Sum the weights of each vertex, (m,)."""
-    sums: NDArray[Any] = np.bincount(
-        np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr)), weights.data, weights.shape[0]
-    )
+    sums = np.bincount(_rows(weights), weights.data, weights.shape[0])
     return sums.astype(np.float64)  # without entries there are whole numbers
 
 
@@ -225,6 +221,11 @@ def with_rows(weights: csr_array, rows: Ints, new: csr_array) -> csr_array:
     order = np.arange(weights.shape[0])
     order[rows] = weights.shape[0] + np.arange(len(rows))
     return csr_array(vstack([weights, new], format="csr")[order])
+
+
+def _rows(weights: csr_array) -> Ints:
+    """Row of each entry."""
+    return np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
 
 
 def _free(locked: Bools | None, count: int) -> Bools:

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from ...geometry.laplacian import laplace_beltrami
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked
 from ...runtime.errors import MeshError, RigError
 from .skin_weights import with_rows
 
@@ -61,11 +61,9 @@ def filled(weights: csr_array, trusted: Bools, parts: WeldedParts) -> csr_array:
         )
     if trusted.all() or not trusted.any():
         return weights
-    known = np.zeros(parts.welded_count, bool)
-    known[parts.welded[trusted]] = True
+    known = marked(parts.welded[trusted], parts.welded_count)
     values = csr_array(parts.mean_over(trusted) @ weights)
-    reached = np.zeros(parts.part_count, bool)
-    reached[parts.labels[known]] = True
+    reached = marked(parts.labels[known], parts.part_count)
     gaps = ~known & reached[parts.labels]
     values = with_rows(values, np.flatnonzero(gaps), _harmonic(values, gaps, parts))
     apart = np.flatnonzero(~reached[parts.labels])

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
+from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
@@ -64,9 +64,7 @@ def torn_vertices(weights: csr_array, surface_map: SurfaceMap, parts: WeldedPart
 
 def _islands(parts: WeldedParts, whole: Bools) -> Bools:
     """Say of each welded vertex (w,) whether what whole edges (e,) join it to is small beside the rest of its part."""
-    a, b = parts.edges[whole].T
-    graph = csr_array((np.ones(len(a), np.int8), (a, b)), shape=(parts.welded_count, parts.welded_count))
-    islands = connected_components(graph, directed=False)[1]
+    islands = joined_components(parts.welded_count, *parts.edges[whole].T)
     sizes = np.bincount(islands)[islands]
     largest = np.zeros(parts.part_count, np.int64)
     np.maximum.at(largest, parts.labels, sizes)

@@ -6,10 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from ...runtime.arrays import Bools, Ints
+from ...mesh.connectivity.components import joined_components
+from ...mesh.connectivity.halfedges import following
+from ...runtime.arrays import Bools, Ints, marked
 from .surface_cells import SurfaceCells
 
 
@@ -68,8 +68,7 @@ def dual_triangulation(cells: SurfaceCells, regions: Ints, count: int) -> DualTr
     keys = (low[meeting] * count + middle[meeting]) * count + high[meeting]
     _, first, counts = np.unique(keys, return_index=True, return_counts=True)
     triangles = corners[first]
-    faulty = np.zeros(count, bool)
-    faulty[triangles[counts > 1]] = True
+    faulty = marked(triangles[counts > 1], count)
 
     pairs = regions[cells.pairs]
     inside = pairs[:, 0] == pairs[:, 1]
@@ -86,10 +85,8 @@ def dual_triangulation(cells: SurfaceCells, regions: Ints, count: int) -> DualTr
     crowded, open_ends = _edge_faults(triangles, count)
     faulty[crowded] = True
     faulty |= _fan_counts(triangles, count) != 1
-    at_boundary = np.zeros(count, bool)
-    at_boundary[regions[cells.at_boundary]] = True
-    at_end = np.zeros(count, bool)
-    at_end[open_ends] = True
+    at_boundary = marked(regions[cells.at_boundary], count)
+    at_end = marked(open_ends, count)
     faulty |= at_boundary != at_end
     return DualTriangulation(triangles, faulty)
 
@@ -121,11 +118,7 @@ def manifold_part(triangles: Ints, vertex_count: int) -> Ints:
     if not len(kept):
         return kept
     a, b, c = triangles[kept].T
-    graph = coo_array(
-        (np.ones(2 * len(a), np.int8), (np.concatenate([a, b]), np.concatenate([b, c]))),
-        shape=(vertex_count, vertex_count),
-    )
-    parts = connected_components(graph, directed=False)[1][a]
+    parts = joined_components(vertex_count, np.concatenate([a, b]), np.concatenate([b, c]))[a]
     return kept[parts == np.bincount(parts).argmax()]
 
 
@@ -146,22 +139,15 @@ def _edge_faults(triangles: Ints, count: int) -> tuple[Ints, Ints]:
 def _fan_counts(triangles: Ints, count: int) -> Ints:
     """Into how many fans the triangles around each vertex fall that hang together across edges, (count,)."""
     tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    half_edges = np.arange(len(tail))
-    following = half_edges + np.where(half_edges % 3 == 2, -2, 1)
+    onward = following(np.arange(len(tail)))
     keys = _edge_keys(tail, head, count)
     order = np.argsort(keys, kind="stable")
     first = np.flatnonzero(keys[order][1:] == keys[order][:-1])
     one, other = order[first], order[first + 1]
     opposite = tail[one] == head[other]
     one, other = one[opposite], other[opposite]
-    graph = coo_array(
-        (
-            np.ones(2 * len(one), np.int8),
-            (np.concatenate([one, following[one]]), np.concatenate([following[other], other])),
-        ),
-        shape=(len(tail), len(tail)),
-    )
-    fans = connected_components(graph, directed=False)[1]
+    first, second = np.concatenate([one, onward[one]]), np.concatenate([onward[other], other])
+    fans = joined_components(len(tail), first, second)
     vertex_of_fan = np.empty(int(fans.max()) + 1 if len(fans) else 0, np.int64)
     vertex_of_fan[fans] = tail
     return np.bincount(vertex_of_fan, minlength=count)

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
+from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked, numbered
 
 _LEAST_LENGTH = 1e-9  # of sqrt(area): an edge of length zero is no edge for a sparse graph
 _ASIDE = (1e-5, 3e-5, 2e-5)  # of sqrt(area): any direction that edges of a mesh are unlikely to have
@@ -76,8 +77,7 @@ class SurfaceCells:
             for columns in (mesh.vertices, mesh.vertex_normals)
         )
         areas: NDArray[Any] = np.bincount(labels, mesh.vertex_areas, count)
-        at_boundary = np.zeros(count, bool)
-        at_boundary[labels[mesh.boundary_edges]] = True
+        at_boundary = marked(labels[mesh.boundary_edges], count)
 
         low, high = np.sort(labels[mesh.edges], axis=1).T
         inside = low == high
@@ -177,14 +177,11 @@ def grid_labels(mesh: TriangleMesh, size: float) -> Ints:
     keys = (cubes[:, 0] * ny + cubes[:, 1]) * nz + cubes[:, 2]
     a, b = mesh.edges.T
     inside = keys[a] == keys[b]
-    n = mesh.vertex_count
-    graph = coo_array((np.ones(inside.sum(), np.int8), (a[inside], b[inside])), shape=(n, n))
-    count, labels = connected_components(graph, directed=False)
+    labels = joined_components(mesh.vertex_count, a[inside], b[inside])
     # Number them by cube, then by place in it.
-    sizes = np.bincount(labels, minlength=count)
+    sizes = np.bincount(labels)
+    count = len(sizes)
     means = [np.bincount(labels, column, count) / sizes for column in mesh.vertices.T]
     cube = np.empty(count, np.int64)
     cube[labels] = keys
-    rank = np.empty(count, np.int64)
-    rank[np.lexsort((*means[::-1], cube))] = np.arange(count)
-    return rank[labels]
+    return numbered(np.lexsort((*means[::-1], cube)), count)[labels]

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, marked
 from ...runtime.progress import Progress, Steps
 from .dual_triangulation import DualTriangulation, dual_triangulation
 from .sizing_field import vertex_density
@@ -156,8 +156,7 @@ def _poisson_disk(cells: SurfaceCells, count: int, density: Floats) -> Ints:
     # As if one after the other: whoever has nobody undecided ahead is chosen, and rules out all behind.
     chosen, undecided = np.zeros(len(candidates), bool), np.ones(len(candidates), bool)
     while undecided.any():
-        waits = np.zeros(len(candidates), bool)
-        waits[ahead[:, 1]] = True
+        waits = marked(ahead[:, 1], len(candidates))
         new = undecided & ~waits
         chosen |= new
         undecided &= ~new

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from engine.runtime.progress import Preview, Progress, run, within
+from engine.runtime.progress import Preview, Progress, in_turn, run, told, within
 
 
 def counting(count, log=None):
@@ -55,5 +55,26 @@ def test_closing_the_outer_generator_closes_the_inner_one():
 
     steps = outer()
     next(steps)
+    steps.close()
+    assert log == ["closed"]
+
+
+def test_in_turn_gives_each_an_equal_part_and_returns_all_results():
+    told_of, result = [], []
+
+    def outer():
+        result.extend((yield from in_turn(counting(count) for count in (2, 1, 2))))
+
+    told_of = [progress.fraction for progress in outer()]
+    assert told_of == pytest.approx([0, 1 / 6, 1 / 3, 2 / 3, 5 / 6])
+    assert result == [2, 1, 2]
+    assert run(in_turn([])) == []
+
+
+def test_what_is_told_takes_the_place_of_the_progress():
+    log = []
+    steps = told(counting(2, log), lambda progress: Progress(progress.fraction / 2, "other"))
+    assert next(steps) == Progress(0.0, "other")
+    assert next(steps) == Progress(0.25, "other")
     steps.close()
     assert log == ["closed"]

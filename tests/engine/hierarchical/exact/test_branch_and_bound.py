@@ -10,7 +10,6 @@ from scipy.optimize import linear_sum_assignment
 from engine.hierarchical.exact import branch_and_bound as module
 from engine.hierarchical.exact import incumbent as incumbent_module
 from engine.hierarchical.exact.branch_and_bound import (
-    branch_and_bound,
     branch_and_bound_steps,
     distinct_matchings_steps,
 )
@@ -19,7 +18,7 @@ from engine.hierarchical.exact.incumbent import TOLERANCE
 from engine.hierarchical.problem import MatchingProblem
 from engine.runtime.errors import MatchError
 from engine.runtime.progress import Progress, run
-from tests.problems import all_costs, brute_force, random_problem, relabelled, shape_problem
+from tests.problems import all_costs, branch_and_bound, brute_force, random_problem, relabelled, shape_problem
 
 METHODS = ["dual ascent", "gilmore-lawler"]
 

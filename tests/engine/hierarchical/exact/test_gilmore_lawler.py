@@ -7,10 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
-from engine.hierarchical.exact.branch_and_bound import branch_and_bound
 from engine.hierarchical.exact.gilmore_lawler import gilmore_lawler_bound
 from engine.hierarchical.problem import MatchingProblem
-from tests.problems import all_costs, brute_force, random_problem, relabelled
+from tests.problems import all_costs, branch_and_bound, brute_force, random_problem, relabelled
 
 
 @given(

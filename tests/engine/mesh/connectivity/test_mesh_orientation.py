@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
+from engine.mesh.connectivity.components import triangle_components
 from engine.mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from engine.mesh.connectivity.mesh_orientation import inward_components, orient_consistently, turn_triangles
-from engine.mesh.connectivity.triangle_components import triangle_components
 from tests.messes import partly_turned, together
 from tests.shapes import creature, cylinder, icosphere, plane, torus
 

@@ -3,10 +3,19 @@
 
 import numpy as np
 
+from engine.mesh.connectivity.components import joined_components, triangle_components, triangle_neighbours
 from engine.mesh.connectivity.halfedges import group_half_edges, pair_half_edges
-from engine.mesh.connectivity.triangle_components import triangle_components, triangle_neighbours
 from tests.messes import together
 from tests.shapes import icosphere, plane
+
+
+def test_what_is_joined_in_pairs_hangs_together():
+    labels = joined_components(6, np.array([4, 1, 1, 1]), np.array([2, 0, 0, 5]))
+    assert len(set(labels.tolist())) == 3
+    assert labels[0] == labels[1] == labels[5]
+    assert labels[2] == labels[4]
+    nothing = np.empty(0, np.int64)
+    assert len(set(joined_components(3, nothing, nothing).tolist())) == 3
 
 
 def test_components_and_neighbours():

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Connected components of triangles across paired half-edges."""
+"""Connected components: of anything joined in pairs, and of triangles across paired half-edges."""
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ...runtime.arrays import Ints
+
+
+def joined_components(count: int, first: Ints, second: Ints) -> Ints:
+    """Find the components of nodes that are joined in pairs, (p,) each: the number of that of each node, (count,)."""
+    graph = coo_array((np.ones(len(first), bool), (first, second)), shape=(count, count))
+    return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
 def triangle_components(twins: Ints) -> Ints:
