@@ -12,6 +12,7 @@ from .command_line import register_command, unregister_command
 from .common.translations import register_translations, unregister_translations
 from .operators.answer import HIERMATCH_OT_answer
 from .operators.cancel import HIERMATCH_OT_cancel
+from .operators.carrying.fit_my_rig import HIERMATCH_OT_fit_my_rig
 from .operators.carrying.fit_rig import HIERMATCH_OT_fit_rig
 from .operators.carrying.retarget import HIERMATCH_OT_retarget
 from .operators.carrying.symmetrise import HIERMATCH_OT_symmetrise
@@ -125,6 +126,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PG_worn,
     HIERMATCH_OT_retarget,
     HIERMATCH_OT_fit_rig,
+    HIERMATCH_OT_fit_my_rig,
     HIERMATCH_OT_transfer_weights,
     HIERMATCH_OT_transfer_shape_keys,
     HIERMATCH_OT_transfer_uvs,

@@ -2511,5 +2511,68 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "1 note": "注記1件",
     "{0} notes": "注記{0}件",
+    "Fit My Rig": "マイリグをフィット",
+    "My Rig": "マイリグ",
+    (
+        "Give the matched meshes a copy each of an armature that stands in the source, such as a metarig "
+        "of Rigify or a standard skeleton, with its joints where they belong in them. It need not move "
+        "the source"
+    ): (
+        "ソースの中に立つアーマチュア、たとえばRigifyのメタリグや標準スケルトンのコピーを、対応づけたメッ"
+        "シュそれぞれに、関節を正しい位置に置いて与えます。ソースを動かしていなくても構いません"
+    ),
+    (
+        "Name of an armature that stands in the source without moving it, such as a metarig of Rigify. "
+        "It may be bound to nothing"
+    ): (
+        "ソースの中に立ち、ソースを動かしていないアーマチュアの名前。Rigifyのメタリグなど。何にもバインド"
+        "されていなくて構いません"
+    ),
+    "Bind with Weights": "ウェイト付きでバインド",
+    (
+        "Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
+        "bones that move the same surface. Leave it off for a metarig"
+    ): (
+        "ソース自身のリグのウェイトを、同じ表面を動かすボーンに渡して、ターゲットをフィットしたリグにバイ"
+        "ンドします。メタリグではオフのままにしてください"
+    ),
+    (
+        '"{0}" moves no mesh, so nothing tells where in a body its joints belong. Choose as the Source a '
+        "mesh in which it stands, and name the armature as the Rig."
+    ): (
+        "「{0}」はどのメッシュも動かしていないため、関節が体のどこにあるべきか分かりません。それが中に立"
+        "つメッシュをソースに選び、アーマチュアをリグとして指定してください。"
+    ),
+    '"{0}" moves "{1}". To give a target the rig that moves the source, use Fit Rig or Retarget.': (
+        "「{0}」は「{1}」を動かしています。ソースを動かすリグをターゲットに与えるには、「リグをフィット」"
+        "か「リターゲット」を使ってください。"
+    ),
+    "Which armature is to be fitted is open. Name one as the Rig.": (
+        "フィットするアーマチュアが分かりません。リグとして一つ指定してください。"
+    ),
+    '"{0}" is not an armature. Name one as the Rig.': (
+        "「{0}」はアーマチュアではありません。リグとしてアーマチュアを指定してください。"
+    ),
+    (
+        '"{0}" does not stand in "{1}": most of its bones lie outside, also if it is moved there and '
+        "scaled. Move its joints into that body in Edit Mode first."
+    ): (
+        "「{0}」は「{1}」の中に立っていません。そこへ移動して拡大縮小しても、ほとんどのボーンが外にありま"
+        "す。先に編集モードで関節をその体の中に移してください。"
+    ),
+    (
+        '"{0}" has no weights that could be handed to the bones of "{1}". Switch Bind with Weights off, '
+        "and bind the target by Blender's automatic weights afterwards."
+    ): (
+        "「{0}」には「{1}」のボーンに渡せるウェイトがありません。「ウェイト付きでバインド」をオフにして、"
+        "後で Blenderの自動ウェイトでターゲットをバインドしてください。"
+    ),
+    "Carrying joints": "関節を移しています",
+    '"{0}" moves nothing yet. Generate its control rig, or bind "{1}" to it.': (
+        "「{0}」はまだ何も動かしていません。コントロールリグを生成するか、「{1}」をそれにバインドしてください。"
+    ),
+    '"{0}" did not stand in "{1}", so it was moved there and scaled.': (
+        "「{0}」は「{1}」の中に立っていなかったため、そこへ移動して拡大縮小しました。"
+    ),
 }
 """The translation of each English text."""

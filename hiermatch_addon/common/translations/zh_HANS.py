@@ -2029,5 +2029,48 @@ MESSAGES: Final[dict[str, str]] = {
     ): ("“{0}”的选中骨骼在“{1}”上都没有顶点组。请传递所有组，或在姿态模式下选择其他骨骼。"),
     "1 note": "1 条说明",
     "{0} notes": "{0} 条说明",
+    "Fit My Rig": "适配我的骨架",
+    "My Rig": "我的骨架",
+    (
+        "Give the matched meshes a copy each of an armature that stands in the source, such as a metarig "
+        "of Rigify or a standard skeleton, with its joints where they belong in them. It need not move "
+        "the source"
+    ): (
+        "为每个已匹配的网格提供一份站在源中的骨架（例如Rigify的元骨架或标准骨架）的副本，并把关节放到正确"
+        "的位置。它不必驱动源"
+    ),
+    (
+        "Name of an armature that stands in the source without moving it, such as a metarig of Rigify. "
+        "It may be bound to nothing"
+    ): "站在源中但不驱动源的骨架的名称，例如Rigify的元骨架。它可以没有绑定任何物体",
+    "Bind with Weights": "带权重绑定",
+    (
+        "Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
+        "bones that move the same surface. Leave it off for a metarig"
+    ): "把源自身骨架的权重交给驱动相同表面的骨骼，并将目标绑定到适配后的骨架。对元骨架请保持关闭",
+    (
+        '"{0}" moves no mesh, so nothing tells where in a body its joints belong. Choose as the Source a '
+        "mesh in which it stands, and name the armature as the Rig."
+    ): ("“{0}”没有驱动任何网格，因此无法得知其关节应在身体的哪里。请选择它所站立的网格作为源，并将该骨架指定为骨架。"),
+    '"{0}" moves "{1}". To give a target the rig that moves the source, use Fit Rig or Retarget.': (
+        "“{0}”驱动“{1}”。要把驱动源的骨架给目标，请使用“适配骨架”或“重定向”。"
+    ),
+    "Which armature is to be fitted is open. Name one as the Rig.": ("不清楚要适配哪个骨架。请将一个骨架指定为骨架。"),
+    '"{0}" is not an armature. Name one as the Rig.': "“{0}”不是骨架。请将一个骨架指定为骨架。",
+    (
+        '"{0}" does not stand in "{1}": most of its bones lie outside, also if it is moved there and '
+        "scaled. Move its joints into that body in Edit Mode first."
+    ): ("“{0}”没有站在“{1}”中：即使移动到那里并缩放，其大部分骨骼仍在外面。请先在编辑模式下把关节移入该身体。"),
+    (
+        '"{0}" has no weights that could be handed to the bones of "{1}". Switch Bind with Weights off, '
+        "and bind the target by Blender's automatic weights afterwards."
+    ): "“{0}”没有可以交给“{1}”的骨骼的权重。请关闭“带权重绑定”，之后用Blender的自动权重绑定目标。",
+    "Carrying joints": "正在转移关节",
+    '"{0}" moves nothing yet. Generate its control rig, or bind "{1}" to it.': (
+        "“{0}”还没有驱动任何东西。请生成其控制骨架，或将“{1}”绑定到它。"
+    ),
+    '"{0}" did not stand in "{1}", so it was moved there and scaled.': (
+        "“{0}”没有站在“{1}”中，因此已移动到那里并缩放。"
+    ),
 }
 """The translation of each English text."""
