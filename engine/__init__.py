@@ -27,6 +27,7 @@ from .retarget.motion.posed_motion import LocalTransforms, Motion, local_transfo
 from .retarget.motion.rotation_channels import rotation_channels, rotation_matrices
 from .retarget.open_ends import open_ends
 from .retarget.rig.fitted_rig import FittedRig
+from .retarget.rig.humanoid import humanoid_bones
 from .retarget.rig.joint_placement import PlacedJoints, place_joints
 from .retarget.rig.rest_pose import RestPose, at_rest, is_posed, length_ratio, rest_pose, unposed
 from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
@@ -132,6 +133,7 @@ __all__ = [
     "fit_rig",
     "fit_rig_steps",
     "follow_keys_steps",
+    "humanoid_bones",
     "in_between",
     "is_posed",
     "kept_in_place",

@@ -39,6 +39,7 @@ from .operators.motion.edit_bone_pairs import (
     HIERMATCH_OT_remove_bone_pair,
 )
 from .operators.motion.pair_bones import HIERMATCH_OT_pair_bones
+from .operators.motion.rename_bones import HIERMATCH_OT_rename_bones
 from .operators.motion.retarget_action import HIERMATCH_OT_retarget_action, HIERMATCH_OT_retarget_pose
 from .operators.refine import HIERMATCH_OT_refine
 from .operators.show import HIERMATCH_OT_show, HIERMATCH_OT_write_regions
@@ -138,6 +139,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_before_after,
     HIERMATCH_PG_bone_pair,
     HIERMATCH_OT_pair_bones,
+    HIERMATCH_OT_rename_bones,
     HIERMATCH_OT_retarget_action,
     HIERMATCH_OT_retarget_pose,
     HIERMATCH_OT_add_bone_pair,

@@ -2574,5 +2574,53 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" did not stand in "{1}", so it was moved there and scaled.': (
         "「{0}」は「{1}」の中に立っていなかったため、そこへ移動して拡大縮小しました。"
     ),
+    "Rename Bones": "ボーンの名前を変更",
+    (
+        "Give the bones of the target's rig the names of a standard, or of the source's bones. Vertex "
+        "groups, actions, constraints and drivers follow"
+    ): (
+        "ターゲットのリグのボーンに、規格の名前か、ソースのボーンの名前を付けます。頂点グループ、アクショ"
+        "ン、コンストレイント、ドライバーも追従します"
+    ),
+    ("Name of an armature, or of what it moves; if empty, the one picked in the panel or else the active object"): (
+        "アーマチュア、またはそれが動かすものの名前。空の場合はパネルで選んだもの、なければアクティブオブジェクト"
+    ),
+    (
+        "Name of the armature whose names are taken over, or of what it moves; if empty, the one picked in the panel"
+    ): "名前を引き継ぐアーマチュア、またはそれが動かすものの名前。空の場合はパネルで選んだもの",
+    "What the bones are to be called": "ボーンに付ける名前",
+    "Names of the humanoid bones of VRM 1.0, such as leftUpperArm": (
+        "VRM 1.0のヒューマノイドボーンの名前。leftUpperArmなど"
+    ),
+    "Names of Mixamo, such as mixamorig:LeftArm": "Mixamoの名前。mixamorig:LeftArmなど",
+    "Names of Unreal's mannequin, such as upperarm_l": "Unrealのマネキンの名前。upperarm_lなど",
+    "Names of the bones of Rigify that deform, such as DEF-upper_arm.L": (
+        "Rigifyの変形ボーンの名前。DEF-upper_arm.Lなど"
+    ),
+    "The names of the source's bones with which they are paired, whatever they move": (
+        "ペアになっているソースのボーンの名前"
+    ),
+    "Known by": "判断の手がかり",
+    "What tells which bone is which, for a standard": ("規格の名前を付けるとき、どのボーンが何かを何で判断するか"),
+    "Joints": "関節",
+    "Where the joints are, and what hangs on what. Names do not matter": ("関節の位置と親子関係。名前は関係ありません"),
+    '{0} of "{1}" got another name': "「{1}」の{0}の名前を変更しました",
+    "{0} kept the name: there is none for it": "{0}は該当する名前がないため元の名前のままです",
+    (
+        'The bones of "{0}" are linked from another file and cannot be renamed here. Make it local first '
+        "(Object > Relations > Make Local)."
+    ): (
+        "「{0}」のボーンは別のファイルからリンクされているため、ここでは名前を変更できません。先にローカ"
+        "ル化してください（オブジェクト > 関係 > ローカル化）。"
+    ),
+    'No bone of "{0}" has a name of that standard. Choose another one.': (
+        "「{0}」にはその規格の名前のボーンがありません。別のものを選んでください。"
+    ),
+    '"{0}" has other bones that are called {1} already. Rename them first.': (
+        "「{0}」にはすでに{1}という別のボーンがあります。先にその名前を変更してください。"
+    ),
+    '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
+        "「{0}」にはすでに{1}という別の頂点グループがあります。先にその名前を変更してください。"
+    ),
 }
 """The translation of each English text."""

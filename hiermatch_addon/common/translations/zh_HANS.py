@@ -2072,5 +2072,41 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" did not stand in "{1}", so it was moved there and scaled.': (
         "“{0}”没有站在“{1}”中，因此已移动到那里并缩放。"
     ),
+    "Rename Bones": "重命名骨骼",
+    (
+        "Give the bones of the target's rig the names of a standard, or of the source's bones. Vertex "
+        "groups, actions, constraints and drivers follow"
+    ): "为目标骨架的骨骼赋予某种标准的名称，或源骨骼的名称。顶点组、动作、约束和驱动器会随之更新",
+    (
+        "Name of an armature, or of what it moves; if empty, the one picked in the panel or else the active object"
+    ): "骨架或其驱动物体的名称；若为空，则为面板中所选，否则为活动物体",
+    (
+        "Name of the armature whose names are taken over, or of what it moves; if empty, the one picked in the panel"
+    ): "要沿用其名称的骨架，或其驱动物体的名称；若为空，则为面板中所选",
+    "What the bones are to be called": "骨骼要用的名称",
+    "Names of the humanoid bones of VRM 1.0, such as leftUpperArm": "VRM 1.0人形骨骼的名称，例如leftUpperArm",
+    "Names of Mixamo, such as mixamorig:LeftArm": "Mixamo的名称，例如mixamorig:LeftArm",
+    "Names of Unreal's mannequin, such as upperarm_l": "Unreal人体模型的名称，例如upperarm_l",
+    "Names of the bones of Rigify that deform, such as DEF-upper_arm.L": ("Rigify变形骨骼的名称，例如DEF-upper_arm.L"),
+    "The names of the source's bones with which they are paired, whatever they move": "与之配对的源骨骼的名称",
+    "Known by": "依据",
+    "What tells which bone is which, for a standard": "使用标准名称时，依据什么判断每根骨骼是什么",
+    "Joints": "关节",
+    "Where the joints are, and what hangs on what. Names do not matter": "关节的位置和父子关系。名称无关紧要",
+    '{0} of "{1}" got another name': "“{1}”的{0}已改名",
+    "{0} kept the name: there is none for it": "{0}保留原名：没有对应的名称",
+    (
+        'The bones of "{0}" are linked from another file and cannot be renamed here. Make it local first '
+        "(Object > Relations > Make Local)."
+    ): "“{0}”的骨骼链接自其他文件，无法在此重命名。请先将其本地化（物体 > 关系 > 本地化）。",
+    'No bone of "{0}" has a name of that standard. Choose another one.': (
+        "“{0}”没有该标准名称的骨骼。请选择其他标准。"
+    ),
+    '"{0}" has other bones that are called {1} already. Rename them first.': (
+        "“{0}”已有其他名为{1}的骨骼。请先重命名它们。"
+    ),
+    '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
+        "“{0}”已有其他名为{1}的顶点组。请先重命名它们。"
+    ),
 }
 """The translation of each English text."""
