@@ -27,10 +27,12 @@ from .retarget.motion.posed_motion import LocalTransforms, Motion, local_transfo
 from .retarget.motion.rotation_channels import rotation_channels, rotation_matrices
 from .retarget.open_ends import open_ends
 from .retarget.rig.fitted_rig import FittedRig
+from .retarget.rig.humanoid import humanoid_bones
 from .retarget.rig.joint_placement import PlacedJoints, place_joints
 from .retarget.rig.rest_pose import RestPose, at_rest, is_posed, length_ratio, rest_pose, unposed
 from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
 from .retarget.rig.skeleton import Skeleton
+from .retarget.rig.standing_rig import carry_standing_rig, carry_standing_rig_steps, moved_into, standing_share
 from .retarget.values.attribute_transfer import CarriedValues, Crossing, Domain, carry_values_steps
 from .retarget.values.corner_transfer import carry_normals, turned_normals
 from .retarget.values.deformation_gradients import LocalFrames, bone_frames, surface_frames
@@ -44,6 +46,7 @@ from .retarget.wear.pose_mending import MendedWeights, mend_weights_steps
 from .retarget.wear.wearing import FittedItem, WornItem, wear_steps
 from .retarget.weights.skin_weights import carried as carry_weights
 from .retarget.weights.skin_weights import row_sums, with_rows
+from .retarget.weights.standing_weights import standing_weights
 from .retarget.weights.weight_transfer import CarriedWeights, Columns, carry_weights_steps, put_in
 from .retarget.wrapping import WrappedSurface, kept_in_place, wrap_steps
 from .runtime.background import Background, called_steps
@@ -114,6 +117,8 @@ __all__ = [
     "carry_face_values",
     "carry_normals",
     "carry_offsets_steps",
+    "carry_standing_rig",
+    "carry_standing_rig_steps",
     "carry_uvs_steps",
     "carry_values_steps",
     "carry_weights",
@@ -128,6 +133,7 @@ __all__ = [
     "fit_rig",
     "fit_rig_steps",
     "follow_keys_steps",
+    "humanoid_bones",
     "in_between",
     "is_posed",
     "kept_in_place",
@@ -136,6 +142,7 @@ __all__ = [
     "match",
     "match_steps",
     "mend_weights_steps",
+    "moved_into",
     "nearest_regions",
     "open_ends",
     "pair_bones",
@@ -155,6 +162,8 @@ __all__ = [
     "row_sums",
     "run",
     "slopes_of",
+    "standing_share",
+    "standing_weights",
     "surface_frames",
     "symmetry_map",
     "symmetry_map_steps",

@@ -12,6 +12,7 @@ from .command_line import register_command, unregister_command
 from .common.translations import register_translations, unregister_translations
 from .operators.answer import HIERMATCH_OT_answer
 from .operators.cancel import HIERMATCH_OT_cancel
+from .operators.carrying.fit_my_rig import HIERMATCH_OT_fit_my_rig
 from .operators.carrying.fit_rig import HIERMATCH_OT_fit_rig
 from .operators.carrying.retarget import HIERMATCH_OT_retarget
 from .operators.carrying.symmetrise import HIERMATCH_OT_symmetrise
@@ -38,6 +39,7 @@ from .operators.motion.edit_bone_pairs import (
     HIERMATCH_OT_remove_bone_pair,
 )
 from .operators.motion.pair_bones import HIERMATCH_OT_pair_bones
+from .operators.motion.rename_bones import HIERMATCH_OT_rename_bones
 from .operators.motion.retarget_action import HIERMATCH_OT_retarget_action, HIERMATCH_OT_retarget_pose
 from .operators.refine import HIERMATCH_OT_refine
 from .operators.show import HIERMATCH_OT_show, HIERMATCH_OT_write_regions
@@ -125,6 +127,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PG_worn,
     HIERMATCH_OT_retarget,
     HIERMATCH_OT_fit_rig,
+    HIERMATCH_OT_fit_my_rig,
     HIERMATCH_OT_transfer_weights,
     HIERMATCH_OT_transfer_shape_keys,
     HIERMATCH_OT_transfer_uvs,
@@ -136,6 +139,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_before_after,
     HIERMATCH_PG_bone_pair,
     HIERMATCH_OT_pair_bones,
+    HIERMATCH_OT_rename_bones,
     HIERMATCH_OT_retarget_action,
     HIERMATCH_OT_retarget_pose,
     HIERMATCH_OT_add_bone_pair,

@@ -127,6 +127,8 @@ def _draw_table(layout: Any, context: bpy.types.Context, options: Any) -> None: 
     row.operator("hiermatch.export_bone_pairs", text="", icon="EXPORT")
     row.operator("hiermatch.import_bone_pairs", text="", icon="IMPORT")
     row.operator("hiermatch.clear_bone_pairs", text="", icon="TRASH")
+    row.separator()
+    row.operator_menu_enum("hiermatch.rename_bones", "names", text="Rename Bones", icon="SORTALPHA")
 
 
 def _rigs_picked(context: bpy.types.Context) -> list[set[Any] | None]:

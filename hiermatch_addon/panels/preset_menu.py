@@ -18,6 +18,7 @@ from bl_ui.utils import PresetPanel
 from ..properties.panel_state import state_of
 from ..properties.properties import OPTION_NAMES
 from ..transfers.options.motion import MotionOptions
+from ..transfers.options.my_rig import MyRigOptions
 from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wear import WearOptions
@@ -41,13 +42,13 @@ _FOLDER: Final = str(Path(__file__).parents[1])
 
 _SUBFOLDER: Final = "hiermatch"
 
-_OF_A_PAIR: Final = ("prefix", "exclude_source", "exclude_target", "action")
+_OF_A_PAIR: Final = ("prefix", "exclude_source", "exclude_target", "action", "rig")
 """Options that belong to two meshes, and not to a way of working."""
 
 MATCH_NAMES: Final = tuple(name for name in OPTION_NAMES if name not in _OF_A_PAIR)
 """The options of a match that a preset holds."""
 
-_OPTIONS: Final = (*KINDS.values(), WrapOptions, WearOptions, SymmetriseOptions, MotionOptions)
+_OPTIONS: Final = (*KINDS.values(), MyRigOptions, WrapOptions, WearOptions, SymmetriseOptions, MotionOptions)
 
 RETARGET_NAMES: Final = (
     *KINDS,

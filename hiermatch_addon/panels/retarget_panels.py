@@ -12,6 +12,7 @@ from ..scene.armatures import find_armature
 from ..scene.character import successor
 from ..scene.posing.before_after import is_before
 from ..scene.posing.exercise import is_exercising
+from ..transfers.options.my_rig import MyRigOptions
 from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wrap import WrapOptions
@@ -60,6 +61,7 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         for switch in KINDS:
             _draw_kind(layout, context, state, switch)
         layout.prop(state, "refine")
+        _draw_my_rig(layout, context, state)
         _draw_wrap(layout, context, state)
 
 
@@ -101,6 +103,20 @@ def _draw_kind(
         body.active = getattr(state, switch)
         for name in names:
             body.prop(state, name)
+
+
+def _draw_my_rig(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
+    """Draw the options of fitting another armature and its button."""
+    header, body = cast("Any", layout).panel("hiermatch_my_rig", default_closed=True)
+    header.label(text="My Rig")
+    if body is not None:
+        names = option_names(MyRigOptions)
+        for name in names:
+            if name != "my_rig_limit" or state.my_rig_bind:
+                body.prop(state, name)
+        button = draw_starter(body, context, "hiermatch.fit_my_rig", "Fit My Rig", "OUTLINER_OB_ARMATURE")
+        if button is not None:
+            copy_named(state, button, [*names, "refine"])
 
 
 def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:

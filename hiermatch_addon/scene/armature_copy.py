@@ -17,10 +17,29 @@ if TYPE_CHECKING:
 
     from ...engine import PlacedJoints
 
-__all__ = ["copy_armature", "move_joints", "repoint"]
+__all__ = ["copy_to", "move_joints", "repoint"]
 
 
-def copy_armature(context: bpy.types.Context, source: bpy.types.Object, name: str) -> bpy.types.Object:
+def copy_to(
+    context: bpy.types.Context, source: bpy.types.Object, name: str, target: bpy.types.Object
+) -> bpy.types.Object:
+    """Copy an armature to the place and the collections of an object, turned and scaled as it is; see `_copied`."""
+    armature = _copied(context, source, name)
+    matrix = source.matrix_world.copy()
+    matrix.translation = target.matrix_world.translation
+    armature.matrix_world = matrix
+    scene = cast("bpy.types.Scene", context.scene).collection
+    wanted = tuple(target.users_collection)
+    for collection in wanted:
+        if armature.name not in collection.objects:
+            collection.objects.link(armature)
+    if wanted and scene not in wanted:
+        scene.objects.unlink(armature)
+    view_layer_of(context).update()
+    return armature
+
+
+def _copied(context: bpy.types.Context, source: bpy.types.Object, name: str) -> bpy.types.Object:
     """Copy an armature object and its data, at rest and without animation, into the scene's own collection.
 
     Bone collections, colours, custom properties and shapes, constraints and drivers stay; they point to where they

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from .options.motion import MotionOptions
+from .options.my_rig import MyRigOptions
 from .options.retarget import RetargetOptions
 from .options.symmetrise import SymmetriseOptions
 from .options.wear import WearOptions
@@ -46,7 +47,7 @@ class HIERMATCH_PG_report(bpy.types.PropertyGroup):
 
 
 class HIERMATCH_PG_retarget(
-    RetargetOptions, WrapOptions, WearOptions, SymmetriseOptions, MotionOptions, bpy.types.PropertyGroup
+    RetargetOptions, MyRigOptions, WrapOptions, WearOptions, SymmetriseOptions, MotionOptions, bpy.types.PropertyGroup
 ):
     """The state of the retargeting panels on a scene."""
 

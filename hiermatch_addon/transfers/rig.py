@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
-from ..scene.armature_copy import copy_armature, move_joints, repoint
+from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
 from ..scene.binding import bind, made_rig, mark_made, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
@@ -129,13 +129,12 @@ class RigTransfer:
         placed = cast("PlacedJoints", self.placed)
         first = parts_of(target)[0]
         made = made_rig(target, model) if self._settings.existing == "UPDATE" else None
-        armature = made or _new_armature(context, target, model)
+        armature = made or copy_to(context, model, f"{model.name} {target.name}", first)
         missing = move_joints(context, armature, self.names, placed)
         if made is None:
             kept = repoint(armature, _counterparts(source, target, model, armature))
             if kept:
                 self._notes.append(f'Constraints or drivers of "{armature.name}" still point to {listed(kept)}.')
-            _move_to_collections(context, armature, first)
             mark_made(armature, model)
         elif missing:
             self._notes.append(f'"{armature.name}", which was made before, lacks {listed(missing)}.')
@@ -195,27 +194,6 @@ def _counterparts(
     """Return what takes the place of what: of several parts, the first target's that of all of the source's."""
     first = parts_of(target)[0]
     return {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, model, armature).items()}
-
-
-def _new_armature(context: bpy.types.Context, target: Side, model: bpy.types.Object) -> bpy.types.Object:
-    """Copy the source's armature to the place of the target, turned and scaled as it is."""
-    armature = copy_armature(context, model, f"{model.name} {target.name}")
-    matrix = model.matrix_world.copy()
-    matrix.translation = parts_of(target)[0].matrix_world.translation
-    armature.matrix_world = matrix
-    view_layer_of(context).update()
-    return armature
-
-
-def _move_to_collections(context: bpy.types.Context, armature: bpy.types.Object, target: bpy.types.Object) -> None:
-    """Put an armature that is in the scene's own collection where the target is."""
-    scene = cast("Any", context.scene).collection
-    wanted = tuple(target.users_collection)
-    for collection in wanted:
-        if armature.name not in collection.objects:
-            collection.objects.link(armature)
-    if wanted and scene not in wanted:
-        scene.objects.unlink(armature)
 
 
 def _rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .fitted_rig import FittedRig
     from .skeleton import Skeleton
 
-__all__ = ["JointCarriers", "carriers_of", "moved_areas", "nearest_on_bones", "sums_below"]
+__all__ = ["JointCarriers", "carriers_of", "joint_places", "moved_areas", "nearest_on_bones", "sums_below"]
 
 _SAME_PLACE = 1e-4
 """Joints closer than this, in units of the skeleton's extent, are at one place."""
@@ -85,7 +85,7 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
     skeleton, count = rig.skeleton, len(rig.skeleton)
     masses = moved_areas(rig, source)
     moving = masses > 0
-    places = _places(skeleton)
+    places = joint_places(skeleton)
     above = _moving_above(skeleton, moving)
     of_turns = np.zeros((count, count))
     anchors = np.full(count, -1)
@@ -135,7 +135,7 @@ def nearest_on_bones(skeleton: Skeleton, point: NDArray[np.float64]) -> NDArray[
     return skeleton.heads + along.clip(0, 1)[:, None] * axes
 
 
-def _places(skeleton: Skeleton) -> NDArray[np.int64]:
+def joint_places(skeleton: Skeleton) -> NDArray[np.int64]:
     """Give each place of heads and then tails a number, (2 b,)."""
     joints = np.concatenate([skeleton.heads, skeleton.tails])
     extent = float(np.linalg.norm(np.ptp(joints, axis=0)))

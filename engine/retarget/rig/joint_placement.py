@@ -20,7 +20,16 @@ if TYPE_CHECKING:
     from .fitted_rig import FittedRig
     from .skeleton import Skeleton
 
-__all__ = ["PlacedJoints", "least_turns", "place_joints", "root_direction", "standing"]
+__all__ = [
+    "PlacedJoints",
+    "across_axes",
+    "least_turns",
+    "place_joints",
+    "root_direction",
+    "standing",
+    "swung",
+    "with_lengths",
+]
 
 _SHORTEST = 0.02
 """Least length of a bone, in units of what its scale makes of its length in the source."""
@@ -115,9 +124,9 @@ def place_joints(
     tails = np.where(carriers.loose[:, None], heads + rigid, tails)
     lengths = np.linalg.norm(np.einsum("bij,bj->bi", rig.linear, axes), axis=1)
     tails[free] = heads[free] + unit_vectors(rigid[free]) * lengths[free, None]
-    heads, tails = _with_lengths(skeleton, heads, tails, rigid, carriers.places)
-    rotations = _swung(turns, axes, tails - heads)
-    across = np.einsum("bij,bj->bi", rotations, _across(normals, skeleton.tails - skeleton.heads))
+    heads, tails = with_lengths(skeleton, heads, tails, rigid, carriers.places)
+    rotations = swung(turns, axes, tails - heads)
+    across = np.einsum("bij,bj->bi", rotations, across_axes(normals, skeleton.tails - skeleton.heads))
     return PlacedJoints(heads, tails, across, rotations)
 
 
@@ -162,7 +171,7 @@ def _aimed(
     lengths = np.linalg.norm(before, axis=1)
     far = np.minimum(lengths, np.linalg.norm(after, axis=1)) > _LEAST_AIM * lengths.max(initial=0.0)
     aimed = turns.copy()
-    aimed[far] = _swung(turns[far], before[far], after[far])
+    aimed[far] = swung(turns[far], before[far], after[far])
     return aimed
 
 
@@ -217,7 +226,7 @@ def _carried(rig: FittedRig, bone: int, point: NDArray[np.float64]) -> NDArray[n
     return moved + rig.scales[bone] * rig.rotations[bone] @ (point - start)
 
 
-def _with_lengths(
+def with_lengths(
     skeleton: Skeleton,
     heads: NDArray[np.float64],
     tails: NDArray[np.float64],
@@ -242,7 +251,7 @@ def _with_lengths(
     return heads, tails
 
 
-def _swung(
+def swung(
     rotations: NDArray[np.float64], before: NDArray[np.float64], after: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Turn rotations (b, 3, 3) by the least angle so that they take vectors (b, 3) to the direction of others."""
@@ -258,13 +267,13 @@ def least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray
     opposite = cosine < -1 + 1e-9
     if opposite.any():
         least = np.abs(start[opposite]).argmin(axis=1)
-        middle[opposite] = _across(np.eye(3)[least], start[opposite])
+        middle[opposite] = across_axes(np.eye(3)[least], start[opposite])
     first = np.eye(3) - 2 * start[:, :, None] * start[:, None]
     second = np.eye(3) - 2 * middle[:, :, None] * middle[:, None]
     return second @ first
 
 
-def _across(vectors: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+def across_axes(vectors: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Take what of the vectors (b, 3) lies across the axes, to length one; any direction across if nothing does."""
     axes = unit_vectors(axes)
     flat = vectors - (vectors * axes).sum(axis=1, keepdims=True) * axes

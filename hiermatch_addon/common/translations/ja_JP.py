@@ -2511,5 +2511,116 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "1 note": "注記1件",
     "{0} notes": "注記{0}件",
+    "Fit My Rig": "マイリグをフィット",
+    "My Rig": "マイリグ",
+    (
+        "Give the matched meshes a copy each of an armature that stands in the source, such as a metarig "
+        "of Rigify or a standard skeleton, with its joints where they belong in them. It need not move "
+        "the source"
+    ): (
+        "ソースの中に立つアーマチュア、たとえばRigifyのメタリグや標準スケルトンのコピーを、対応づけたメッ"
+        "シュそれぞれに、関節を正しい位置に置いて与えます。ソースを動かしていなくても構いません"
+    ),
+    (
+        "Name of an armature that stands in the source without moving it, such as a metarig of Rigify. "
+        "It may be bound to nothing"
+    ): (
+        "ソースの中に立ち、ソースを動かしていないアーマチュアの名前。Rigifyのメタリグなど。何にもバインド"
+        "されていなくて構いません"
+    ),
+    "Bind with Weights": "ウェイト付きでバインド",
+    (
+        "Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
+        "bones that move the same surface. Leave it off for a metarig"
+    ): (
+        "ソース自身のリグのウェイトを、同じ表面を動かすボーンに渡して、ターゲットをフィットしたリグにバイ"
+        "ンドします。メタリグではオフのままにしてください"
+    ),
+    (
+        '"{0}" moves no mesh, so nothing tells where in a body its joints belong. Choose as the Source a '
+        "mesh in which it stands, and name the armature as the Rig."
+    ): (
+        "「{0}」はどのメッシュも動かしていないため、関節が体のどこにあるべきか分かりません。それが中に立"
+        "つメッシュをソースに選び、アーマチュアをリグとして指定してください。"
+    ),
+    '"{0}" moves "{1}". To give a target the rig that moves the source, use Fit Rig or Retarget.': (
+        "「{0}」は「{1}」を動かしています。ソースを動かすリグをターゲットに与えるには、「リグをフィット」"
+        "か「リターゲット」を使ってください。"
+    ),
+    "Which armature is to be fitted is open. Name one as the Rig.": (
+        "フィットするアーマチュアが分かりません。リグとして一つ指定してください。"
+    ),
+    '"{0}" is not an armature. Name one as the Rig.': (
+        "「{0}」はアーマチュアではありません。リグとしてアーマチュアを指定してください。"
+    ),
+    (
+        '"{0}" does not stand in "{1}": most of its bones lie outside, also if it is moved there and '
+        "scaled. Move its joints into that body in Edit Mode first."
+    ): (
+        "「{0}」は「{1}」の中に立っていません。そこへ移動して拡大縮小しても、ほとんどのボーンが外にありま"
+        "す。先に編集モードで関節をその体の中に移してください。"
+    ),
+    (
+        '"{0}" has no weights that could be handed to the bones of "{1}". Switch Bind with Weights off, '
+        "and bind the target by Blender's automatic weights afterwards."
+    ): (
+        "「{0}」には「{1}」のボーンに渡せるウェイトがありません。「ウェイト付きでバインド」をオフにして、"
+        "後で Blenderの自動ウェイトでターゲットをバインドしてください。"
+    ),
+    "Carrying joints": "関節を移しています",
+    '"{0}" moves nothing yet. Generate its control rig, or bind "{1}" to it.': (
+        "「{0}」はまだ何も動かしていません。コントロールリグを生成するか、「{1}」をそれにバインドしてください。"
+    ),
+    '"{0}" did not stand in "{1}", so it was moved there and scaled.': (
+        "「{0}」は「{1}」の中に立っていなかったため、そこへ移動して拡大縮小しました。"
+    ),
+    "Rename Bones": "ボーンの名前を変更",
+    (
+        "Give the bones of the target's rig the names of a standard, or of the source's bones. Vertex "
+        "groups, actions, constraints and drivers follow"
+    ): (
+        "ターゲットのリグのボーンに、規格の名前か、ソースのボーンの名前を付けます。頂点グループ、アクショ"
+        "ン、コンストレイント、ドライバーも追従します"
+    ),
+    ("Name of an armature, or of what it moves; if empty, the one picked in the panel or else the active object"): (
+        "アーマチュア、またはそれが動かすものの名前。空の場合はパネルで選んだもの、なければアクティブオブジェクト"
+    ),
+    (
+        "Name of the armature whose names are taken over, or of what it moves; if empty, the one picked in the panel"
+    ): "名前を引き継ぐアーマチュア、またはそれが動かすものの名前。空の場合はパネルで選んだもの",
+    "What the bones are to be called": "ボーンに付ける名前",
+    "Names of the humanoid bones of VRM 1.0, such as leftUpperArm": (
+        "VRM 1.0のヒューマノイドボーンの名前。leftUpperArmなど"
+    ),
+    "Names of Mixamo, such as mixamorig:LeftArm": "Mixamoの名前。mixamorig:LeftArmなど",
+    "Names of Unreal's mannequin, such as upperarm_l": "Unrealのマネキンの名前。upperarm_lなど",
+    "Names of the bones of Rigify that deform, such as DEF-upper_arm.L": (
+        "Rigifyの変形ボーンの名前。DEF-upper_arm.Lなど"
+    ),
+    "The names of the source's bones with which they are paired, whatever they move": (
+        "ペアになっているソースのボーンの名前"
+    ),
+    "Known by": "判断の手がかり",
+    "What tells which bone is which, for a standard": ("規格の名前を付けるとき、どのボーンが何かを何で判断するか"),
+    "Joints": "関節",
+    "Where the joints are, and what hangs on what. Names do not matter": ("関節の位置と親子関係。名前は関係ありません"),
+    '{0} of "{1}" got another name': "「{1}」の{0}の名前を変更しました",
+    "{0} kept the name: there is none for it": "{0}は該当する名前がないため元の名前のままです",
+    (
+        'The bones of "{0}" are linked from another file and cannot be renamed here. Make it local first '
+        "(Object > Relations > Make Local)."
+    ): (
+        "「{0}」のボーンは別のファイルからリンクされているため、ここでは名前を変更できません。先にローカ"
+        "ル化してください（オブジェクト > 関係 > ローカル化）。"
+    ),
+    'No bone of "{0}" has a name of that standard. Choose another one.': (
+        "「{0}」にはその規格の名前のボーンがありません。別のものを選んでください。"
+    ),
+    '"{0}" has other bones that are called {1} already. Rename them first.': (
+        "「{0}」にはすでに{1}という別のボーンがあります。先にその名前を変更してください。"
+    ),
+    '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
+        "「{0}」にはすでに{1}という別の頂点グループがあります。先にその名前を変更してください。"
+    ),
 }
 """The translation of each English text."""

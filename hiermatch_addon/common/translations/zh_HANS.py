@@ -2029,5 +2029,84 @@ MESSAGES: Final[dict[str, str]] = {
     ): ("“{0}”的选中骨骼在“{1}”上都没有顶点组。请传递所有组，或在姿态模式下选择其他骨骼。"),
     "1 note": "1 条说明",
     "{0} notes": "{0} 条说明",
+    "Fit My Rig": "适配我的骨架",
+    "My Rig": "我的骨架",
+    (
+        "Give the matched meshes a copy each of an armature that stands in the source, such as a metarig "
+        "of Rigify or a standard skeleton, with its joints where they belong in them. It need not move "
+        "the source"
+    ): (
+        "为每个已匹配的网格提供一份站在源中的骨架（例如Rigify的元骨架或标准骨架）的副本，并把关节放到正确"
+        "的位置。它不必驱动源"
+    ),
+    (
+        "Name of an armature that stands in the source without moving it, such as a metarig of Rigify. "
+        "It may be bound to nothing"
+    ): "站在源中但不驱动源的骨架的名称，例如Rigify的元骨架。它可以没有绑定任何物体",
+    "Bind with Weights": "带权重绑定",
+    (
+        "Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
+        "bones that move the same surface. Leave it off for a metarig"
+    ): "把源自身骨架的权重交给驱动相同表面的骨骼，并将目标绑定到适配后的骨架。对元骨架请保持关闭",
+    (
+        '"{0}" moves no mesh, so nothing tells where in a body its joints belong. Choose as the Source a '
+        "mesh in which it stands, and name the armature as the Rig."
+    ): ("“{0}”没有驱动任何网格，因此无法得知其关节应在身体的哪里。请选择它所站立的网格作为源，并将该骨架指定为骨架。"),
+    '"{0}" moves "{1}". To give a target the rig that moves the source, use Fit Rig or Retarget.': (
+        "“{0}”驱动“{1}”。要把驱动源的骨架给目标，请使用“适配骨架”或“重定向”。"
+    ),
+    "Which armature is to be fitted is open. Name one as the Rig.": ("不清楚要适配哪个骨架。请将一个骨架指定为骨架。"),
+    '"{0}" is not an armature. Name one as the Rig.': "“{0}”不是骨架。请将一个骨架指定为骨架。",
+    (
+        '"{0}" does not stand in "{1}": most of its bones lie outside, also if it is moved there and '
+        "scaled. Move its joints into that body in Edit Mode first."
+    ): ("“{0}”没有站在“{1}”中：即使移动到那里并缩放，其大部分骨骼仍在外面。请先在编辑模式下把关节移入该身体。"),
+    (
+        '"{0}" has no weights that could be handed to the bones of "{1}". Switch Bind with Weights off, '
+        "and bind the target by Blender's automatic weights afterwards."
+    ): "“{0}”没有可以交给“{1}”的骨骼的权重。请关闭“带权重绑定”，之后用Blender的自动权重绑定目标。",
+    "Carrying joints": "正在转移关节",
+    '"{0}" moves nothing yet. Generate its control rig, or bind "{1}" to it.': (
+        "“{0}”还没有驱动任何东西。请生成其控制骨架，或将“{1}”绑定到它。"
+    ),
+    '"{0}" did not stand in "{1}", so it was moved there and scaled.': (
+        "“{0}”没有站在“{1}”中，因此已移动到那里并缩放。"
+    ),
+    "Rename Bones": "重命名骨骼",
+    (
+        "Give the bones of the target's rig the names of a standard, or of the source's bones. Vertex "
+        "groups, actions, constraints and drivers follow"
+    ): "为目标骨架的骨骼赋予某种标准的名称，或源骨骼的名称。顶点组、动作、约束和驱动器会随之更新",
+    (
+        "Name of an armature, or of what it moves; if empty, the one picked in the panel or else the active object"
+    ): "骨架或其驱动物体的名称；若为空，则为面板中所选，否则为活动物体",
+    (
+        "Name of the armature whose names are taken over, or of what it moves; if empty, the one picked in the panel"
+    ): "要沿用其名称的骨架，或其驱动物体的名称；若为空，则为面板中所选",
+    "What the bones are to be called": "骨骼要用的名称",
+    "Names of the humanoid bones of VRM 1.0, such as leftUpperArm": "VRM 1.0人形骨骼的名称，例如leftUpperArm",
+    "Names of Mixamo, such as mixamorig:LeftArm": "Mixamo的名称，例如mixamorig:LeftArm",
+    "Names of Unreal's mannequin, such as upperarm_l": "Unreal人体模型的名称，例如upperarm_l",
+    "Names of the bones of Rigify that deform, such as DEF-upper_arm.L": ("Rigify变形骨骼的名称，例如DEF-upper_arm.L"),
+    "The names of the source's bones with which they are paired, whatever they move": "与之配对的源骨骼的名称",
+    "Known by": "依据",
+    "What tells which bone is which, for a standard": "使用标准名称时，依据什么判断每根骨骼是什么",
+    "Joints": "关节",
+    "Where the joints are, and what hangs on what. Names do not matter": "关节的位置和父子关系。名称无关紧要",
+    '{0} of "{1}" got another name': "“{1}”的{0}已改名",
+    "{0} kept the name: there is none for it": "{0}保留原名：没有对应的名称",
+    (
+        'The bones of "{0}" are linked from another file and cannot be renamed here. Make it local first '
+        "(Object > Relations > Make Local)."
+    ): "“{0}”的骨骼链接自其他文件，无法在此重命名。请先将其本地化（物体 > 关系 > 本地化）。",
+    'No bone of "{0}" has a name of that standard. Choose another one.': (
+        "“{0}”没有该标准名称的骨骼。请选择其他标准。"
+    ),
+    '"{0}" has other bones that are called {1} already. Rename them first.': (
+        "“{0}”已有其他名为{1}的骨骼。请先重命名它们。"
+    ),
+    '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
+        "“{0}”已有其他名为{1}的顶点组。请先重命名它们。"
+    ),
 }
 """The translation of each English text."""

@@ -12,7 +12,7 @@ from ...common.errors import ObjectError
 from ..armatures import armature_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
 __all__ = [
     "CurveMaker",
@@ -22,8 +22,11 @@ __all__ = [
     "named_action",
     "object_curves",
     "played_action",
+    "renamed_paths",
     "slot_for",
 ]
+
+_BONE_PATH = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]')
 
 _BONE = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]\.(?P<channel>\w+)$')
 
@@ -94,6 +97,29 @@ def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterato
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
+
+
+def renamed_paths(
+    action: bpy.types.Action, armature: bpy.types.Object, names: Mapping[str, str]
+) -> list[tuple[Any, str, Any, str]]:
+    """Say what curves of bones, and their groups, are to be called if bones get other names.
+
+    Returns
+    -------
+    list of (curve, str, group, str)
+        Each curve of such a bone with its path then, and its group, or None, with its name.
+    """
+    found = []
+    for curve in _curves(action, slot_for(action, armature)):
+        start = _BONE_PATH.match(curve.data_path)
+        name = "" if start is None else bpy.utils.unescape_identifier(start["name"])
+        if name in names:
+            path = (
+                f'pose.bones["{bpy.utils.escape_identifier(names[name])}"]{curve.data_path[cast("Any", start).end() :]}'
+            )
+            group = curve.group
+            found.append((curve, path, group, names.get(group.name, group.name) if group is not None else ""))
+    return found
 
 
 def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> list[str]:

@@ -28,7 +28,7 @@ READS_CODE_ONLY = True
 ADDON = [path for path in sorted((ROOT / "hiermatch_addon").rglob("*.py")) if path.parent.name != "translations"]
 INTERFACE = [path for path in ADDON if "command_line" not in path.parts]
 ENGINE = sorted((ROOT / "engine").rglob("*.py"))
-NAMES = {"HierMatch"}
+NAMES = {"HierMatch", "VRM", "Mixamo", "Unreal", "Rigify"}
 SENTENCES = {
     "DoubtfulMatchError",
     "NothingToCarryError",

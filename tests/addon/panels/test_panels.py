@@ -217,7 +217,7 @@ def test_a_button_that_starts_a_job_is_its_name_while_one_runs(context):
         )
         return {name for kind, name, *_ in drawn if kind in ("operator", "switch")} - ELSEWHERE
 
-    jobs = {"fit_rig", "flip", "retarget", "wrap", *(f"transfer_{kind}" for kind in KINDS)}
+    jobs = {"fit_rig", "fit_my_rig", "flip", "retarget", "wrap", *(f"transfer_{kind}" for kind in KINDS)}
     assert starters() == {f"hiermatch.{job}" for job in (*jobs, "match")}
     running = SimpleNamespace(bl_idname="HIERMATCH_OT_flip", panel="HIERMATCH_PT_match")
     progress = SimpleNamespace(fraction=0.4, label="Measuring", question="")

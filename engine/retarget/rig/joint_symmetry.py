@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Symmetry of a rig in a symmetric body: joints of both sides are mirror images of each other, to the last digit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...mesh.closest_points import ClosestPoints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...mesh.triangle_mesh import TriangleMesh
+    from .skeleton import Skeleton
+
+__all__ = ["mirrored_joints"]
+
+_SAME = 1e-3
+"""How far mirrored joints may be from each other in the source, in units of the rig's extent."""
+
+_SYMMETRIC = 5e-3
+"""How far the mirrored target may be from itself on the mean, in units of its extent: a body that an artist mirrored is
+nearer than 0.001, one with a bent arm further than 0.02."""
+
+_SAMPLES = 2000
+"""Vertices of the target that are compared with their mirror images."""
+
+_OWN_ANGLE, _OWN_PLACE = np.radians(5.0), 0.02
+"""How far the plane between the joints may be turned, and, in units of the extent, moved against one of the space that
+the target was made in: that one is meant then."""
+
+_AS_GOOD = 1.5
+"""How many times as far the mirrored target may be from itself by that plane."""
+
+Joints = tuple["NDArray[np.float64]", "NDArray[np.float64]", "NDArray[np.float64]"]
+"""Heads, tails and normals of bones, (b, 3) each."""
+
+
+def mirrored_joints(
+    skeleton: Skeleton, target: TriangleMesh, placed: Joints, space: NDArray[np.float64] | None = None
+) -> Joints:
+    """Make bones symmetric that were so, if the body is symmetric as well.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        The bones as they were, b.
+    target : TriangleMesh
+        The body that they are in now.
+    placed : Joints
+        The bones as they are now.
+    space : (4, 4) array of float, optional
+        The space that the target was made in, in the world: most symmetric bodies are so in a plane of their own axes.
+
+    Returns
+    -------
+    Joints
+        The same bones, symmetric where all of this holds; else as they were.
+    """
+    partners = _partners(skeleton)
+    if partners is None:
+        return placed
+    heads, tails, across = placed
+    plane = _plane(heads, tails, partners, target, np.eye(4) if space is None else space)
+    if plane is None:
+        return placed
+    middle, axis = plane
+    flip = np.eye(3) - 2 * np.outer(axis, axis)
+    heads, tails = ((ends + (ends[partners] - middle) @ flip + middle) / 2 for ends in (heads, tails))
+    # Axes across may be mirrored, or turned about as well, as rolls want it.
+    other = across[partners] @ flip
+    alike = (across * other).sum(axis=1)
+    across = np.where(np.abs(alike)[:, None] > np.sqrt(0.5), across + np.sign(alike)[:, None] * other, across)
+    along = tails - heads
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
+    across -= (across * along).sum(axis=1, keepdims=True) * along
+    return heads, tails, across / np.linalg.norm(across, axis=1, keepdims=True)
+
+
+def _partners(skeleton: Skeleton) -> NDArray[np.int64] | None:
+    """Find the mirror image of each bone, (b,), itself in the middle; None if the rig is not symmetric."""
+    ends = np.concatenate([skeleton.heads, skeleton.tails], axis=1)  # (b, 6)
+    joints = ends.reshape(-1, 3) - ends.reshape(-1, 3).mean(axis=0)  # a plane of symmetry goes through their middle
+    extent = float(np.linalg.norm(np.ptp(joints, axis=0)))
+    tree = cKDTree(joints.reshape(-1, 6))
+    for axis in np.concatenate([np.linalg.eigh(joints.T @ joints)[1].T, np.eye(3)]):
+        distances, found = tree.query((joints - 2 * np.outer(joints @ axis, axis)).reshape(-1, 6))
+        if distances.max() < _SAME * extent and np.abs(joints @ axis).max() > _SAME * extent:
+            return found.astype(np.int64)
+    return None
+
+
+def _plane(
+    heads: NDArray[np.float64],
+    tails: NDArray[np.float64],
+    partners: NDArray[np.int64],
+    target: TriangleMesh,
+    space: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Find a point and the normal (3,) of the plane in which the target is symmetric; None if it is not."""
+    between = np.concatenate([heads - heads[partners], tails - tails[partners]])
+    signs = np.sign(between @ between[np.square(between).sum(axis=1).argmax()])
+    axis = (signs[:, None] * between).sum(axis=0)
+    if not np.linalg.norm(axis) > 0:
+        return None
+    axis /= np.linalg.norm(axis)
+    middle = np.concatenate([heads + heads[partners], tails + tails[partners]]).mean(axis=0) / 2
+    rows = np.linspace(0, target.vertex_count - 1, min(_SAMPLES, target.vertex_count)).astype(np.int64)
+    points, search = target.vertices[rows], ClosestPoints(target)
+    extent = float(np.linalg.norm(np.ptp(target.vertices, axis=0)))
+
+    def missed(place: NDArray[np.float64], normal: NDArray[np.float64]) -> float:
+        mirrored = points - 2 * np.outer((points - place) @ normal, normal)
+        return float(np.sqrt(search.nearest(mirrored).squared_distances).mean()) / extent
+
+    found = missed(middle, axis)
+    axes = space[:3, :3] / np.maximum(np.linalg.norm(space[:3, :3], axis=0), np.finfo(float).tiny)
+    own = axes[:, np.abs(axes.T @ axis).argmax()]
+    if np.abs(own @ axis) > np.cos(_OWN_ANGLE) and np.abs((middle - space[:3, 3]) @ own) < _OWN_PLACE * extent:
+        snapped = missed(space[:3, 3], own)
+        if snapped < max(_AS_GOOD * found, _SAME):
+            return space[:3, 3], own
+    return (middle, axis) if found < _SYMMETRIC else None

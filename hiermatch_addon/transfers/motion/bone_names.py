@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names of bones by a standard: found for an armature, and given to it, so that all that knows a bone still does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ....engine import humanoid_bones
+from ...common.errors import ObjectError
+from ...common.phrases import listed
+from ...properties.bone_pairs import bone_pairs_of, rows_of
+from ...scene.armatures import armature_of, moving_armatures, read_skeleton
+from ...scene.motion.action_curves import actions_of, renamed_paths
+from .name_tables import NAME_TABLES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["names_by_source", "names_by_table", "rename_bones"]
+
+
+def names_by_table(armature: bpy.types.Object, known: str, wanted: str) -> dict[str, str]:
+    """Find the names that bones of a person's rig have in a standard.
+
+    Parameters
+    ----------
+    armature : bpy.types.Object
+        The armature.
+    known : str
+        By what it is known what the bones are: "JOINTS", or the standard whose names they have.
+    wanted : str
+        The standard whose names they are to have.
+
+    Returns
+    -------
+    dict
+        The new name of each bone that the standard has a name for.
+
+    Raises
+    ------
+    HierMatchError
+        If it is open what the bones are.
+    """
+    bones = armature_of(armature).bones
+    if known == "JOINTS":
+        deforming = np.array([bone.use_deform for bone in bones], bool)
+        found = humanoid_bones(read_skeleton(armature), deforming, np.array([0.0, 0, 1]))
+        what = {role: bones[number].name for role, number in found.items()}
+    else:
+        what = {role: name for role, name in NAME_TABLES[known].items() if name in bones}
+        if not what:
+            raise ObjectError(f'No bone of "{armature.name}" has a name of that standard. Choose another one.')
+    return {name: NAME_TABLES[wanted][role] for role, name in what.items()}
+
+
+def names_by_source(scene: bpy.types.Scene, source: bpy.types.Object, armature: bpy.types.Object) -> dict[str, str]:
+    """Find the names of the bones of another armature with which bones are paired: for each the best one, used once.
+
+    Raises
+    ------
+    ObjectError
+        If none are paired.
+    """
+    rows = [row for row in rows_of(scene, source, armature) if row.source and row.target]
+    if not rows:
+        raise ObjectError(f'No bones of "{source.name}" and "{armature.name}" are paired. Pair their bones first.')
+    names: dict[str, str] = {}
+    for row in sorted(rows, key=lambda row: -row.score):
+        if row.target not in names and row.source not in names.values():
+            names[row.target] = row.source
+    return names
+
+
+def rename_bones(scene: bpy.types.Scene, armature: bpy.types.Object, names: Mapping[str, str]) -> int:
+    """Rename bones of an armature, the vertex groups that they move, and what actions and pairs of bones call them.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        With the table of pairs.
+    armature : bpy.types.Object
+        The armature object.
+    names : mapping
+        New names of bones.
+
+    Returns
+    -------
+    int
+        How many bones have another name now.
+
+    Raises
+    ------
+    ObjectError
+        If a name is taken; nothing is changed then.
+    """
+    bones = armature_of(armature).bones
+    changed = {old: new for old, new in names.items() if old != new and old in bones}
+    _check_free(armature, changed)
+    paths = [wanted for action in actions_of(armature) for wanted in renamed_paths(action, armature, changed)]
+    rows = [
+        (row, {side: changed.get(getattr(row, side), getattr(row, side)) for side in sides})
+        for row in bone_pairs_of(scene)
+        for sides in [[side for side in ("source", "target") if getattr(row, f"{side}_rig") == armature]]
+        if sides
+    ]
+    # Blender lets vertex groups, constraints, drivers and what is played follow.  In two steps, so that names may be
+    # exchanged.
+    passing = {old: f"hiermatch {number}" for number, old in enumerate(changed)}
+    for old, between in passing.items():
+        bones[old].name = between
+    for old, between in passing.items():
+        bones[between].name = changed[old]
+    for curve, path, group, group_name in paths:
+        if curve.data_path != path:
+            curve.data_path = path
+        if group is not None and group.name != group_name:
+            group.name = group_name
+    for row, sides in rows:
+        seen = row.is_seen
+        for side, name in sides.items():
+            setattr(row, side, name)
+        row.name, row.is_seen = row.target, seen  # naming a bone by hand forgets what was seen of another one
+    return len(changed)
+
+
+def _check_free(armature: bpy.types.Object, changed: Mapping[str, str]) -> None:
+    """Make sure that nothing else has the new names.
+
+    Raises
+    ------
+    ObjectError
+        If something has.
+    """
+    bones = armature_of(armature).bones
+    taken = [new for new in changed.values() if new in bones and new not in changed]
+    if taken:
+        raise ObjectError(
+            f'"{armature.name}" has other bones that are called {listed(taken)} already. Rename them first.'
+        )
+    for obj in (obj for obj in bpy.data.objects if obj.type == "MESH" and armature in moving_armatures(obj)):
+        groups = [new for new in changed.values() if new in obj.vertex_groups and new not in bones]
+        if groups:
+            raise ObjectError(
+                f'"{obj.name}" has other vertex groups that are called {listed(groups)} already. Rename them first.'
+            )

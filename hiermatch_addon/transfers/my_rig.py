@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A rig of one's own choice for the target: an armature that stands in the source, copied and fitted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...engine import (
+    Columns,
+    Skeleton,
+    carry_standing_rig_steps,
+    carry_weights_steps,
+    moved_into,
+    pair_bones,
+    paired_weights,
+    put_in,
+    standing_share,
+    standing_weights,
+    within,
+)
+from ..common.access import view_layer_of
+from ..common.errors import ObjectError
+from ..common.phrases import counted, listed
+from ..jobs.transfer import TransferReport
+from ..scene.armature_copy import copy_to, move_joints, repoint
+from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
+from ..scene.binding import bind
+from ..scene.bone_constraints import adapt_constraints, displaced_bones
+from ..scene.character import parts_of, read_surface, vertex_ranges
+from ..scene.deform_layer import check_weights_writable
+from ..scene.key_drivers import counterparts
+from ..scene.motion.rigs import check_armature
+from ..scene.pair import check_writable, named_object
+from .weight_groups import group_columns, locked_groups, write_groups
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ...engine import PlacedJoints, Steps
+    from ..jobs.transfer import Passage
+    from ..scene.character import Side
+    from .options.my_rig import MyRigSettings
+
+__all__ = ["MyRigTransfer"]
+
+_STANDS = 0.5
+"""Part of an armature's deforming bones that lies inside of a body from which on it stands there.  A human metarig that
+was put to the joints of six of MakeHuman's people has 0.73 and more, one that was only moved there, in another pose,
+0.34 at most (`standing_share`)."""
+
+
+class MyRigTransfer:
+    """Fits an armature that stands in the source into the target; see `Transfer`.
+
+    Parameters
+    ----------
+    settings : MyRigSettings
+        Which, and how.
+    """
+
+    label = "Rig"
+    uses_rig = True
+
+    def __init__(self, settings: MyRigSettings) -> None:
+        self._settings = settings
+        self._names: tuple[str, ...] = ()
+        self._deforming: NDArray[np.bool_] = np.zeros(0, bool)
+        self._normals: NDArray[np.float64] = np.empty((0, 3))
+        self._stands: Skeleton | None = None
+        self._placed: PlacedJoints | None = None
+        self._frames: NDArray[np.float64] = np.eye(3)[None]
+        self._space: NDArray[np.float64] = np.eye(4)
+        self._held: NDArray[np.bool_] = np.zeros(0, bool)
+        self._before: csr_array = csr_array((0, 0))
+        self._weights: csr_array | None = None
+        self._remarks: list[str] = []
+
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
+        """Read the bones as they stand in the source, and make sure that the target can be bound if it is to be."""
+        armature = self._armature()
+        check_armature(armature, written=False)
+        if armature in moving_armatures(source):
+            raise ObjectError(
+                f'"{armature.name}" moves "{source.name}". To give a target the rig that moves the source, use Fit Rig '
+                "or Retarget."
+            )
+        bones = armature_of(armature).bones
+        self._names = tuple(bone.name for bone in bones)
+        self._deforming = np.array([bone.use_deform for bone in bones], bool)
+        if not self._deforming.any():
+            self._deforming[:] = True
+        matrix = np.array(armature.matrix_world, np.float64)[:3, :3]
+        self._normals = np.array([bone.matrix_local.to_3x3().col[2] for bone in bones], np.float64) @ matrix.T
+        stands = [np.array(parts_of(side)[0].matrix_world.to_quaternion().to_matrix()) for side in (source, target)]
+        self._frames = np.stack([np.eye(3), stands[1] @ stands[0].T])
+        self._space = np.array(parts_of(target)[0].matrix_world, np.float64)
+        self._stands = self._standing(context, armature, source)
+        if self._settings.bind:
+            self._read_weights(armature, source, target)
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Place the joints, and compute weights if they are wanted."""
+        pair, skeleton = passage.pair, cast("Skeleton", self._stands)
+        maps = pair.source_to_target, pair.target_to_source
+        bodies, how = (
+            (pair.source, pair.target),
+            {"normals": self._normals, "frames": self._frames, "space": self._space},
+        )
+        placing = carry_standing_rig_steps(*bodies, *maps, skeleton=skeleton, **how)
+        placed = self._placed = yield from within(placing, 0.0, 0.5 if self._settings.bind else 1.0)
+        rig = passage.rig
+        if not self._settings.bind or rig is None:
+            return
+        carrying = carry_weights_steps(rig.weights, pair.source, pair.target, pair.target_to_source)
+        carried = yield from within(carrying, 0.5, 0.8)
+        fitted = Skeleton(skeleton.parents, placed.heads, placed.tails)
+        near = standing_weights(pair.target, fitted, self._deforming)
+        found = pair_bones(rig, pair.source, pair.target, fitted, near, frames=self._frames)
+        handed = paired_weights(carried.weights, pair.target.vertices, found, rig.skeleton, fitted)
+        columns = Columns(self._held, self._deforming, self._deforming, yielding=True)
+        self._weights = put_in(self._before, handed, columns, limit=self._settings.limit)
+
+    def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
+        """Copy the armature, move its bones, and bind the target if that is wanted."""
+        model, first = self._armature(), parts_of(target)[0]
+        if tuple(bone.name for bone in armature_of(model).bones) != self._names:
+            raise ObjectError(f'The bones of "{model.name}" were changed meanwhile. Nothing was written.')
+        armature = copy_to(context, model, f"{model.name} {target.name}", first)
+        move_joints(context, armature, self._names, cast("PlacedJoints", self._placed))
+        own = find_armature(source), find_armature(target)
+        places = {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, *own).items()}
+        kept = repoint(armature, {**places, model: armature, armature_of(model): armature_of(armature)})
+        adapt_constraints(model, armature)
+        notes = [f'Constraints or drivers of "{armature.name}" still point to {listed(kept)}.'] if kept else []
+        done = [f'the rig "{armature.name}" with {counted(len(self._names), "bone")}']
+        if self._weights is not None:
+            done.append(self._write_weights(target))
+            notes += bind(target, armature, source)
+        else:
+            self._remarks.append(
+                f'"{armature.name}" moves nothing yet. Generate its control rig, or bind "{target.name}" to it.'
+            )
+        view_layer_of(context).update()
+        if displaced := displaced_bones(armature):
+            notes.append(
+                f'Constraints or drivers move {listed(displaced)} of "{armature.name}" away from rest, and the target '
+                "with them. Check them."
+            )
+        return TransferReport(", ".join(done), tuple(notes), tuple(self._remarks))
+
+    def _armature(self) -> bpy.types.Object:
+        """Find the armature that is meant."""
+        if not self._settings.name:
+            raise ObjectError("Which armature is to be fitted is open. Name one as the Rig.")
+        armature = named_object(self._settings.name)
+        if armature.type != "ARMATURE":
+            raise ObjectError(f'"{armature.name}" is not an armature. Name one as the Rig.')
+        return armature
+
+    def _standing(self, context: bpy.types.Context, armature: bpy.types.Object, source: Side) -> Skeleton:
+        """Return the bones as they stand in the source; one that stands elsewhere is moved there first."""
+        bones = read_skeleton(armature)
+        body = read_surface(source, context.evaluated_depsgraph_get(), use_modifiers=False)
+        if standing_share(bones, body, self._deforming) >= _STANDS:
+            return bones
+        moved = moved_into(bones, body, self._deforming, np.array([0.0, 0, 1]))
+        if standing_share(moved, body, self._deforming) < _STANDS:
+            raise ObjectError(
+                f'"{armature.name}" does not stand in "{source.name}": most of its bones lie outside, also if it is '
+                "moved there and scaled. Move its joints into that body in Edit Mode first."
+            )
+        self._remarks.append(f'"{armature.name}" did not stand in "{source.name}", so it was moved there and scaled.')
+        return moved
+
+    def _read_weights(self, armature: bpy.types.Object, source: Side, target: Side) -> None:
+        """Read what binding needs."""
+        for part in parts_of(target):
+            check_writable(part)
+            check_weights_writable(part)
+        if read_rig(source) is None:
+            raise ObjectError(
+                f'"{source.name}" has no weights that could be handed to the bones of "{armature.name}". Switch Bind '
+                "with Weights off, and bind the target by Blender's automatic weights afterwards."
+            )
+        locked = locked_groups(target)
+        self._held = np.array([name in locked for name in self._names], bool)
+        self._before = group_columns(target, self._names)
+
+    def _write_weights(self, target: Side) -> str:
+        """Write the groups of the bones that move something, and return what to say of it."""
+        weights = cast("csr_array", self._weights).tocsc()
+        written = np.flatnonzero((np.diff(weights.indptr) > 0) & ~self._held)
+        wanted, result = [self._names[number] for number in written], weights[:, written].tocsr()
+        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
+            write_groups(part, wanted, csr_array(result[own]), every=False)
+        return counted(len(wanted), "vertex group")

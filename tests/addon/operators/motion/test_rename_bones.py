@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bones that get the names of a standard, and everything that knows them by name."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from hiermatch.hiermatch_addon.transfers.motion.name_tables import NAME_TABLES
+
+from tests.addon.characters import add_action, add_person, match_at_once, posed_vertices
+from tests.addon.scenes import weights_of
+
+rename = bpy.ops.hiermatch.rename_bones
+
+TRUE = {
+    "hips": "hips",
+    "head": "head",
+    "left_upper_arm": "upper_arm.L",
+    "left_lower_arm": "forearm.L",
+    "left_hand": "hand.L",
+    "right_upper_leg": "thigh.R",
+    "right_lower_leg": "shin.R",
+    "right_foot": "foot.R",
+}
+
+
+def bones(name="B"):
+    return set(bpy.data.objects[name].data.bones.keys())
+
+
+@pytest.mark.parametrize("standard", NAME_TABLES)
+def test_whatever_bones_are_called_joints_tell_what_they_are(standard):
+    _, made = add_person("B", "renamed", rolls=0.4)
+    places = {
+        next(iter(o)): bpy.data.objects["B"].data.bones[n].head_local.copy()
+        for n, o in zip(made.names, made.origins, strict=True)
+    }
+    assert rename(target="B", names=standard) == {"FINISHED"}
+    for what, origin in TRUE.items():
+        found = bpy.data.objects["B"].data.bones[NAME_TABLES[standard][what]]
+        assert (found.head_local - places[origin]).length < 1e-6
+
+
+def test_vertex_groups_actions_and_pairs_follow(monkeypatch):
+    match_at_once(monkeypatch)
+    add_person("A")
+    armature, _ = add_person("B")
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    turns = {row.target: tuple(row.turn) for row in bpy.context.scene.hiermatch_bone_pairs}
+    first = add_action(armature, "Played")
+    other = add_action(armature, "Resting")
+    first.use_fake_user = True
+    armature.animation_data.action = other
+    bpy.context.scene.frame_set(11)
+    before = [posed_vertices(armature)]
+    armature.animation_data.action = first
+    bpy.context.scene.frame_set(11)
+    before.append(posed_vertices(armature))
+    weights = weights_of(bpy.data.objects["B Body"])["forearm.L"]
+    assert rename(target="B", names="UNREAL") == {"FINISHED"}
+    assert weights_of(bpy.data.objects["B Body"])["lowerarm_l"] == weights
+    for action, wanted in zip((other, first), before, strict=True):
+        armature.animation_data.action = action
+        bpy.context.scene.frame_set(1)
+        bpy.context.scene.frame_set(11)
+        np.testing.assert_allclose(posed_vertices(armature), wanted, atol=1e-5)
+    rows = {row.target: row for row in bpy.context.scene.hiermatch_bone_pairs}
+    assert tuple(rows["lowerarm_l"].turn) == turns["forearm.L"]
+    assert rows["lowerarm_l"].is_seen
+    assert rows["lowerarm_l"].source == "forearm.L"
+
+
+def test_from_one_standard_to_another_and_exchanged_names():
+    armature, _ = add_person("B")
+    rename(target="B", names="MIXAMO")
+    left, right = (armature.data.bones[f"mixamorig:{side}Arm"] for side in ("Left", "Right"))
+    place = left.head_local.copy()
+    left.name = "passing"
+    right.name = "mixamorig:LeftArm"
+    left.name = "mixamorig:RightArm"
+    assert rename(target="B", known="MIXAMO", names="UNREAL") == {"FINISHED"}
+    assert (armature.data.bones["upperarm_r"].head_local - place).length < 1e-6  # the table goes by names
+    rename(target="B", names="UNREAL")
+    assert (armature.data.bones["upperarm_l"].head_local - place).length < 1e-6  # joints do not
+
+
+def test_as_the_bones_of_the_source_are_called(monkeypatch):
+    match_at_once(monkeypatch)
+    add_person("A")
+    _, made = add_person("B", "renamed", hanging=True)
+    origins = {name: next(iter(o)) for name, o in zip(made.names, made.origins, strict=True)}
+    with pytest.raises(RuntimeError, match="Pair their bones first"):
+        rename(source="A", target="B", names="SOURCE")
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    heads = {origins[bone.name]: bone.head_local.copy() for bone in bpy.data.objects["B"].data.bones}
+    assert rename(source="A", target="B", names="SOURCE") == {"FINISHED"}
+    assert all(
+        (bpy.data.objects["B"].data.bones[name].head_local - place).length < 1e-6 for name, place in heads.items()
+    )
+
+
+def test_refusals_change_nothing():
+    armature, _ = add_person("B")
+    armature.data.bones["toe.L"].name = "thigh_l"
+    before = bones()
+    with pytest.raises(RuntimeError, match="has a name of that standard"):
+        rename(target="B", known="MIXAMO", names="VRM")
+    group = bpy.data.objects["B Body"].vertex_groups.new(name="upperarm_l")
+    with pytest.raises(RuntimeError, match="other vertex groups"):
+        rename(target="B", names="UNREAL")
+    bpy.data.objects["B Body"].vertex_groups.remove(group)
+    assert bones() == before
+    with pytest.raises(RuntimeError, match="no object"):
+        rename(target="Nobody")
+
+
+def test_what_is_no_person_is_said():
+    data = bpy.data.armatures.new("Snake")
+    snake = bpy.data.objects.new("Snake", data)
+    bpy.context.scene.collection.objects.link(snake)
+    bpy.context.view_layer.objects.active = snake
+    bpy.ops.object.mode_set(mode="EDIT")
+    above = None
+    for number in range(6):
+        bone = data.edit_bones.new(f"s{number}")
+        bone.head, bone.tail, bone.parent = (0, number, 0.1), (0, number + 1, 0.1), above
+        above = bone
+    bpy.ops.object.mode_set(mode="OBJECT")
+    with pytest.raises(RuntimeError, match="does not stand on two legs"):
+        rename(target="Snake")
