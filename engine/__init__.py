@@ -41,8 +41,10 @@ from .retarget.values.face_transfer import carry_face_values
 from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
 from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
+from .retarget.wear.handed_weights import handed_weights
+from .retarget.wear.item_bones import bones_of_items, moved_with_items
 from .retarget.wear.key_following import follow_keys_steps
-from .retarget.wear.pose_mending import MendedWeights, mend_weights_steps
+from .retarget.wear.pose_mending import MendedWeights, WeightedItem, mend_weights_steps
 from .retarget.wear.wearing import FittedItem, WornItem, wear_steps
 from .retarget.weights.skin_weights import carried as carry_weights
 from .retarget.weights.skin_weights import row_sums, with_rows
@@ -109,10 +111,12 @@ __all__ = [
     "SymmetryResult",
     "TransferredMotion",
     "TriangleMesh",
+    "WeightedItem",
     "WornItem",
     "WrappedSurface",
     "at_rest",
     "bone_frames",
+    "bones_of_items",
     "called_steps",
     "carry_face_values",
     "carry_normals",
@@ -133,6 +137,7 @@ __all__ = [
     "fit_rig",
     "fit_rig_steps",
     "follow_keys_steps",
+    "handed_weights",
     "humanoid_bones",
     "in_between",
     "is_posed",
@@ -143,6 +148,7 @@ __all__ = [
     "match_steps",
     "mend_weights_steps",
     "moved_into",
+    "moved_with_items",
     "nearest_regions",
     "open_ends",
     "pair_bones",

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -13,11 +14,38 @@ from ..common.access import view_layer_of
 from .armatures import armature_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
 
     from ...engine import PlacedJoints
 
-__all__ = ["copy_to", "move_joints", "repoint"]
+__all__ = ["NewBone", "add_bones", "copy_to", "move_joints", "repoint"]
+
+
+@dataclass(frozen=True, eq=False)
+class NewBone:
+    """A bone for an armature, in world space.
+
+    Attributes
+    ----------
+    name, parent : str
+        What it and its parent are called; the latter is empty if it has none.
+    head, tail, normal : (3,) array of float
+        Its ends, and the direction of its local z axis.
+    connected : bool
+        Whether it hangs on its parent's tail.
+    marks : dict
+        Its custom properties.
+    """
+
+    name: str
+    parent: str
+    head: NDArray[np.float64]
+    tail: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    connected: bool
+    marks: dict[str, str]
 
 
 def copy_to(
@@ -135,6 +163,32 @@ def move_joints(
         for bone in bones:
             bone.use_connect = connected[bone.name]
     return missing
+
+
+def add_bones(context: bpy.types.Context, armature: bpy.types.Object, bones: Sequence[NewBone]) -> None:
+    """Add bones that deform to an armature in its rest pose, parents first; those of the same names are replaced.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        In Object Mode; what is active and selected there is the same afterwards.
+    armature : bpy.types.Object
+        The armature object.
+    bones : sequence of NewBone
+        The bones.
+    """
+    inverse = np.linalg.inv(np.array(armature.matrix_world, np.float64))
+    with _edited(context, armature) as edited:
+        for one in bones:
+            bone = edited.get(one.name) or edited.new(one.name)
+            bone.use_connect = False
+            bone.parent = edited.get(one.parent) if one.parent else None
+            bone.head, bone.tail = ((inverse[:3, :3] @ end + inverse[:3, 3]).tolist() for end in (one.head, one.tail))
+            bone.align_roll((inverse[:3, :3] @ one.normal).tolist())
+            bone.use_connect = one.connected and bone.parent is not None
+            bone.use_deform = True
+            for name, value in one.marks.items():
+                bone[name] = value
 
 
 def _thicken(bone: bpy.types.EditBone, factor: float) -> None:

@@ -46,7 +46,7 @@ class ItemWeights:
     lost : tuple of str
         Groups of bones that the other rig lacks, which are to go.
     from_skin : bool
-        Whether all of them come from the skin.
+        Whether all of them, or all in bones that the other rig lacks, come from the skin or from paired bones.
     """
 
     names: tuple[str, ...]
@@ -57,7 +57,13 @@ class ItemWeights:
 
 
 def chosen_weights(
-    own: ItemWeights, bones: Sequence[str], on_skin: csr_array, old_bones: AbstractSet[str], settings: WearSettings
+    own: ItemWeights,
+    bones: Sequence[str],
+    on_skin: csr_array,
+    old_bones: AbstractSet[str],
+    settings: WearSettings,
+    *,
+    handed: bool = False,
 ) -> ItemWeights:
     """Choose the weights of an item in the bones of another rig.
 
@@ -76,6 +82,9 @@ def chosen_weights(
         Names of the bones of the rig that the item came with.
     settings : WearSettings
         Which are wanted, limit, and normalising.
+    handed : bool
+        The weights of the skin stand for its own in other bones, see `handed_weights`, so that those that it has in
+        bones of the rig are kept in any case.
     """
     known = set(bones)
     kept = [name for name in own.names if name in known]
@@ -86,7 +95,7 @@ def chosen_weights(
         return ItemWeights(tuple(kept), mine, own.locked)
     whole = has + lacks
     share = has.sum() / whole.sum() if whole.sum() > 0 else 0.0
-    from_skin = settings.weights == "SKIN" or share < _ALIKE
+    from_skin = settings.weights == "SKIN" or (share < _ALIKE and not handed)
     missing = np.ones(len(has)) if from_skin else np.where(whole > 0, lacks / np.where(whole > 0, whole, 1), 1.0)
     if not (missing > _ROUNDING).any() and not settings.limit:
         return ItemWeights(tuple(kept), mine, own.locked)
@@ -102,7 +111,7 @@ def chosen_weights(
     used = [number for number, name in enumerate(names) if name in kept or mixed[:, [number]].nnz]
     gone_names = tuple(name for name in lost if name not in own.locked)
     return ItemWeights(
-        tuple(names[number] for number in used), csr_array(mixed[:, used]), own.locked, gone_names, from_skin
+        tuple(names[number] for number in used), csr_array(mixed[:, used]), own.locked, gone_names, from_skin or handed
     )
 
 

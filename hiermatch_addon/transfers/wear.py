@@ -14,11 +14,14 @@ from ...engine import (
     ClosestPoints,
     Skeleton,
     TriangleMesh,
+    WeightedItem,
     WornItem,
     carry_weights,
     follow_keys_steps,
+    handed_weights,
     kept_in_place,
     mend_weights_steps,
+    pair_bones,
     row_sums,
     wear_steps,
     within,
@@ -44,6 +47,7 @@ from ..scene.pair import check_writable, named_object
 from ..scene.shape_key_io import KeySettings, add_keys, check_keys_writable, key_positions, keys_of, shape_key_names
 from .body_below import cover_body
 from .followed_keys import BodyKeys, read_body_keys, write_followed
+from .item_bones import ItemBones, read_item_bones
 from .item_weights import ItemWeights, chosen_weights, in_columns, replaced
 from .options.rig import RigSettings
 from .options.weights import WeightSettings
@@ -51,10 +55,13 @@ from .rig import RigTransfer
 from .weights import WeightTransfer
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-    from ...engine import FittedItem, Steps
+    from ...engine import BonePairing, FittedItem, Steps
     from ..jobs.transfer import Passage
+    from ..scene.armature_copy import NewBone
     from ..scene.character import Side
     from .options.wear import WearSettings
 
@@ -111,6 +118,7 @@ class WearTransfer:
         self._first: list[WeightTransfer | RigTransfer] = []
         self._posed: NDArray[np.float64] | None = None
         self._bones: csr_array | None = None
+        self._names: tuple[str, ...] = ()
         self._fitted: list[FittedItem] = []
         self._motion: NDArray[np.float64] = np.eye(4)
         self._growth = 1.0
@@ -118,6 +126,9 @@ class WearTransfer:
         self._old_bones: set[str] = set()
         self._weights: list[ItemWeights | None] = []
         self._mended: list[tuple[str, int]] = []
+        self._item_bones: ItemBones | None = None
+        self._new_bones: list[NewBone] = []
+        self._handed = False
         self._keys: BodyKeys | None = None
         self._followed: list[NDArray[np.float64]] = []
         self._notes: list[str] = []
@@ -139,6 +150,7 @@ class WearTransfer:
         rig = read_rig(source)
         names = () if rig is None else rig.names
         self._bones = None if rig is None else rig.weights
+        self._names = names
         if any(not dressed_at_rest(item, source) for item in chosen):
             self._posed = read_surface(source, depsgraph, use_modifiers=True).vertices
         self._other = read_rig(target)
@@ -154,7 +166,16 @@ class WearTransfer:
             self._items.append(self._read_item(depsgraph, item, source, names))
             around = body.vertices if self._items[-1].at_rest or self._posed is None else self._posed
             _check_place(self._items[-1], TriangleMesh(around, body.triangles), other, source, target)
-        if find_armature(target) is None and rig is not None and settings.fit_rig and settings.result == "OBJECT":
+        if settings.result == "OBJECT":
+            self._read_rigs(context, source, target, rig)
+
+    def _read_rigs(self, context: bpy.types.Context, source: Side, target: Side, rig: SourceRig | None) -> None:
+        """Read what becomes of the rig that moves the source: bones of the items go along, or all of it is fitted."""
+        settings = self._settings
+        if self._other is not None and settings.weights != "SKIN":
+            self._item_bones, note = read_item_bones(source, target, rig, [item.weights for item in self._items])
+            self._notes += [note] if note else []
+        if find_armature(target) is None and rig is not None and settings.fit_rig:
             self._first = [WeightTransfer(WeightSettings()), RigTransfer(RigSettings())]
             for transfer in self._first:
                 transfer.read(context, source, target)
@@ -238,23 +259,50 @@ class WearTransfer:
             shape=(len(there), there.image_vertex_count),
         )
         on_skin = csr_array(spread @ rig.weights)
-        count = len(self._items)
-        for number, (item, fitted) in enumerate(zip(self._items, self._fitted, strict=True)):
-            carried = csr_array(fitted.places @ on_skin)
-            found = chosen_weights(item.weights, rig.names, carried, self._old_bones, self._settings)
-            if self._settings.poses:
-                mending = mend_weights_steps(
-                    fitted.positions,
-                    item.worn.mesh.triangles,
-                    in_columns(found, rig.names),
-                    body=passage.pair.target,
-                    skin_weights=rig.weights,
-                    skeleton=rig.skeleton,
-                )
-                mended = yield from within(mending, number / count, (number + 1) / count, "Trying poses")
-                found = replaced(found, rig.names, mended.weights, mended.changed)
-                self._mended.append((item.name, int(mended.changed.sum())))
-            self._weights[number] = found
+        brought = () if self._item_bones is None else self._item_bones.names
+        skins = [csr_array(fitted.places @ on_skin) for fitted in self._fitted]
+        lost = [name for name in self._names if name in self._old_bones and name not in (*rig.names, *brought)]
+        pairing = self._pairing(passage, rig, lost)
+        self._handed = pairing is not None
+        if self._item_bones is not None:
+            placed = [
+                (item.weights, item.worn.mesh.vertices, fitted)
+                for item, fitted in zip(self._items, self._fitted, strict=True)
+            ]
+            self._new_bones = self._item_bones.placed(placed, skins, rig, pairing)
+        every = tuple(dict.fromkeys([*rig.names, *brought]))
+        found = []
+        for item, fitted, carried in zip(self._items, self._fitted, skins, strict=True):
+            if pairing is not None and passage.rig is not None and self._bones is not None:
+                columns = in_columns(item.weights, self._names)
+                own = csr_array(columns @ diags_array(np.isin(self._names, lost).astype(float)))
+                below, bones = csr_array(fitted.places @ self._bones), (passage.rig.skeleton, rig.skeleton)
+                carried = handed_weights(own, below, carried, fitted.positions, pairing=pairing, bones=bones)  # noqa: PLW2901
+            spread_out = in_columns(ItemWeights(rig.names, carried), every)
+            old = self._old_bones - set(brought)
+            handed = pairing is not None
+            found.append(chosen_weights(item.weights, every, spread_out, old, self._settings, handed=handed))
+        if self._settings.poses:
+            weighted = [
+                WeightedItem(fitted.positions, item.worn.mesh.triangles, in_columns(weights, rig.names))
+                for item, fitted, weights in zip(self._items, self._fitted, found, strict=True)
+            ]
+            mended = yield from mend_weights_steps(
+                weighted, body=passage.pair.target, skin_weights=rig.weights, skeleton=rig.skeleton
+            )
+            for number, one in enumerate(mended):
+                found[number] = replaced(found[number], rig.names, one.weights, one.changed)
+                self._mended.append((self._items[number].name, int(one.changed.sum())))
+        self._weights = list(found)
+
+    def _pairing(self, passage: Passage, rig: SourceRig, lost: Sequence[str]) -> BonePairing | None:
+        """Pair the bones of both rigs, if items have weights in bones (of names that are lost) that the other lacks."""
+        if self._settings.weights != "AUTO" or passage.rig is None or passage.bone_names != self._names:
+            return None
+        if not any(in_columns(item.weights, lost).nnz for item in self._items):
+            return None
+        pairing = pair_bones(passage.rig, passage.pair.source, passage.pair.target, rig.skeleton, rig.weights)
+        return pairing if len(pairing) else None
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the fitted items."""
@@ -262,6 +310,10 @@ class WearTransfer:
         reports = [transfer.write(context, source, target) for transfer in self._first]
         notes = [*self._notes, *(note for report in reports for note in report.notes)]
         remarks: list[str] = [remark for report in reports for remark in report.remarks]
+        if self._new_bones:
+            ItemBones.write(context, target, self._new_bones)
+            count = counted(len(self._new_bones), "bone")
+            remarks.append(f'{count} of the items were added to the rig of "{target.name}".')
         made: list[bpy.types.Object] = []
         for number, (item, obj, fitted) in enumerate(zip(self._items, items, self._fitted, strict=True)):
             if self._settings.result == "KEY":
@@ -282,7 +334,12 @@ class WearTransfer:
             if doubt:
                 notes.append(doubt)
         if any(weights is not None and weights.from_skin and weights.lost for weights in self._weights):
-            remarks.append(f'The rig of "{target.name}" has other bones, so the weights were taken from its skin.')
+            remarks.append(
+                f'The rig of "{target.name}" has other bones, so the weights were taken from its skin and from the '
+                "bones that are paired with the items' own."
+                if self._handed
+                else f'The rig of "{target.name}" has other bones, so the weights were taken from its skin.'
+            )
         remarks.extend(
             f'Weights of {counted(count, "vertex")} of "{name}" were mended for poses.'
             for name, count in self._mended

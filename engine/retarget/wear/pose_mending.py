@@ -12,16 +12,19 @@ from scipy.sparse import csr_array, diags_array
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.background import can_go_beside
-from ...runtime.progress import Progress
+from ...runtime.progress import Progress, within
+from ..weights.skin_weights import row_sums
 from .contact import Surface
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from ...runtime.progress import Steps
     from ..rig.skeleton import Skeleton
 
-__all__ = ["MendedWeights", "mend_weights_steps"]
+__all__ = ["MendedWeights", "WeightedItem", "mend_weights_steps"]
 
 _ANGLE = np.radians(50.0)
 """How far each joint is bent, about two axes and both ways."""
@@ -43,11 +46,37 @@ alone: 8 and 40 mm on a human."""
 _OUTSIDE = 0.001
 """How far outside, in the same unit, an item lies at rest that has to stay there: not the inside of a shoe."""
 
-_ROUNDS = 2
-"""How often all poses are tried."""
+_CLEARLY = 0.009
+"""By how much less deep, in the same unit, the deepest of all poses has to be with other weights for these to be taken:
+12 mm on a human.  Chosen by ``python -m tests.benchmarks.outfits``, whose weights are right."""
+
+_WORSE = 0.002
+"""By how much deeper, in the same unit, a neighbor of such vertices may get by taking its share."""
 
 _SMOOTHING = 2
 """How many rings of neighbours share in what is mended."""
+
+
+@dataclass(frozen=True, eq=False)
+class WeightedItem:
+    """An item on a body, at rest.
+
+    Attributes
+    ----------
+    positions : (n, 3) array of float
+        Its vertices.
+    triangles : (t, 3) array of int
+        Its triangles.
+    weights : (n, b) csr_array of float
+        How much each bone moves each vertex; rows that are empty are left so.
+    """
+
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    weights: csr_array
+
+    def __repr__(self) -> str:
+        return f"<WeightedItem: {len(self.positions)} vertices>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,31 +100,26 @@ class MendedWeights:
 
 @can_go_beside
 def mend_weights_steps(
-    positions: NDArray[np.float64],
-    triangles: NDArray[np.int64],
-    weights: csr_array,
+    items: Sequence[WeightedItem],
     *,
     body: TriangleMesh,
     skin_weights: csr_array,
     skeleton: Skeleton,
-) -> Steps[MendedWeights]:
-    """Bend each joint and mend the weights of an item where the skin pokes through.
+) -> Steps[list[MendedWeights]]:
+    """Bend each joint and mend the weights of items where the skin pokes through.
 
     What has the weights of the skin below moves as that does, and nothing pokes through it.  So vertices that get
-    deeper into the skin in a pose than they are at rest take part of its weights, and their neighbours less.
+    deeper into the skin in a pose than they are at rest take part of its weights, and their neighbors less; if that
+    does not clearly help, in all poses together, they keep their own.
 
     Parameters
     ----------
-    positions : (n, 3) array of float
-        The item on the body, at rest.
-    triangles : (t, 3) array of int
-        Its triangles.
-    weights : (n, b) csr_array of float
-        How much each bone moves each vertex; rows that are empty are left so.
+    items : sequence of WeightedItem
+        The items.
     body : TriangleMesh
         The body, m vertices.
     skin_weights : (m, b) csr_array of float
-        The same for the body.
+        How much each bone moves each of its vertices.
     skeleton : Skeleton
         The bones.
 
@@ -106,51 +130,114 @@ def mend_weights_steps(
 
     Returns
     -------
-    MendedWeights
-        The weights.
+    list of MendedWeights
+        The weights of each item.
     """
-    unit = float(np.sqrt(body.area))
-    item = TriangleMesh(positions, triangles)
-    found = ClosestPoints(body).nearest(positions)
+    posed = _PosedBody(body, skin_weights, skeleton)
+    tried = [_tried(item, posed) for item in items]
+    found = yield from within(_deepest_steps(posed, [(one, one.lying, [one.item.weights]) for one in tried]), 0.0, 0.7)
+    lacking = [
+        np.where(depths[0] > _DEEPER * posed.unit, (depths[0] / (_FULLY * posed.unit)).clip(0, 1), 0.0)
+        for depths in found
+    ]
+    shares = [_spread(one.mesh, lack) for one, lack in zip(tried, lacking, strict=True)]
+    ways = [
+        (one, one.lying & (share > 0), [one.item.weights, one.mixed(share)])
+        for one, share in zip(tried, shares, strict=True)
+    ]
+    found = yield from within(_deepest_steps(posed, ways), 0.7, 1.0)
+    results = []
+    for one, lack, (before, after) in zip(tried, lacking, found, strict=True):
+        helped = before - after > _CLEARLY * posed.unit
+        share = _spread(one.mesh, np.where(helped, lack, 0.0))
+        share[(after > _DEEPER * posed.unit) & (after - before > _WORSE * posed.unit)] = 0.0
+        results.append(MendedWeights(one.mixed(share), share > 0))
+    yield Progress(1.0, "Trying poses")
+    return results
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """An item with the skin's weights below it (n, b), vertices from which to search there, and what lies on it."""
+
+    item: WeightedItem
+    mesh: TriangleMesh
+    of_skin: csr_array
+    starts: NDArray[np.int64]
+    lying: NDArray[np.bool_]
+
+    def mixed(self, share: NDArray[np.float64]) -> csr_array:
+        """Weights that are by such a part of each vertex (n,) the skin's."""
+        if not share.any():
+            return self.item.weights
+        return csr_array(diags_array(1 - share) @ self.item.weights + diags_array(share) @ self.of_skin)
+
+
+class _PosedBody:
+    """A body whose joints are bent one by one."""
+
+    def __init__(self, body: TriangleMesh, weights: csr_array, skeleton: Skeleton) -> None:
+        self.body, self.weights, self.skeleton = body, weights, skeleton
+        self.unit = float(np.sqrt(body.area))
+        self.search = ClosestPoints(body)
+        self.skin = Surface(body, self.search)
+        self.subtrees = _subtrees(skeleton.parents)
+
+
+def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
+    """Find how an item lies on the body."""
+    body, unit = posed.body, posed.unit
+    found = posed.search.nearest(item.positions)
     corners = body.triangles[found.triangles]
     below = csr_array(
         (found.barycentric.ravel(), corners.ravel(), np.arange(0, corners.size + 1, 3)),
-        shape=(len(positions), body.vertex_count),
+        shape=(len(item.positions), body.vertex_count),
     )
-    of_skin = csr_array(below @ skin_weights)
-    moving = np.asarray(weights.sum(axis=1)).ravel() > 0
     starts = found.nearest_vertices(body.triangles)
-    skin = Surface(body)
-    rest = skin.clearance(positions, starts)
-    lying = moving & (rest.distances > _OUTSIDE * unit) & (rest.distances < _NEAR * unit) & rest.known
-    subtrees = _subtrees(skeleton.parents)
-    share = np.zeros(len(positions))
-    used = np.flatnonzero(np.asarray(weights.sum(axis=0)).ravel() > 0)
-    mixed = weights
-    for turn in range(_ROUNDS):
-        lacking = np.zeros(len(positions))
-        for number, bone in enumerate(used):
-            yield Progress((turn + number / max(len(used), 1)) / _ROUNDS, "Trying poses")
-            hanging = subtrees[bone]
-            on_item, on_skin = (np.asarray(both[:, hanging].sum(axis=1)).ravel() for both in (mixed, skin_weights))
-            chosen = np.flatnonzero(lying & (on_item > _PARTLY) & (on_item < 1 - _PARTLY))
-            if not len(chosen) or on_skin @ body.vertex_areas < _LARGE_PART * body.area:
-                continue
-            for rotation in _bends(skeleton.tails[bone] - skeleton.heads[bone]):
-                head = skeleton.heads[bone]
-                surface = skin.moved(_bent(body.vertices, on_skin, head, rotation))
-                points = _bent(positions[chosen], on_item[chosen], head, rotation)
-                depth = -surface.clearance(points, starts[chosen]).distances
-                poking = depth > _DEEPER * unit
-                lacking[chosen[poking]] = np.maximum(
-                    lacking[chosen[poking]], (depth[poking] / (_FULLY * unit)).clip(0, 1)
-                )
-        if not lacking.any():
-            break
-        share = np.maximum(share, _spread(item, lacking))
-        mixed = csr_array(diags_array(1 - share) @ weights + diags_array(share) @ of_skin)
-    yield Progress(1.0, "Trying poses")
-    return MendedWeights(mixed, share > 0)
+    rest = posed.skin.clearance(item.positions, starts)
+    lying = (row_sums(item.weights) > 0) & rest.known
+    lying &= (rest.distances > _OUTSIDE * unit) & (rest.distances < _NEAR * unit)
+    mesh = TriangleMesh(item.positions, item.triangles)
+    of_skin = csr_array(diags_array(row_sums(item.weights)) @ below @ posed.weights)
+    return _Tried(item, mesh, of_skin, starts, lying)
+
+
+def _deepest_steps(
+    posed: _PosedBody, ways: Sequence[tuple[_Tried, NDArray[np.bool_], list[csr_array]]]
+) -> Steps[list[NDArray[np.float64]]]:
+    """Find how deep some vertices (n,) of items get into the skin at most, by each of w weights: (w, n) for each item.
+
+    Those that never do, are not looked at, or that no joint bends have zero.
+    """
+    body, skeleton = posed.body, posed.skeleton
+    used = np.flatnonzero(sum(sum(_column_sums(weights) for weights in way[2]) for way in ways) if ways else [])
+    deepest = [np.zeros((len(weights), len(chosen))) for _, chosen, weights in ways]
+    for number, bone in enumerate(used):
+        yield Progress(number / len(used), "Trying poses")
+        hanging = posed.subtrees[bone]
+        on_skin = row_sums(posed.weights[:, hanging])
+        if on_skin @ body.vertex_areas < _LARGE_PART * body.area:
+            continue
+        parts = [[row_sums(weights[:, hanging]) for weights in way[2]] for way in ways]
+        looked = [
+            np.flatnonzero(chosen & np.any([(on > _PARTLY) & (on < 1 - _PARTLY) for on in part], axis=0))
+            for (_, chosen, _), part in zip(ways, parts, strict=True)
+        ]
+        if not any(len(places) for places in looked):
+            continue
+        head = skeleton.heads[bone]
+        for rotation in _bends(skeleton.tails[bone] - head):
+            surface = posed.skin.moved(_bent(body.vertices, on_skin, head, rotation))
+            for (one, _, _), part, places, depths in zip(ways, parts, looked, deepest, strict=True):
+                for way, on in enumerate(part if len(places) else ()):
+                    points = _bent(one.item.positions[places], on[places], head, rotation)
+                    depth = -surface.clearance(points, one.starts[places]).distances
+                    depths[way, places] = np.maximum(depths[way, places], depth)
+    return deepest
+
+
+def _column_sums(weights: csr_array) -> NDArray[np.float64]:
+    return np.asarray(weights.sum(axis=0)).ravel()
 
 
 def _subtrees(parents: NDArray[np.int64]) -> NDArray[np.bool_]:

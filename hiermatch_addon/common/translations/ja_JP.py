@@ -1411,6 +1411,15 @@ MESSAGES: Final[dict[str, str]] = {
         "二つのメッシュを指定するか、選択してください。アクティブな方がソースです"
     ),
     "Measuring the matched points": "対応点を計測しています",
+    '{0} of the items were added to the rig of "{1}".': '"{1}"のリグに、アイテムの{0}を追加しました。',
+    'The rig of "{0}" has other bones, so the weights were taken from its skin and from the bones that are paired '
+    "with the items' own.": (
+        '"{0}"のリグにはほかのボーンがあるため、ウェイトは肌と、アイテム自身のボーンとペアのボーンから取りました。'
+    ),
+    'The armature "{0}" is linked from another file, so bones of the items were not added to it. Make it '
+    "local first.": (
+        'アーマチュア"{0}"はほかのファイルからリンクされているため、アイテムのボーンは追加されませんでした。先にローカルにしてください。'
+    ),
     "Follow Shape Keys": "シェイプキーに従う",
     "Give the fitted items the other body's shape keys that move it below them, driven by its own: they follow "
     "a wide belly or a squat": (

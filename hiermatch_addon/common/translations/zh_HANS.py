@@ -1167,6 +1167,11 @@ MESSAGES: Final[dict[str, str]] = {
     "Write": "写入",
     "Pick two meshes, or select them: the active one is the source": "选取两个网格，或直接选中它们：活动网格为源",
     "Measuring the matched points": "正在测量匹配点",
+    '{0} of the items were added to the rig of "{1}".': '已将物品的{0}添加到 "{1}" 的骨架。',
+    'The rig of "{0}" has other bones, so the weights were taken from its skin and from the bones that are paired '
+    "with the items' own.": ('"{0}" 的绑定使用其他骨骼，因此权重取自其皮肤，以及与物品自身骨骼配对的骨骼。'),
+    'The armature "{0}" is linked from another file, so bones of the items were not added to it. Make it '
+    "local first.": ('骨架 "{0}" 链接自其他文件，因此未向其添加物品的骨骼。请先将其设为本地。'),
     "Follow Shape Keys": "跟随形态键",
     "Give the fitted items the other body's shape keys that move it below them, driven by its own: they follow "
     "a wide belly or a squat": (

@@ -62,3 +62,16 @@ def test_mended_weights_come_in_where_they_changed():
     np.testing.assert_allclose(rows(found, "arm", "leg", "Seam"), [[0.5, 0.5, 0.3], [1, 0, 0.5], [1, 0, 0]])
     locked = own(["arm", "Seam"], [[1, 0.3], [1, 0.5], [1, 0]], ["arm"])
     assert replaced(locked, ["arm", "leg"], mended, np.ones(3, bool)) is locked
+
+
+def test_what_was_handed_over_leaves_weights_in_other_bones_alone():
+    item = own(["arm", "skirt"], [[1, 0], [0.8, 0.2], [0.8, 0.2]])
+    found = chosen_weights(item, ["upper", "lower", "skirt"], padded(SKIN), {"arm"}, WearSettings(), handed=True)
+    np.testing.assert_allclose(rows(found, "skirt").ravel(), [0, 0.2, 0.2])
+    np.testing.assert_allclose(rows(found, "upper", "lower"), SKIN.toarray() * [[1], [0.8], [0.8]])
+    assert found.lost == ("arm",)
+
+
+def padded(weights):
+    """Weights with a column of zeros more."""
+    return csr_array(np.hstack([weights.toarray(), np.zeros((weights.shape[0], 1))]))

@@ -206,6 +206,53 @@ def test_all_that_the_armature_moves_gets_the_weights_of_the_other_rig(pair):
     np.testing.assert_allclose(weights, 1, atol=1e-3)
 
 
+def test_bones_of_an_item_come_along_onto_the_other_rig(pair):
+    source, target, shirt, coat = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for bone in rigs[1].data.bones:
+        bone.name = f"other {bone.name}"
+    bpy.context.view_layer.objects.active = rigs[0]
+    bpy.ops.object.mode_set(mode="EDIT")
+    middle = Vector(in_world(source).mean(axis=0))
+    for name, parent, low in (("skirt", "neck", 0.0), ("skirt end", "skirt", 0.2), ("unused", "neck", 0.0)):
+        made = rigs[0].data.edit_bones.new(name)
+        made.parent = rigs[0].data.edit_bones[parent]
+        made.head, made.tail = middle - Vector((0, 0, low)), middle - Vector((0, 0, low + 0.2))
+        made.use_connect = name == "skirt end"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for obj, rig, names in (
+        (source, rigs[0], ["neck"]),
+        (shirt, rigs[0], ["neck", "skirt end"]),
+        (coat, rigs[0], ["neck"]),
+        (target, rigs[1], ["other neck"]),
+    ):
+        for name in names:
+            obj.vertex_groups.new(name=name).add(range(len(obj.data.vertices)), 1 / len(names), "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+    before = rigs[1].data.bones.keys()
+    for _ in range(2):  # again in place
+        assert wear("Shirt", "Coat") == {"FINISHED"}
+        bones = rigs[1].data.bones
+        assert sorted(bones.keys()) == sorted([*before, "skirt", "skirt end"])
+        assert bones["skirt"].parent.name == "other neck"
+        assert bones["skirt end"].parent.name == "skirt"
+        assert bones["skirt end"].use_connect
+        points = in_world(target)
+        head = np.array(rigs[1].matrix_world @ bones["skirt"].head_local)
+        assert (points.min(axis=0) < head).all()
+        assert (head < points.max(axis=0)).all()
+        groups = {group.name: group.index for group in fitted("Shirt").vertex_groups}
+        assert {"other neck", "skirt end"} <= set(groups)
+        assert "neck" not in groups
+        weights = [{one.group: one.weight for one in vertex.groups} for vertex in fitted("Shirt").data.vertices]
+        np.testing.assert_allclose([each[groups["skirt end"]] for each in weights], 0.5, atol=1e-3)
+        np.testing.assert_allclose([each[groups["other neck"]] for each in weights], 0.5, atol=1e-3)
+        assert "skirt end" not in fitted("Coat").vertex_groups
+    assert (
+        '2 bones of the items were added to the rig of "Target"' in bpy.context.scene.hiermatch_retarget.report.remarks
+    )
+
+
 def test_the_body_below_is_drawn_in_or_hidden(pair):
     _, target, *_ = pair
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}

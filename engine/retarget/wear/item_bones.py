@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bones of clothes, hair and accessories that move no body: they go where the items go."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...geometry.procrustes import nearest_rotations
+from ...runtime.errors import RigError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from .wearing import FittedItem
+
+__all__ = ["bones_of_items", "moved_with_items"]
+
+_NEIGHBOURS = 32
+"""Vertices of items that take a joint along."""
+
+
+def bones_of_items(parents: NDArray[np.int64], on_body: NDArray[np.bool_], on_items: NDArray[np.bool_]) -> list[int]:
+    """Find the bones that items have for themselves, parents first.
+
+    Parameters
+    ----------
+    parents : (b,) array of int
+        The parent of each bone, -1 for one without.
+    on_body, on_items : (b,) array of bool
+        Which bones move the body, and which move items.
+
+    Returns
+    -------
+    list of int
+        Bones that move an item, they or what hangs on them, while neither moves the body.
+    """
+    above: list[list[int]] = []
+    for bone in range(len(parents)):
+        chain = [bone]
+        while parents[chain[-1]] >= 0:
+            chain.append(int(parents[chain[-1]]))
+        above.append(chain)
+    body, items = (
+        {one for bone in np.flatnonzero(moving) for one in above[int(bone)]} for moving in (on_body, on_items)
+    )
+    return sorted(items - body, key=lambda bone: (len(above[bone]), bone))
+
+
+def moved_with_items(
+    points: NDArray[np.float64], items: Sequence[tuple[NDArray[np.float64], FittedItem]]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Move joints with the items around them.
+
+    Joints that were in one place stay in one.
+
+    Parameters
+    ----------
+    points : (k, 3) array of float
+        Where they were.
+    items : sequence of tuple
+        For each item its vertices before (n, 3), and how it was fitted.
+
+    Returns
+    -------
+    positions : (k, 3) array of float
+        Where they come to be.
+    rotations : (k, 3, 3) array of float
+        How the items turned around each.
+
+    Raises
+    ------
+    RigError
+        If there is no vertex that could take them along.
+    """
+    if not sum(len(before) for before, _ in items):
+        raise RigError("Bones of clothes can only go along with items that have vertices.")
+    before = np.concatenate([vertices for vertices, _ in items])
+    after, rotations, scales = (
+        np.concatenate([getattr(fitted, name) for _, fitted in items]) for name in ("positions", "rotations", "scales")
+    )
+    count = min(_NEIGHBOURS, len(before))
+    distances, near = (found.reshape(len(points), count) for found in cKDTree(before).query(points, count))
+    width = np.maximum(distances[:, -1:], np.finfo(float).tiny)
+    weights = np.exp(-2 * (distances**2 - distances[:, :1] ** 2) / width**2)
+    weights /= weights.sum(axis=1, keepdims=True)
+    linear = scales[near, None, None] * rotations[near]
+    away = np.einsum("kpij,kpj->kpi", linear, points[:, None] - before[near])
+    positions = np.einsum("kp,kpi->ki", weights, after[near] + away)
+    return positions, nearest_rotations(np.einsum("kp,kpij->kij", weights, linear))
