@@ -106,11 +106,15 @@ class MyRigTransfer:
         """Place the joints, and compute weights if they are wanted."""
         pair, skeleton = passage.pair, cast("Skeleton", self._stands)
         maps = pair.source_to_target, pair.target_to_source
-        bodies, how = (
-            (pair.source, pair.target),
-            {"normals": self._normals, "frames": self._frames, "space": self._space},
+        placing = carry_standing_rig_steps(
+            pair.source,
+            pair.target,
+            *maps,
+            skeleton=skeleton,
+            normals=self._normals,
+            frames=self._frames,
+            space=self._space,
         )
-        placing = carry_standing_rig_steps(*bodies, *maps, skeleton=skeleton, **how)
         placed = self._placed = yield from within(placing, 0.0, 0.5 if self._settings.bind else 1.0)
         rig = passage.rig
         if not self._settings.bind or rig is None:

@@ -103,7 +103,7 @@ class _Tree:
         self.leaves = [int(b) for b in np.flatnonzero(self.used) if not self._children[b]]
         self.heights = skeleton.heads @ up
         ends = np.concatenate([self.heights[deforming], (skeleton.tails @ up)[self.leaves]])
-        self.low, self.height = float(ends.min()), max(float(np.ptp(ends)), np.finfo(float).tiny)
+        self.low, self.height = float(ends.min()), max(float(np.ptp(ends)), float(np.finfo(float).tiny))
 
     def children(self, bone: int) -> list[int]:
         """Return the bones that hang directly on a bone."""
@@ -156,7 +156,7 @@ class _Tree:
     def arms(self, hips: int, legs: list[list[int]]) -> tuple[int, list[list[int]], int]:
         """Find the bone of legs and spine, the bones of both arms, and the one on which they hang."""
         trunk = next(
-            (b for b in self.above(hips) if max(self.heights[self.below(b)]) > self.low + 0.7 * self.height), hips
+            (b for b in self.above(hips) if self.heights[self.below(b)].max() > self.low + 0.7 * self.height), hips
         )
         taken = {each for way in legs for each in self.below(way[0])}
         side = self.bones.heads[_leg(self, legs[0])[0]] - self.bones.heads[_leg(self, legs[1])[0]]
