@@ -61,9 +61,7 @@ class _Motion:
     cost: float
 
 
-def laid_onto_steps(
-    part: TriangleMesh, partner: TriangleMesh, pair: PartPair, around: Surroundings, *, thoroughly: bool
-) -> Steps[FoundPoints]:
+def laid_steps(around: Surroundings, item: tuple[TriangleMesh, TriangleMesh, PartPair, bool]) -> Steps[FoundPoints]:
     """Map the vertices of a part to points of its partner.
 
     It is moved as a rigid body, of the partner's size, to where the two are closest [1]_.  If it does not fit then, it
@@ -73,16 +71,10 @@ def laid_onto_steps(
 
     Parameters
     ----------
-    part : TriangleMesh
-        The part, n vertices.
-    partner : TriangleMesh
-        Its partner.
-    pair : PartPair
-        How it may be turned.
     around : Surroundings
         How space moves around it.
-    thoroughly : bool
-        Whether it is turned to other sides, and deformed.
+    item : tuple
+        The part, n vertices; its partner; how it may be turned; and whether it is turned to other sides, and deformed.
 
     Yields
     ------
@@ -98,6 +90,7 @@ def laid_onto_steps(
     ----------
     .. [1] P. J. Besl, N. D. McKay, "A method for registration of 3-D shapes", IEEE PAMI 14(2), 1992.
     """
+    part, partner, pair, thoroughly = item
     aim = _Aim(partner, pair, _MOST_POINTS)
     best = _rigidly(part, aim, pair, pair.rotations[0])
     if thoroughly and best.distance > _RIGID**2:

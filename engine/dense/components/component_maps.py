@@ -15,9 +15,10 @@ from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...repair.clean_surface import CleanSurface, SurfacePart
 from ...runtime.arrays import Floats, Ints
+from ...runtime.parallel_map import shared_steps
 from ...runtime.progress import Progress, Steps, within
 from .attached_sheets import MappedSheets, mapped_sheets
-from .component_alignment import laid_onto_steps
+from .component_alignment import laid_steps
 from .component_pairs import Contact, contact_with, paired_parts
 from .similarity_field import Surroundings
 
@@ -231,15 +232,14 @@ class _PartMaps:
         unit = float(np.sqrt(self._y.mesh.area))
         touching = [contacts[number] for number in numbers], [followed.contact_there(part) for part in there]
         large = np.isin(numbers, list(self._large))
-        for pair in paired_parts((here, touching[0]), (there, touching[1]), followed.around, unit, large):
-            part, partner, number = here[pair.part], there[pair.partner], numbers[pair.part]
-            done = len(self.mapped) / len(self._x.pieces), (len(self.mapped) + 1) / len(self._x.pieces)
-            steps = laid_onto_steps(part, partner, pair, followed.around, thoroughly=number in self._large)
-            found = yield from within(steps, *done)
-            points = SurfacePoints.from_barycentric(partner, found.triangles, found.barycentric)
-            self.mapped[number] = _Image(candidates[pair.partner], points)
+        pairs = paired_parts((here, touching[0]), (there, touching[1]), followed.around, unit, large)
+        items = [(here[pair.part], there[pair.partner], pair, bool(large[pair.part])) for pair in pairs]
+        done = len(self.mapped) / len(self._x.pieces), (len(self.mapped) + len(items)) / len(self._x.pieces)
+        laid = yield from within(shared_steps(laid_steps, followed.around, items), *done, "Mapping every vertex")
+        for pair, found in zip(pairs, laid, strict=True):
+            points = SurfacePoints.from_barycentric(there[pair.partner], found.triangles, found.barycentric)
+            self.mapped[numbers[pair.part]] = _Image(candidates[pair.partner], points)
             self._free.remove(candidates[pair.partner])
-            yield Progress(done[1], "Mapping every vertex")
 
 
 def _by_what_they_follow(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +93,8 @@ class Surroundings:
     ----------
     .. [1] S. Schaefer, T. McPhail, J. Warren, "Image deformation using moving least squares", SIGGRAPH 2006.
     """
+
+    is_sent_once: ClassVar[bool] = True
 
     def __init__(self, mesh: TriangleMesh, other: TriangleMesh, images: SurfacePoints) -> None:
         image_normals = unit_vectors(images.interpolate(other.vertex_normals))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import SurfacePoints, TriangleMesh
-from engine.dense.components.component_alignment import laid_onto_steps
+from engine.dense.components.component_alignment import laid_steps
 from engine.dense.components.component_pairs import contact_with, paired_parts
 from engine.dense.components.similarity_field import Surroundings
 from engine.runtime.progress import run
@@ -46,7 +46,7 @@ def laid(part, partner, *, turn=TURN, thoroughly=False):
     (pair,) = paired_parts(
         ([part], contacts[:1]), ([partner], contacts[1:]), around, np.sqrt(other.area), np.array([False])
     )
-    found = run(laid_onto_steps(part, partner, pair, around, thoroughly=thoroughly))
+    found = run(laid_steps(around, (part, partner, pair, thoroughly)))
     assert len(found) == part.vertex_count
     return SurfacePoints.from_barycentric(partner, found.triangles, found.barycentric).positions, pair
 
