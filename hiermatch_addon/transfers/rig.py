@@ -199,7 +199,7 @@ def _counterparts(
 
 def _new_armature(context: bpy.types.Context, target: Side, model: bpy.types.Object) -> bpy.types.Object:
     """Copy the source's armature to the place of the target, turned and scaled as it is."""
-    armature = copy_armature(context, model, f"{model.name} {target.name}")
+    armature = copy_armature(context, model, f"{target.name} Rig")
     matrix = model.matrix_world.copy()
     matrix.translation = parts_of(target)[0].matrix_world.translation
     armature.matrix_world = matrix
