@@ -4,7 +4,7 @@
     make package-no-wheels
     BLENDER_USER_RESOURCES=EMPTY_FOLDER blender --factory-startup --enable-event-simulate \
         --window-geometry 0 0 1600 1000 --python tools/character_story.py -- \
-        FOLDER build/package-no-wheels/hiermatch-VERSION.zip SOURCE.glb TARGET.glb [COMMAND ...]
+        [--motion] FOLDER build/package-no-wheels/hiermatch-VERSION.zip SOURCE.glb TARGET.glb [COMMAND ...]
 
 Any Blender from 4.3 on with NumPy and SciPy will do; the zip is installed as by hand.  Either character may have any
 number of meshes, both need a rig; a source without an action gets one that swings its arms and legs.  Everything is
@@ -18,6 +18,14 @@ ends Blender with an error.  Saves into FOLDER
     4-retargeted.jpg    what the panel says to it
     5-test-poses.jpg    some of the joints bent
     6-action.jpg        both playing the source's action, at four times
+
+With --motion the target keeps its own rig: their bones are paired, and the action is carried over, to be played.  Then
+there are, after the second picture,
+
+    3-pairing.jpg       while the bodies are matched
+    4-paired.jpg        the table of bones
+    5-carried.jpg       what the panel says to the action
+    6-action.jpg        both playing it, at four times
 
 Blender cannot read its own pixels on some screens, virtual ones above all: see `screenshots.py` for COMMAND.
 """
@@ -95,6 +103,13 @@ def tell(story: Story, camera: Camera) -> Iterator[float | None]:
     yield from story.play(camera)
 
 
+def tell_motion(story: Story, camera: Camera) -> Iterator[float | None]:
+    """Go through the steps for a target that keeps its rig."""
+    yield from story.bring(camera)
+    yield from story.carry(camera)
+    yield from story.play(camera, carried=True)
+
+
 class Story:
     """Two characters, and what is done with them.
 
@@ -136,12 +151,7 @@ class Story:
         progress = cast("Any", bpy.context.window_manager).hiermatch
         yield from until(lambda: progress.fraction > _FAR_ENOUGH or not running(), "The first third")
         camera.take_with_panel("3-matching", self._all())
-        yield from until(lambda: bool(progress.question) or not running(), "The match")
-        if progress.question:
-            print(f"asked: {progress.question}", flush=True)
-            press(cast("Any", bpy.ops).hiermatch.answer, answer="WRITE")
-        yield from until(lambda: not running(), "Retargeting")
-        yield None
+        yield from self._finished("Retargeting")
         camera.take_with_panel("4-retargeted", self._all())
         print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
         check(report().done, "Nothing was carried")
@@ -150,6 +160,41 @@ class Story:
         check(len(rigs) == 1, f"The target is moved by {len(rigs)} armatures instead of one")
         (self._made,) = rigs
         check(self._made not in self._rigs, "The target is still moved by its own armature")
+
+    def carry(self, camera: Camera) -> Iterator[float | None]:
+        """Unfold the panel for motion, pair the bones, and carry the action over to the target's own rig."""
+        _open_motion()
+        action = _action_of(self._rigs[0])
+        check(action is not None, "The source has no action")
+        _assign(self._rigs[0], action)
+        cast("Any", self._rigs[1]).animation_data_clear()
+        yield None
+        press(cast("Any", bpy.ops).hiermatch.pair_bones)
+        progress = cast("Any", bpy.context.window_manager).hiermatch
+        yield from until(lambda: progress.fraction > _FAR_ENOUGH or not running(), "The first third")
+        camera.take_with_panel("3-pairing", self._all())
+        yield from self._finished("Pairing")
+        camera.take_with_panel("4-paired", self._all())
+        print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
+        check(len(cast("Any", bpy.context.scene).hiermatch_bone_pairs), "No bones were paired")
+        press(cast("Any", bpy.ops).hiermatch.retarget_action)
+        yield from self._finished("The motion")
+        camera.take_with_panel("5-carried", self._all())
+        print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
+        self._made = self._rigs[1]
+        rigs = {rig for obj in self._meshes[1] for rig in _moving(obj)}
+        check(rigs == {self._made}, "The target is not moved by its own rig")
+        check(cast("Any", self._made.animation_data).action is not None, "The target's rig has no action")
+
+    def _finished(self, what: str) -> Iterator[float | None]:
+        """Answer if asked, and wait for the end."""
+        progress = cast("Any", bpy.context.window_manager).hiermatch
+        yield from until(lambda: bool(progress.question) or not running(), what)
+        if progress.question:
+            print(f"asked: {progress.question}", flush=True)
+            press(cast("Any", bpy.ops).hiermatch.answer, answer="WRITE")
+        yield from until(lambda: not running(), what)
+        yield None
 
     def bend(self, camera: Camera) -> Iterator[float | None]:
         """Press Test Poses, look at some of them, and press it again."""
@@ -172,12 +217,12 @@ class Story:
         check((scene.frame_start, scene.frame_end) == frames, "The frame range was not brought back")
         check(made.animation_data.action is None, "An action was left behind")
 
-    def play(self, camera: Camera) -> Iterator[float | None]:
-        """Give both rigs one action of the source, and look at some moments of it."""
+    def play(self, camera: Camera, *, carried: bool = False) -> Iterator[float | None]:
+        """Give both rigs one action of the source, if it was not carried over, and look at some moments of it."""
         scene = cast("Any", bpy.context.scene)
         action = _action_of(self._rigs[0])
         check(action is not None, "The source has no action")
-        for rig in (self._rigs[0], cast("Any", self._made)):
+        for rig in (self._rigs[0],) if carried else (self._rigs[0], cast("Any", self._made)):
             _assign(rig, action)
         first, last = (int(frame) for frame in action.frame_range)
         print(f"playing: {action.name}, frames {first} to {last}", flush=True)
@@ -236,6 +281,18 @@ class Story:
         overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_cursor = False
         overlay.show_extras = overlay.show_relationship_lines = overlay.show_object_origins = False
         overlay.show_bones = False
+
+
+def _open_motion() -> None:
+    """Fold the panels of HierMatch, and unfold the one for motion, as by clicks on their headers."""
+    panels: list[Any] = [
+        cls for cls in bpy.types.Panel.__subclasses__() if getattr(cls, "bl_category", "") == "HierMatch"
+    ]
+    for panel in panels:
+        bpy.utils.unregister_class(panel)
+    for panel in panels:
+        panel.bl_options = set() if panel.__name__ == "HIERMATCH_PT_motion" else {"DEFAULT_CLOSED"}
+        bpy.utils.register_class(panel)
 
 
 def _hangs_on(obj: bpy.types.Object, rig: bpy.types.Object) -> bool:
@@ -313,12 +370,14 @@ def _assign(rig: bpy.types.Object, action: Any) -> None:  # noqa: ANN401 - an ac
 
 def main(arguments: list[str]) -> None:
     """Install the zip, and let Blender's own timer do one step after the other."""
+    telling = tell_motion if "--motion" in arguments else tell
+    arguments = [argument for argument in arguments if argument != "--motion"]
     if len(arguments) < 4:
         sys.exit("Name a folder for the pictures, the extension's zip, and the files of the source and the target.")
     folder, package, source, target = (Path(argument).resolve() for argument in arguments[:4])
     folder.mkdir(parents=True, exist_ok=True)
     bpy.context.preferences.view.show_splash = bpy.context.preferences.view.show_tooltips = False
-    steps = tell(Story(source, target), Camera(folder, arguments[4:]))
+    steps = telling(Story(source, target), Camera(folder, arguments[4:]))
     to_draw, installed = 0, False
 
     def advance() -> float | None:

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 
 from ...engine import Skeleton
 from ..common.access import mesh_of
-from .character import Character, armatures_above, parts_of
+from .character import Character, armatures_above, parts_of, successor
 from .deform_layer import read_weights
 
 if TYPE_CHECKING:
@@ -88,8 +88,9 @@ def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | Non
 
 
 def find_armature(side: Side) -> bpy.types.Object | None:
-    """Find the armature that moves a side: the one that it is called after, else that of the first part with one."""
+    """Find the armature that moves a side: what it is called after or has taken the place of that, else its first."""
     called = bpy.data.objects.get(side.name) if isinstance(side, Character) else None
+    called = called and successor(called)
     if called is not None and any(called in armatures_above(part) for part in parts_of(side)):
         return called
     return next((found for found in map(_armature_of_part, parts_of(side)) if found is not None), None)

@@ -129,7 +129,7 @@ class RigTransfer:
         placed = cast("PlacedJoints", self.placed)
         first = parts_of(target)[0]
         made = made_rig(target, model) if self._settings.existing == "UPDATE" else None
-        armature = made or copy_to(context, model, f"{model.name} {target.name}", first)
+        armature = made or copy_to(context, model, f"{target.name} Rig", first)
         missing = move_joints(context, armature, self.names, placed)
         if made is None:
             kept = repoint(armature, _counterparts(source, target, model, armature))

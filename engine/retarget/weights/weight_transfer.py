@@ -17,6 +17,7 @@ from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress, Steps
 from .rigid_parts import with_rigid_parts, with_single_bones
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
+from .soft_joints import with_soft_joints
 from .weight_filling import filled
 from .weight_rejection import torn_vertices
 
@@ -82,7 +83,8 @@ def carry_weights_steps(
 ) -> Steps[CarriedWeights]:
     """Carry weights across a map.
 
-    Vertices at a seam that the target was cut open at, as for UVs, are one point and get the same weights.
+    Vertices at a seam that the target was cut open at, as for UVs, are one point and get the same weights.  Where the
+    source is in plates and the target is not, weights pass over gradually between them.
 
     Parameters
     ----------
@@ -119,8 +121,10 @@ def carry_weights_steps(
     torn = np.zeros(len(target_to_source), bool)
     parts = WeldedParts.of(target)
     marks = np.zeros(parts.part_count) if pieces is None else np.bincount(parts.vertex_labels, pieces)
+    source_parts = WeldedParts.of(source)
     if rigid:
-        result = with_rigid_parts(result, parts, weights, WeldedParts.of(source), target_to_source, free=marks < 0)
+        result = with_rigid_parts(result, parts, weights, source_parts, target_to_source, free=marks < 0)
+    result = with_soft_joints(result, parts, source_parts, target_to_source)
     result = with_single_bones(result, parts, marks > 0, telling)
     if fill:
         yield Progress(0.2, "Looking for torn vertices")

@@ -4,8 +4,11 @@ from __future__ import annotations
 import bpy
 import numpy as np
 from hiermatch.hiermatch_addon.scene.armatures import find_armature, read_rig, read_skeleton
+from hiermatch.hiermatch_addon.scene.binding import bind, unbind
+from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
 from mathutils import Matrix
 
+from tests.addon.characters import add_person
 from tests.addon.rigs import add_armature, add_rigged, pose
 from tests.addon.scenes import add_blob
 from tests.skeletons import CONTROLS, creature_bones, creature_weights
@@ -30,6 +33,19 @@ def test_a_modifier_without_an_armature_is_passed_over():
     obj.modifiers.new("Empty", "ARMATURE")
     obj.modifiers.move(1, 0)
     assert find_armature(obj) == armature
+
+
+def test_an_armature_that_was_replaced_means_the_one_in_its_place():
+    """Of a character of several objects as well, which is called as the old one; its modifiers are there, but off."""
+    old = add_person("Old")[0]
+    new = old.copy()
+    bpy.context.scene.collection.objects.link(new)
+    side = side_of(old, bpy.context.view_layer)
+    assert len(parts_of(side)) == 2
+    assert find_armature(side) == old
+    bind(side, new, side, [])
+    assert unbind(side, new, []) == [old]
+    assert find_armature(side_of(old, bpy.context.view_layer)) == new
 
 
 def test_a_rig_is_read_as_it_was_made():

@@ -45,10 +45,10 @@ def test_a_second_armature_is_told():
 def test_an_action_of_the_users_own_is_not_replaced():
     source, _ = add_rigged()
     target, _ = add_target(source)
-    mine = bpy.data.actions.new("Source Rig Target Rest")
+    mine = bpy.data.actions.new("Target Rig Rest")
     for _ in range(2):
         fit(source, target, rest=True, pose="POSED")
-    assert mine == bpy.data.actions["Source Rig Target Rest"]
+    assert mine == bpy.data.actions["Target Rig Rest"]
     assert len(bpy.data.actions) == 2
 
 

@@ -302,7 +302,7 @@ def test_one_step_back_undoes_it_all():
     assert target.parent is None
     bpy.ops.ed.redo()
     assert len(bpy.data.armatures) == 2
-    assert bpy.data.objects["Target"].modifiers[0].object == bpy.data.objects["Source Rig Target"]
+    assert bpy.data.objects["Target"].modifiers[0].object == bpy.data.objects["Target Rig"]
 
 
 def own_rig(target):
@@ -383,7 +383,7 @@ def test_without_binding_the_target_stays_as_it_is():
     fit(source, target, bind=False)
     assert not target.modifiers
     assert target.parent is None
-    assert "Source Rig Target" in bpy.data.objects
+    assert "Target Rig" in bpy.data.objects
 
 
 @pytest.mark.parametrize("show", [False, True])
@@ -393,7 +393,7 @@ def test_the_rest_pose_undoes_the_pose(show):
     add_weights(source, target)
     before = own(target)
     made, report = fit(source, target, rest=True, rest_shown=show)
-    action = bpy.data.actions["Source Rig Target Rest"]
+    action = bpy.data.actions["Target Rig Rest"]
     assert action.use_fake_user
     assert action.name in report.done
     if not show:
