@@ -56,7 +56,7 @@ class MapDomain:
     """
 
     is_sent_once = True
-    """See `sharing.shared_steps`."""
+    """See `parallel_map.shared_steps`."""
 
     def __init__(self, shape: Shape, size: int) -> None:
         self.shape = shape.limited(_COARSE)

@@ -94,7 +94,7 @@ class GeodesicSolver:
     """
 
     is_sent_once = True
-    """See `sharing.shared_steps`."""
+    """See `parallel_map.shared_steps`."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
         tables = corner_tables(mesh)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse import csr_array
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, marked
 from ..runtime.small_products import product
 from .problem import MatchingProblem
 from .quasi_newton import minimize_lbfgs
@@ -157,8 +157,7 @@ def descend(problem: MatchingProblem, assignment: Ints, max_sweeps: int = 50) ->
     source, target, linear = problem.source_distances, problem.target_distances, problem.linear
     to_matched = target[:, current]  # (m, j): distance from each candidate to the present match of each point
     squares = np.square(to_matched).sum(axis=1)
-    free = np.ones(len(target), bool)
-    free[current] = False
+    free = ~marked(current, len(target))
     for _ in range(max_sweeps):
         moved = False
         for i in range(len(current)):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, ranges
 from ..runtime.errors import MeshError
 from .triangle_mesh import TriangleMesh, triangle_areas
 
@@ -162,7 +162,7 @@ def from_faces(starts: Ints, corner_vertices: Ints) -> Polygons:
     count = int(corner_vertices.max(initial=0)) + 1
     keys, corner_edges = np.unique(sides[:, 0] * count + sides[:, 1], return_inverse=True)
     face = np.repeat(np.arange(len(sizes)), sizes - 2)
-    step = np.arange(len(face)) - np.repeat(np.cumsum(sizes - 2) - (sizes - 2), sizes - 2)
+    step = ranges(np.zeros_like(sizes), sizes - 2)
     first = np.asarray(starts)[face]
     triangles = np.stack([first, first + step + 1, first + step + 2], axis=1)
     edges = np.stack(np.divmod(keys, count), axis=1)

@@ -14,7 +14,7 @@ from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
 from ..mesh.triangle_mesh import triangle_areas
 from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints, marked
+from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked
 
 _SMALLEST = 0.01
 """Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""
@@ -189,9 +189,8 @@ def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Bo
     away = middles - vertices[tops]
     unit = along / np.where(lengths > 0, lengths, 1)[:, None]
     away -= np.einsum("kd,kd->k", away, unit)[:, None] * unit
-    outward = np.stack(
-        [np.bincount(tail, axis, k) + np.bincount(head, axis, k) for axis in unit_vectors(away).T], axis=1
-    )
+    away = unit_vectors(away)
+    outward = group_sums(tail, away, k) + group_sums(head, away, k)
     neighbours = _graph(tail, head, k)
     neighbours = neighbours + neighbours.T
     for _ in range(_SMOOTHED):

@@ -12,7 +12,7 @@ from ..mesh.connectivity.mesh_orientation import inward_components, orient_consi
 from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.connectivity.vertex_welding import weld_boundaries
 from ..mesh.triangle_mesh import TriangleMesh, triangle_areas
-from ..runtime.arrays import Bools, Floats, Ints, marked, numbered
+from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked, numbered
 from ..runtime.errors import MeshError
 from .border_seams import seam_partners
 from .clean_surface import CleanSurface, SurfacePart
@@ -154,7 +154,7 @@ def _merged(work: _Work, groups: EdgeGroups, representatives: Ints) -> tuple[Edg
     homes, number = np.unique(representatives[involved], return_inverse=True)
     shares = np.bincount(number)
     offsets = work.vertices[involved] - work.vertices[representatives[involved]]
-    shift = np.stack([np.bincount(number, axis) for axis in offsets.T], axis=1) / shares[:, None]
+    shift = group_sums(number, offsets, len(homes)) / shares[:, None]
     vertices = work.vertices.copy()
     vertices[homes] += shift
     work.triangles = triangles = representatives[work.triangles]
@@ -221,8 +221,7 @@ def _leave_out_crowding(work: _Work) -> None:
         order = np.lexsort((sizes, paired, group))
         best = order[np.append(group[order][1:] != group[order][:-1], True)]
         staying = np.concatenate([half_edges[best], twins[best]])
-        kept = np.ones(len(work.triangles), bool)
-        kept[half_edges[~np.isin(half_edges, staying)] // 3] = False
+        kept = ~marked(half_edges[~np.isin(half_edges, staying)] // 3, len(work.triangles))
         work.counts.left_out += int((~kept).sum())
         work.keep(kept)
         work.split()

@@ -3,14 +3,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from ..mesh.connectivity.boundary_loops import BoundaryLoops
 from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, group_sums
 
 _LARGEST_HOLE = 0.01
 """Area of the largest hole in a sheet that is filled, as a part of the surface."""
@@ -50,7 +47,7 @@ def small_holes(vertices: Floats, triangles: Ints, loops: BoundaryLoops, area: f
     middle = loops.centres[loops.labels]
     # The lid runs against the boundary; its area vector is that of the loop, whatever surface spans it.
     fans = np.cross(b - middle, a - middle)
-    lids: NDArray[Any] = np.stack([np.bincount(loops.labels, axis, loops.count) for axis in fans.T], axis=1)
+    lids = group_sums(loops.labels, fans, loops.count)
     corners = vertices[triangles[loops.half_edges // 3]]
     beside = unit_vectors(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     lengths = np.linalg.norm(b - a, axis=1)

@@ -9,7 +9,7 @@ from ..mesh.connectivity.boundary_loops import BoundaryLoops
 from ..mesh.connectivity.halfedges import triangle_slots
 from ..mesh.connectivity.nonmanifold_vertices import several_fans
 from ..mesh.triangle_mesh import triangle_areas
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, ranges
 from .hole_filling import small_holes
 
 
@@ -68,7 +68,7 @@ def _cycles_of_three(numbers: Ints, tails: Ints, heads: Ints, n: int) -> Ints:
     keys = tails * n + heads
     begin, end = (np.searchsorted(tails, heads, side) for side in ("left", "right"))
     first = np.repeat(np.arange(len(tails)), end - begin)
-    second = np.arange(len(first)) + np.repeat(begin - np.cumsum(end - begin) + (end - begin), end - begin)
+    second = ranges(begin, end - begin)
     wanted = heads[second] * n + tails[first]
     third = np.minimum(np.searchsorted(keys, wanted), max(len(keys) - 1, 0))
     closed = keys[third] == wanted if len(keys) else np.zeros(0, bool)

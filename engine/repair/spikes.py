@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..runtime.arrays import Floats, Ints, marked
+from ..runtime.arrays import Floats, Ints, group_sums, marked
 
 _SLENDER = 1.0
 """Length of the shortest edge of a spike by the length of the ring around its foot: a horn is broader at its tip."""
@@ -51,7 +51,7 @@ def pulled_in(vertices: Floats, triangles: Ints, spikes: Ints) -> Floats:
     tails, heads = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     used = tip[tails] & ~tip[heads]  # one edge for each triangle around a tip
     tails, heads = tails[used], heads[used]
-    sums = np.stack([np.bincount(tails, axis, len(vertices)) for axis in vertices[heads].T], axis=1)
+    sums = group_sums(tails, vertices[heads], len(vertices))
     counts = np.bincount(tails, minlength=len(vertices))
     moved = np.flatnonzero(counts)
     result = vertices.copy()

@@ -61,8 +61,7 @@ def in_between(mesh: TriangleMesh, positions: Floats, fractions: Floats) -> Floa
     if np.shape(positions) == mesh.vertices.shape:
         parts = WeldedParts.of(mesh)
         if parts.seams:
-            welded = parts.mean_over(np.ones(mesh.vertex_count, bool)) @ positions
-            return _in_between(parts.closed, welded, fractions)[:, parts.welded]
+            return _in_between(parts.closed, parts.means @ positions, fractions)[:, parts.welded]
     return _in_between(mesh, positions, fractions)
 
 

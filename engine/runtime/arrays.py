@@ -23,3 +23,14 @@ def numbered(places: Ints, count: int) -> Ints:
     numbers = np.full(count, -1)
     numbers[places] = np.arange(len(places))
     return numbers
+
+
+def group_sums(groups: Ints, values: Floats, count: int) -> Floats:
+    """Sum the rows of values (k, d) that are of the same of some groups, by their numbers (k,): (count, d)."""
+    return np.stack([np.bincount(groups, column, count) for column in values.T], axis=1)
+
+
+def ranges(starts: Ints, counts: Ints) -> Ints:
+    """List so many numbers, (k,), from each of some starts (k,) on, one range after the other."""
+    before = np.cumsum(counts) - counts
+    return np.arange(counts.sum()) + np.repeat(starts - before, counts)

@@ -16,7 +16,7 @@ from ..mesh.connectivity.components import joined_components
 from ..mesh.edge_splitting import split_longest_edges
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints, marked, numbered
+from ..runtime.arrays import Floats, Ints, group_sums, marked, numbered
 from ..runtime.progress import Progress, Steps, within
 from .remeshing.dual_triangulation import manifold_part
 from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
@@ -182,7 +182,7 @@ def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
     if not closing.any():
         return mesh
     sizes = np.bincount(loops)
-    centres = np.stack([np.bincount(loops, column[tail]) for column in mesh.vertices.T], axis=1) / sizes[:, None]
+    centres = group_sums(loops, mesh.vertices[tail], len(sizes)) / sizes[:, None]
     number = n + np.cumsum(small) - 1
     fans = np.stack([head[closing], tail[closing], number[loops[closing]]], axis=1)
     return TriangleMesh(np.concatenate([mesh.vertices, centres[small]]), np.concatenate([mesh.triangles, fans]))

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, group_sums
 
 _NEIGHBOURS = 32
 """Places on the surface that a similarity is fitted to."""
@@ -187,8 +187,7 @@ def _coarser(places: _Places) -> _Places | None:
     totals: NDArray[Any] = np.bincount(number, areas, count)
     vectors = (places.positions, places.images, places.normals, places.image_normals)
     positions, images, normals, image_normals = (
-        np.stack([np.bincount(number, areas * axis, count) for axis in values.T], axis=1) / totals[:, None]
-        for values in vectors
+        group_sums(number, areas[:, None] * values, count) / totals[:, None] for values in vectors
     )
     return _Places(spacing, positions, images, normals, image_normals, totals)
 

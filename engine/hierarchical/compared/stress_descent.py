@@ -11,7 +11,7 @@ import numpy as np
 from ...mesh.connectivity.components import joined_components
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, ranges
 from ...runtime.progress import Progress, Steps
 from ...shapes.surface_distances import PointDistances, symmetric_roots
 from .vertex_stress import LocalStress, PairStress
@@ -309,8 +309,7 @@ class _TrianglesAround:
         point, corner = np.nonzero(points.barycentric > 0)
         place = self._place[points.corners[point, corner]]
         counts = self._starts[place + 1] - self._starts[place]
-        first = np.cumsum(counts) - counts
-        entry = np.arange(counts.sum()) + np.repeat(self._starts[place] - first, counts)
+        entry = ranges(self._starts[place], counts)
         keys = np.unique(np.repeat(point, counts) * self._count + self._triangles[entry])
         owner, triangle = np.divmod(keys, self._count)
         return owner, triangle

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.arrays import Floats, Ints, numbered
+from ...runtime.arrays import Floats, Ints, group_sums, numbered
 from .components import joined_components
 from .halfedges import triangle_slots
 
@@ -72,7 +72,7 @@ def boundary_loops(vertices: Floats, triangles: Ints, half_edges: Ints) -> Bound
     # A loop of zero length has its centre at its vertices all the same.
     lengths = np.where(np.bincount(labels, lengths)[labels] > 0, lengths, 1.0) if len(labels) else lengths
     weights = np.bincount(labels, lengths, len(first))
-    centres = np.stack([np.bincount(labels, lengths * axis, len(first)) / weights for axis in ((a + b) / 2).T], axis=1)
+    centres = group_sums(labels, lengths[:, None] * ((a + b) / 2), len(first)) / weights[:, None]
     fans = np.linalg.norm(np.cross(b - a, centres[labels] - a), axis=1) / 2
     areas: NDArray[Any] = np.bincount(labels, fans, len(first))
     return BoundaryLoops(half_edges, tails, heads, labels, centres, areas)

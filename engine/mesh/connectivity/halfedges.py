@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, ranges
 from ..unit_vectors import unit_vectors
 from .components import triangle_components
 
@@ -137,8 +137,7 @@ def _crowded(groups: EdgeGroups, most: int) -> tuple[Ints, Ints]:
     edges = np.flatnonzero((groups.counts > 2) & (groups.counts <= most))
     counts = groups.counts[edges]
     group = np.repeat(np.arange(len(edges)), counts)
-    place = np.arange(len(group)) + np.repeat(groups.starts[edges] - np.cumsum(counts) + counts, counts)
-    return groups.order[place], group
+    return groups.order[ranges(groups.starts[edges], counts)], group
 
 
 def _crowded_pairs(vertices: Floats, triangles: Ints, groups: EdgeGroups, patches: Ints) -> tuple[Ints, Ints]:

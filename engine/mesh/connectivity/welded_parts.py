@@ -88,7 +88,7 @@ class WeldedParts:
     @cached_property
     def positions(self) -> Floats:
         """Where the welded vertices are, (w, 3)."""
-        return self.mean_over(np.ones(self.mesh.vertex_count, bool)) @ self.mesh.vertices
+        return self.means @ self.mesh.vertices
 
     @cached_property
     def sizes(self) -> Floats:
@@ -108,6 +108,11 @@ class WeldedParts:
         """Return, for each welded vertex, that of the vertices it is made of which has the largest value (n,): (w,)."""
         order = np.lexsort((-values, self.welded))
         return order[np.searchsorted(self.welded[order], np.arange(self.welded_count))]
+
+    @cached_property
+    def means(self) -> csr_array:
+        """The matrix (w, n) that averages values over all vertices that each welded one is made of."""
+        return self.mean_over(np.ones(self.mesh.vertex_count, bool))
 
     def mean_over(self, chosen: Bools) -> csr_array:
         """Return the matrix (w, n) that averages values over the chosen vertices (n,) that each welded one is made of.

@@ -173,7 +173,7 @@ def turned_normals(
     if normals.shape != (len(corner_vertices), 3):
         raise MeshError(f"There should be one normal for each of {len(corner_vertices)} corners, not {normals.shape}.")
     parts = WeldedParts.of(mesh)
-    welded = parts.mean_over(np.ones(mesh.vertex_count, bool)) @ positions
+    welded = parts.means @ positions
     rotations = surface_frames(parts.closed, welded, radius=_TURN_RADIUS).rotations
     turned = np.einsum("nij,nj->ni", rotations, parts.closed.vertex_normals)
     now = TriangleMesh(welded, parts.triangles).vertex_normals

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...mesh.connectivity.components import joined_components
 from ...mesh.polygons import Polygons
-from ...runtime.arrays import Bools, Floats, Ints, marked
+from ...runtime.arrays import Bools, Floats, Ints, group_sums, marked
 
 _WELD = 0.25
 """Corners that meet on the same sheet belong together if they differ by less than this part of the edge there."""
@@ -56,7 +56,7 @@ def weld(values: Floats, polygons: Polygons, labels: Ints, known: Bools, toleran
     group = joined_components(polygons.corner_count, *joined.T)
     weights = np.where(known, 1.0, _UNKNOWN_WEIGHT)
     total = np.bincount(group, weights)
-    means = np.stack([np.bincount(group, weights * part) / total for part in values.T], axis=1)
+    means = group_sums(group, weights[:, None] * values, len(total)) / total[:, None]
     return means[group]
 
 

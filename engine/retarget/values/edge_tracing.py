@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from ...mesh.connectivity.edge_chains import edge_chains, way_to_root
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, ranges
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
 
@@ -282,7 +282,7 @@ def _sampled(points: Floats, spacing: float) -> tuple[Floats, Ints]:
     # An even number of parts, so that the middles of segments are among them.
     parts = 2 * np.maximum(np.ceil(lengths / (2 * spacing)), 1).astype(np.int64)
     segment = np.repeat(np.arange(len(parts)), parts)
-    step = np.arange(len(segment)) - np.repeat(np.cumsum(parts) - parts, parts)
+    step = ranges(np.zeros_like(parts), parts)
     part = (step / parts[segment])[:, None]
     samples = (1 - part) * points[segment] + part * points[segment + 1]
     return np.concatenate([samples, points[-1:]]), np.append(segment, len(parts) - 1)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...mesh.polygons import Polygons
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, group_sums
 from ...runtime.errors import MatchError
 from .face_correspondence import FacePlaces, FaceSamples
 
@@ -78,7 +78,6 @@ def majority(codes: Ints, owners: Ints, weights: Floats, count: int) -> Ints:
 
 def _means(values: Floats, samples: FaceSamples, count: int) -> Floats:
     """Mean of values (s, ...) at samples over each face, (count, ...)."""
-    columns = values.reshape(len(values), -1).T
     total = np.bincount(samples.faces, samples.weights, count)
-    sums = [np.bincount(samples.faces, samples.weights * column, count) for column in columns]
-    return (np.stack(sums, axis=1) / total[:, None]).reshape(count, *values.shape[1:])
+    sums = group_sums(samples.faces, samples.weights[:, None] * values.reshape(len(values), -1), count)
+    return (sums / total[:, None]).reshape(count, *values.shape[1:])

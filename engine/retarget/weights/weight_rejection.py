@@ -47,8 +47,7 @@ def torn_vertices(weights: csr_array, surface_map: SurfaceMap, parts: WeldedPart
         if the map makes it much longer and the weights of its ends have little in common: one without the other
         happens on good maps, where a body is fatter here than there, or triangles are large.
     """
-    mean = parts.mean_over(np.ones(parts.mesh.vertex_count, bool))
-    images, values = mean @ surface_map.positions, csr_array(mean @ weights)
+    images, values = parts.means @ surface_map.positions, csr_array(parts.means @ weights)
     a, b = parts.edges.T
     before = np.linalg.norm(parts.positions[a] - parts.positions[b], axis=1) / np.sqrt(parts.mesh.area)
     after = np.linalg.norm(images[a] - images[b], axis=1) / np.sqrt(image.area)

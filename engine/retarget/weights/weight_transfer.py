@@ -135,7 +135,7 @@ def carry_weights_steps(
     if fill_alone:
         result = filled(result, target_to_source.has_partner, parts)
     if parts.seams:
-        result = csr_array((parts.mean_over(np.ones(len(torn), bool)) @ result)[parts.welded])
+        result = csr_array((parts.means @ result)[parts.welded])
     return CarriedWeights(result, torn)
 
 

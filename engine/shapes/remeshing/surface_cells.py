@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, marked, numbered
+from ...runtime.arrays import Bools, Floats, Ints, group_sums, marked, numbered
 
 _LEAST_LENGTH = 1e-9  # of sqrt(area): an edge of length zero is no edge for a sparse graph
 _ASIDE = (1e-5, 3e-5, 2e-5)  # of sqrt(area): any direction that edges of a mesh are unlikely to have
@@ -72,10 +72,8 @@ class SurfaceCells:
         """Gather the vertices of a mesh by labels (n,), numbered from 0, every number used, each cell connected."""
         count = int(labels.max()) + 1
         sizes = np.bincount(labels, minlength=count)
-        positions, normals = (
-            np.stack([np.bincount(labels, column, count) for column in columns.T], axis=1) / sizes[:, None]
-            for columns in (mesh.vertices, mesh.vertex_normals)
-        )
+        vectors = mesh.vertices, mesh.vertex_normals
+        positions, normals = (group_sums(labels, values, count) / sizes[:, None] for values in vectors)
         areas: NDArray[Any] = np.bincount(labels, mesh.vertex_areas, count)
         at_boundary = marked(labels[mesh.boundary_edges], count)
 
@@ -87,22 +85,12 @@ class SurfaceCells:
         low, middle, high = np.sort(labels[mesh.triangles], axis=1).T
         characteristics += np.bincount(low[low == high], minlength=count)
         in_two = (low != high) & ((low == middle) | (middle == high))
-        triangles_of_pair = np.bincount(
-            np.searchsorted(edge_keys, low[in_two] * count + high[in_two]), minlength=len(edge_keys)
-        )
+        pair_of_triangle = np.searchsorted(edge_keys, low[in_two] * count + high[in_two])
+        triangles_of_pair = np.bincount(pair_of_triangle, minlength=len(edge_keys))
         in_three = (low != middle) & (middle != high)
-        return cls(
-            labels,
-            positions,
-            normals,
-            areas,
-            at_boundary,
-            characteristics,
-            np.stack(np.divmod(edge_keys, count), axis=1),
-            triangles_of_pair - edge_counts,
-            labels[mesh.triangles[in_three]],
-            float(np.sqrt(mesh.area)),
-        )
+        pairs, triples = np.stack(np.divmod(edge_keys, count), axis=1), labels[mesh.triangles[in_three]]
+        own = labels, positions, normals, areas, at_boundary, characteristics
+        return cls(*own, pairs, triangles_of_pair - edge_counts, triples, float(np.sqrt(mesh.area)))
 
     @cached_property
     def graph(self) -> csr_array:

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, marked
+from ...runtime.arrays import Floats, Ints, group_sums, marked
 from ...runtime.progress import Progress, Steps
 from .dual_triangulation import DualTriangulation, dual_triangulation
 from .sizing_field import vertex_density
@@ -127,8 +127,8 @@ def spread_regions_steps(cells: SurfaceCells, count: int) -> Steps[VoronoiRegion
         yield Progress(0.5 + 0.5 * number / (_LLOYD_STEPS + 1), _LABEL)
         _, labels = _nearest_seeds(cells, seeds)
         sums = np.bincount(labels, weights, len(seeds))
-        moments = [np.bincount(labels, weights * column, len(seeds)) for column in cells.positions.T]
-        centres = np.stack(moments, axis=1) / np.maximum(sums, np.finfo(float).tiny)[:, None]
+        moments = group_sums(labels, weights[:, None] * cells.positions, len(seeds))
+        centres = moments / np.maximum(sums, np.finfo(float).tiny)[:, None]
         offsets = cells.positions - centres[labels]
         seeds = nearest_members(labels, np.einsum("cd,cd->c", offsets, offsets), len(seeds))
     yield Progress(1 - 0.5 / (_LLOYD_STEPS + 1), _LABEL)
