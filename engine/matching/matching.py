@@ -204,11 +204,11 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     steps = piece_matched_steps(known, x, y, task, piece, of_source=of_source)
     result = yield from within(steps, 0.0, _CLOSER)
     enough = MUCH_ALIKE if overlap.credibility >= CLEAR else ALL_ALIKE
-    is_part = min(overlap.shares) < _SMALL_PART and shows_all_of_part(result, of_source=of_source)
-    if is_part and is_as_alike(result, enough):
+    is_clear = shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
+    if is_clear and min(overlap.shares) < _SMALL_PART:
         return result
-    # It wins if it is more credible, so it is given up as soon as it cannot be.
-    least = max(CREDIBLE, part_credibility(result, of_source=of_source)) - RISE
+    # All of both wins if that is more credible, so it is given up as soon as it cannot be.
+    least = part_credibility(result, of_source=of_source) - RISE if is_clear else task.least
     try:
         other = yield from within(_whole_steps(x, y, replace(task, least=least), _FIRST_AFTER), _CLOSER, 1.0)
     except MatchError:
