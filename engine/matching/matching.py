@@ -20,10 +20,10 @@ from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import CLEAR, overlap_match_steps
 from .partial_match import (
-    border_length,
     has_border,
     is_as_alike,
     is_better_part,
+    longest_border,
     part_credibility,
     part_matched_steps,
     piece_matched_steps,
@@ -49,7 +49,7 @@ _FIRST, _FIRST_OF_CLOSED = 0.45, 0.95
 if they are closed."""
 
 _CUT = 0.4
-"""Length of its border, in sqrt(area), from which on much may have been cut off a surface: around a thigh."""
+"""Length of a border, in sqrt(area), from which on much may have been cut off a surface: around a thigh."""
 
 _SHARED = 0.8
 """Part of both surfaces that is shared from which on all of them is matched as well: their sizes hardly differ."""
@@ -151,7 +151,7 @@ def match_steps(
     x, y = yield from within(_shapes_steps((source, target), excluded, known), 0.0, 0.06)
     if not settings.dense:
         result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
-    elif landmarks is None and (border_length(x) > _CUT or border_length(y) > _CUT) and not has_limbs(x, y):
+    elif landmarks is None and (longest_border(x) > _CUT or longest_border(y) > _CUT) and not has_limbs(x, y):
         result = yield from within(_overlapping_steps(x, y, task), 0.06, 1.0)
     else:
         end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
@@ -171,7 +171,7 @@ def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float) -> Steps[Match
 def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     """Match surfaces of which much may have been cut off: what they share first, and all of them if that is unclear."""
     overlap = yield from within(overlap_match_steps(x, y, task), 0.0, _OVERLAP)
-    cut = border_length(x) > _CUT, border_length(y) > _CUT
+    cut = longest_border(x) > _CUT, longest_border(y) > _CUT
     if overlap is not None and overlap.is_likely and min(overlap.shares) < _SHARED:
         if all(cut):
             return overlap.result

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..dense.components.masked_maps import share_of, with_piece_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, RISE, is_less_alike
+from ..mesh.connectivity.components import joined_components
 from ..runtime.errors import MatchError
 from ..runtime.progress import within
 from ..shapes.enclosing_surface import with_limbs_steps
@@ -25,10 +26,10 @@ if TYPE_CHECKING:
     from .shape_matching import MatchTask
 
 __all__ = [
-    "border_length",
     "has_border",
     "is_as_alike",
     "is_better_part",
+    "longest_border",
     "part_credibility",
     "part_matched_steps",
     "piece_matched_steps",
@@ -36,7 +37,7 @@ __all__ = [
 ]
 
 _LEAST_BORDER = 0.1
-"""Length of its border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
+"""Length of a border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
 
 _MISSING = 0.95
 """Part of either surface with a partner from which on what is missing does not matter: the size hardly differs."""
@@ -60,16 +61,18 @@ _FOUND = 0.45
 """Part of the work after which these pieces are known."""
 
 
-def border_length(shape: Shape) -> float:
-    """Measure the border of a surface, in sqrt(area)."""
+def longest_border(shape: Shape) -> float:
+    """Measure the longest border of a surface, in sqrt(area): faces that are missing here and there make short ones."""
     mesh = shape.mesh
-    ends = mesh.vertices[mesh.boundary_edges]
-    return float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()) / shape.scale
+    tails, heads = mesh.boundary_edges.T
+    lengths = np.linalg.norm(mesh.vertices[tails] - mesh.vertices[heads], axis=1)
+    borders = joined_components(mesh.vertex_count, tails, heads)[tails]
+    return float(np.bincount(borders, lengths).max(initial=0)) / shape.scale
 
 
 def has_border(shape: Shape) -> bool:
     """Say whether something may have been cut off a surface, which is open there."""
-    return border_length(shape) > _LEAST_BORDER
+    return longest_border(shape) > _LEAST_BORDER
 
 
 def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:

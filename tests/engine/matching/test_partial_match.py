@@ -6,11 +6,11 @@ import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, densify, match, match_steps
 from engine.matching.overlap_region import CoveredPart
-from engine.matching.partial_match import has_border, part_matched_steps
+from engine.matching.partial_match import has_border, longest_border, part_matched_steps
 from engine.matching.refinement import refine_map
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
-from tests.shapes import compacted, creature, icosphere, permuted, rotation
+from tests.shapes import compacted, creature, cylinder, icosphere, permuted, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
 
@@ -160,3 +160,10 @@ def test_another_correspondence_is_extended_over_what_the_half_shows(result, who
     dense = densify(whole[0], half[0], result.source_points, result.target_points, maps=maps)
     assert np.mean(errors(dense.target_to_source, half[1], whole[1])) < 0.02
     assert (dense.source_to_target.confidence[whole[1][:, 0] < -0.15] == 0).mean() > 0.95
+
+
+def test_the_longest_border_counts_and_not_all_of_them_together():
+    vertices, triangles = cylinder(60, 40)
+    one_end = 2 * np.pi / np.sqrt(2 * np.pi * 2)  # of a tube of radius 1 and height 2, in the root of its area
+    assert longest_border(Shape(TriangleMesh(vertices, triangles))) == pytest.approx(one_end, rel=0.01)
+    assert longest_border(Shape(TriangleMesh(*icosphere(8)))) == 0
