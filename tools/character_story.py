@@ -105,6 +105,7 @@ def tell(story: Story, camera: Camera) -> Iterator[float | None]:
 
 def tell_motion(story: Story, camera: Camera) -> Iterator[float | None]:
     """Go through the steps for a target that keeps its rig."""
+    _open_motion()
     yield from story.bring(camera)
     yield from story.carry(camera)
     yield from story.play(camera, carried=True)
@@ -162,8 +163,7 @@ class Story:
         check(self._made not in self._rigs, "The target is still moved by its own armature")
 
     def carry(self, camera: Camera) -> Iterator[float | None]:
-        """Unfold the panel for motion, pair the bones, and carry the action over to the target's own rig."""
-        _open_motion()
+        """Pair the bones, and carry the action over to the target's own rig."""
         action = _action_of(self._rigs[0])
         check(action is not None, "The source has no action")
         _assign(self._rigs[0], action)
@@ -284,11 +284,10 @@ class Story:
 
 
 def _open_motion() -> None:
-    """Fold the panels of HierMatch, and unfold the one for motion, as by clicks on their headers."""
-    panels: list[Any] = [
-        cls for cls in bpy.types.Panel.__subclasses__() if getattr(cls, "bl_category", "") == "HierMatch"
-    ]
-    for panel in panels:
+    """Let the panel for motion be unfolded and all others folded when they are drawn for the first time."""
+    (registration,) = (module for name, module in sys.modules.items() if name.endswith("hiermatch_addon.registration"))
+    panels: list[Any] = [cls for cls in registration.CLASSES if issubclass(cls, bpy.types.Panel)]
+    for panel in reversed(panels):
         bpy.utils.unregister_class(panel)
     for panel in panels:
         panel.bl_options = set() if panel.__name__ == "HIERMATCH_PT_motion" else {"DEFAULT_CLOSED"}
