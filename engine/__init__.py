@@ -45,7 +45,8 @@ from .retarget.wear.handed_weights import handed_weights
 from .retarget.wear.item_bones import bones_of_items, moved_with_items
 from .retarget.wear.key_following import follow_keys_steps
 from .retarget.wear.pose_mending import MendedWeights, WeightedItem, mend_weights_steps
-from .retarget.wear.wearing import FittedItem, WornItem, wear_steps
+from .retarget.wear.wearing import wear_steps
+from .retarget.wear.worn_item import FittedItem, WornItem
 from .retarget.weights.skin_weights import carried as carry_weights
 from .retarget.weights.skin_weights import row_sums, with_rows
 from .retarget.weights.standing_weights import standing_weights

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .wearing import FittedItem
+    from .worn_item import FittedItem
 
 __all__ = ["bones_of_items", "moved_with_items"]
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from ...runtime.progress import Steps
-    from .wearing import WornItem
+    from .worn_item import WornItem
 
 __all__ = ["follow_keys_steps"]
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress, within
@@ -140,7 +141,7 @@ def mend_weights_steps(
         np.where(depths[0] > _DEEPER * posed.unit, (depths[0] / (_FULLY * posed.unit)).clip(0, 1), 0.0)
         for depths in found
     ]
-    shares = [_spread(one.mesh, lack) for one, lack in zip(tried, lacking, strict=True)]
+    shares = [_spread(one.parts, lack) for one, lack in zip(tried, lacking, strict=True)]
     ways = [
         (one, one.lying & (share > 0), [one.item.weights, one.mixed(share)])
         for one, share in zip(tried, shares, strict=True)
@@ -149,7 +150,7 @@ def mend_weights_steps(
     results = []
     for one, lack, (before, after) in zip(tried, lacking, found, strict=True):
         helped = before - after > _CLEARLY * posed.unit
-        share = _spread(one.mesh, np.where(helped, lack, 0.0))
+        share = _spread(one.parts, np.where(helped, lack, 0.0))
         share[(after > _DEEPER * posed.unit) & (after - before > _WORSE * posed.unit)] = 0.0
         results.append(MendedWeights(one.mixed(share), share > 0))
     yield Progress(1.0, "Trying poses")
@@ -158,10 +159,10 @@ def mend_weights_steps(
 
 @dataclass(frozen=True, eq=False)
 class _Tried:
-    """An item with the skin's weights below it (n, b), vertices from which to search there, and what lies on it."""
+    """An item with its parts, the skin's weights below it (n, b), vertices to search from, and what lies on it."""
 
     item: WeightedItem
-    mesh: TriangleMesh
+    parts: WeldedParts
     of_skin: csr_array
     starts: NDArray[np.int64]
     lying: NDArray[np.bool_]
@@ -197,9 +198,9 @@ def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
     rest = posed.skin.clearance(item.positions, starts)
     lying = (row_sums(item.weights) > 0) & rest.known
     lying &= (rest.distances > _OUTSIDE * unit) & (rest.distances < _NEAR * unit)
-    mesh = TriangleMesh(item.positions, item.triangles)
+    parts = WeldedParts.of(TriangleMesh(item.positions, item.triangles))
     of_skin = csr_array(diags_array(row_sums(item.weights)) @ below @ posed.weights)
-    return _Tried(item, mesh, of_skin, starts, lying)
+    return _Tried(item, parts, of_skin, starts, lying)
 
 
 def _deepest_steps(
@@ -271,13 +272,14 @@ def _bent(
     return moved
 
 
-def _spread(item: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Let values (n,) fade out over rings of neighbours."""
-    tails, heads = item.edges.T
-    result = values
+def _spread(parts: WeldedParts, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Let values (n,) fade out over rings of neighbors; vertices that a seam parts have one."""
+    tails, heads = parts.edges.T
+    result = np.zeros(parts.welded_count)
+    np.maximum.at(result, parts.welded, values)
     for _ in range(_SMOOTHING):
-        around = np.zeros(len(values))
+        around = np.zeros(len(result))
         np.maximum.at(around, tails, result[heads])
         np.maximum.at(around, heads, result[tails])
         result = np.maximum(result, 0.6 * around)
-    return np.where(result > 0.01, result, 0.0)
+    return np.where(result > 0.01, result, 0.0)[parts.welded]

@@ -21,6 +21,8 @@ from .body_motion import BodyMotion
 from .contact import Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
 from .rigid_pieces import placed_rigidly, rigid_pieces
+from .sewn_items import cut_open, sewn
+from .worn_item import FittedItem, WornItem
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     from ...runtime.progress import Steps
     from .body_motion import Motion
 
-__all__ = ["FittedItem", "WornItem", "wear_steps"]
+__all__ = ["wear_steps"]
 
 _HOLD = 0.010
 """Over what length, in sqrt(area) of the body, an item at the skin smooths out how the skin under it moves."""
@@ -61,88 +63,6 @@ _TIGHT, _LOOSE = 0.4, 2.5
 """What tight and loose items multiply the length by over which they smooth."""
 
 
-@dataclass(frozen=True, eq=False)
-class WornItem:
-    """Something that the first body wears.
-
-    Attributes
-    ----------
-    mesh : TriangleMesh
-        Its surface, around the body, n vertices.
-    bones : (n, b) csr_array of float, optional
-        How much each of the body's bones moves each vertex.
-    fit : str
-        "AUTO"; "TIGHT", which follows each form of the skin; "LOOSE", which keeps its own shape; "RIGID", which keeps
-        it wholly and only grows; or "LEAVE", which is moved along but not pushed out.
-    rigid : (n,) array of bool, optional
-        Vertices of rigid pieces.
-    find_rigid : bool
-        Whether others are looked for.
-    pieces : (n,) array of int, optional
-        The rigid piece that each vertex belongs to, -1 where the item bends, if that is known: see `FittedItem`.
-    tightness : (n,) array of float, optional
-        From -1, loose, to 1, tight, at each vertex.
-    left : (n,) array of bool, optional
-        Vertices that are not pushed out.
-    margin : float
-        Least distance from the skin where the item was outside, in the second body's units.
-    """
-
-    mesh: TriangleMesh
-    bones: csr_array | None = None
-    fit: str = "AUTO"
-    rigid: NDArray[np.bool_] | None = None
-    find_rigid: bool = True
-    pieces: NDArray[np.int64] | None = None
-    tightness: NDArray[np.float64] | None = None
-    left: NDArray[np.bool_] | None = None
-    margin: float = 0.0
-
-    def __repr__(self) -> str:
-        return f"<WornItem: {self.mesh.vertex_count} vertices, fit {self.fit}>"
-
-
-@dataclass(frozen=True, eq=False)
-class FittedItem:
-    """An item on the second body.
-
-    Attributes
-    ----------
-    positions : (n, 3) array of float
-        Its vertices.
-    rotations : (n, 3, 3) array of float
-        How it turned around each.
-    scales : (n,) array of float
-        How many times as large it became.
-    places : (n, m) csr_array of float
-        What part of each vertex each of the m vertices of the first body carried; rows sum to one.
-    pieces : (n,) array of int
-        The rigid piece that each vertex belongs to, -1 where it bends.
-    clearance_before, clearance : (n,) array of float
-        Distance from the skin on the first body and on the second, each in its units, negative inside.
-    pushed : (n,) array of float
-        How far each was pushed, so that nothing pokes through.
-    confidence : (n,) array of float
-        How far the map may be trusted that it was carried by, 0 to 1.
-    through : float
-        What part of the item is still below what it should lie on, 0 to 1.
-    """
-
-    positions: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
-    places: csr_array
-    pieces: NDArray[np.int64]
-    clearance_before: NDArray[np.float64]
-    clearance: NDArray[np.float64]
-    pushed: NDArray[np.float64]
-    confidence: NDArray[np.float64]
-    through: float = 0.0
-
-    def __repr__(self) -> str:
-        return f"<FittedItem: {len(self.positions)} vertices, {self.pieces.max(initial=-1) + 1} rigid pieces>"
-
-
 @dataclass
 class _Work:
     """An item while it is fitted."""
@@ -170,7 +90,8 @@ def wear_steps(
 
     Each item moves with the skin near it, see `BodyMotion`, as an elastic surface that smooths this out: close to the
     skin hardly, far from it widely.  Rigid pieces are moved as they are and scaled.  Then items are pushed out of the
-    skin and of the items below them, from the innermost to the outermost, where they lay outside before.
+    skin and of the items below them, from the innermost to the outermost, where they lay outside before.  Seams at
+    which an item was cut open, as for UVs or sharp edges, stay closed.
 
     Parameters
     ----------
@@ -207,8 +128,8 @@ def wear_steps(
     unit, new_unit = float(np.sqrt(source.area)), motion.overall * float(np.sqrt(source.area))
     skin_before, skin = Surface(source, motion.skin), Surface(target)
     works: list[_Work] = []
-    count = max(len(items), 1)
-    for number, item in enumerate(items):
+    count, closed = max(len(items), 1), [sewn(item) for item in items]
+    for number, (item, _) in enumerate(closed):
         yield Progress(0.05 + 0.45 * number / count, "Moving items along")
         works.append(_carried(item, motion, skin_before, unit))
         _elastic(works[-1], unit)
@@ -228,7 +149,8 @@ def wear_steps(
             spacing=spacing,
         )
     yield Progress(0.95, "Measuring")
-    return [_fitted(work, skin, source_to_target) for work in works]
+    fitted = [_fitted(work, skin, source_to_target) for work in works]
+    return [cut_open(one, welded) for one, (_, welded) in zip(fitted, closed, strict=True)]
 
 
 def _carried(item: WornItem, motion: BodyMotion, skin: Surface, unit: float) -> _Work:

@@ -6,7 +6,8 @@ import pytest
 
 from engine import RigError, SurfaceMap, TriangleMesh, run
 from engine.retarget.wear.item_bones import bones_of_items, moved_with_items
-from engine.retarget.wear.wearing import WornItem, wear_steps
+from engine.retarget.wear.wearing import wear_steps
+from engine.retarget.wear.worn_item import WornItem
 from tests.engine.retarget.wear.test_wearing import BODY, SHIRT, TURN
 
 

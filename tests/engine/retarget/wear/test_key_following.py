@@ -6,7 +6,7 @@ import pytest
 
 from engine import ClosestPoints, MeshError, TriangleMesh, run
 from engine.retarget.wear.key_following import follow_keys_steps
-from engine.retarget.wear.wearing import WornItem
+from engine.retarget.wear.worn_item import WornItem
 from tests.engine.retarget.wear.test_wearing import BODY, BUTTON, SHIRT, ball, similarity_error
 
 HAT = ball(3, 0.2, (0.0, 0.0, 1.3))

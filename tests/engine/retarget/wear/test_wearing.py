@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from engine import ClosestPoints, MeshError, SurfaceMap, TriangleMesh, run
-from engine.retarget.wear.wearing import WornItem, wear_steps
+from engine.retarget.wear.wearing import wear_steps
+from engine.retarget.wear.worn_item import WornItem
 from tests.shapes import icosphere, rotation
 
 TURN = rotation([1.0, 2.0, -1.0], 1.1)
@@ -163,3 +164,17 @@ def test_folds_that_one_body_has_alone_do_not_shrink_a_rigid_piece():
     error = abs(similarity_error(glasses.vertices, fitted.positions)[1] - 1)
     assert error < 0.04
     assert error < 0.5 * abs(fitted.scales.mean() - 1)
+
+
+def test_an_item_that_is_cut_open_at_every_edge_is_fitted_as_a_whole():
+    loose = TriangleMesh(SHIRT.vertices[SHIRT.triangles.ravel()], np.arange(3 * SHIRT.triangle_count).reshape(-1, 3))
+    images = BODY.vertices * [1.5, 1.2, 1.0]
+    tight = np.where(SHIRT.vertices[:, 0] > 0, 1.0, 0.0)
+    left = SHIRT.vertices[:, 1] > 0.5
+    (whole,) = wear(BODY, images, [WornItem(SHIRT, tightness=tight, left=left)])
+    corners = SHIRT.triangles.ravel()
+    (opened,) = wear(BODY, images, [WornItem(loose, tightness=tight[corners], left=left[corners])])
+    for name in ("positions", "rotations", "clearance", "pieces"):
+        np.testing.assert_allclose(getattr(opened, name), getattr(whole, name)[corners], atol=1e-6)
+    assert opened.places.shape == (len(corners), BODY.vertex_count)
+    assert opened.through == whole.through
