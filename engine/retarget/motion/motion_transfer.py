@@ -77,6 +77,8 @@ class TransferredMotion:
         Which of them turn by themselves: those with partners.
     placed : (b,) array of bool
         Which also have a place of their own: the topmost ones, and those that hang elsewhere than on what holds them.
+    rooted : (b,) array of bool
+        Which of these hang on nothing that moves: they carry the body.
     scale : float
         How many times as long the target's legs are.
     """
@@ -84,6 +86,7 @@ class TransferredMotion:
     motion: Motion
     moved: NDArray[np.bool_]
     placed: NDArray[np.bool_]
+    rooted: NDArray[np.bool_]
     scale: float
 
     def __repr__(self) -> str:
@@ -165,7 +168,7 @@ def transfer_motion_steps(
         posed = body.posed(turns, paths)
     if settings.in_place and len(motion) > 1:
         posed = _in_place(posed, ups[1], np.flatnonzero(body.placed))
-    return TransferredMotion(posed, body.moved, body.placed, body.scale)
+    return TransferredMotion(posed, body.moved, body.placed, body.rooted, body.scale)
 
 
 def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: MotionSettings) -> None:
@@ -182,7 +185,9 @@ class _Body:
 
     def __init__(self, motion: Motion, pairing: BonePairing, target: Skeleton, ups: NDArray[np.float64]) -> None:
         self.source, self.pairing, self.target, self.ups = motion.skeleton, pairing, target, ups
-        self.segments = Segments.of(pairing.sources, pairing.targets, self.source, target).held_in(motion)
+        self.segments = (
+            Segments.of(pairing.sources, pairing.targets, self.source, target).held_in(motion).freed_in(motion)
+        )
         self.moved = np.zeros(len(target), bool)
         self.moved[pairing.targets] = True
         # Of each segment the bones that hang on no other of it.
@@ -190,11 +195,12 @@ class _Body:
             [int(bone) for bone in bones if not set(_ancestors(target, int(bone))) & set(bones.tolist())]
             for bones in self.segments.targets
         ]
-        self.placed = np.zeros(len(target), bool)
+        self.placed, self.rooted = np.zeros((2, len(target)), bool)
         self._holders = target.parents.copy()
         for part, above in enumerate(self.segments.parents):
             if above < 0 or not self.segments.carried[part]:
                 self.placed[self.tops[part]] = True
+                self.rooted[self.tops[part]] = above < 0
                 self._holders[self.tops[part]] = self.segments.targets[above][-1] if above >= 0 else -1
         self._order = self._in_order()
         self.limbs = limbs_of(self.segments, self.source, target, ups)

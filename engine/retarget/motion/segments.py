@@ -113,6 +113,24 @@ class Segments:
                 carried[top] = False
         return replace(self, parents=parents, carried=carried)
 
+    def freed_in(self, motion: Motion) -> Segments:
+        """Let go what carries most of the body and moves against what it hangs on, such as hips above a root.
+
+        Its place is then its own, as that of a top segment is.
+        """
+        parents = self.parents.copy()
+        reach = _FIXED * np.ptp(motion.skeleton.heads, axis=0).max()
+        for part in np.flatnonzero(self.parents >= 0):
+            below = sum(int(part) in self.above(other) for other in range(len(self)))
+            if 2 * (below + 1) <= len(self):
+                continue
+            joint, bone = self.sources[part][0], self.sources[self.parents[part]][-1]
+            offset = motion.skeleton.heads[joint] - motion.skeleton.heads[bone]
+            away = motion.heads[:, joint] - motion.heads[:, bone]
+            if np.abs(np.einsum("fji,fj->fi", motion.turns[:, bone], away) - offset).max() > reach:
+                parents[part] = -1
+        return replace(self, parents=parents)
+
 
 def _in_order(tree: Skeleton, bones: NDArray[np.int64]) -> NDArray[np.int64]:
     """Bones, each once, parents before children."""

@@ -2631,5 +2631,14 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
         "「{0}」にはすでに{1}という別の頂点グループがあります。先にその名前を変更してください。"
     ),
+    "Posing controls": "コントロールのポーズを求めています",
+    "Looking for controls": "コントロールを探しています",
+    '{0} of "{1}" was set so that its bones follow the controls with keys.': (
+        "「{1}」のボーンがキーのあるコントロールに従うように、{0}を設定しました。"
+    ),
+    'No control turns {0} of "{1}".': "「{1}」の{0}を回すコントロールがありません。",
+    '{0} of "{1}" could not be turned as they should be by their controls.': (
+        "「{1}」の{0}は、コントロールでは正しい向きにできませんでした。"
+    ),
 }
 """The translation of each English text."""

@@ -2113,5 +2113,14 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
         "“{0}”已有其他名为{1}的顶点组。请先重命名它们。"
     ),
+    "Posing controls": "正在摆放控制器",
+    "Looking for controls": "正在寻找控制器",
+    '{0} of "{1}" was set so that its bones follow the controls with keys.': (
+        "已设置“{1}”的{0}，使其骨骼跟随带关键帧的控制器。"
+    ),
+    'No control turns {0} of "{1}".': "没有控制器能转动“{1}”的{0}。",
+    '{0} of "{1}" could not be turned as they should be by their controls.': (
+        "“{1}”的{0}无法通过其控制器转到应有的方向。"
+    ),
 }
 """The translation of each English text."""

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from ....engine import BonePairing, TransferredMotion
     from ...scene.motion.motion_io import ActionKeys
 
-__all__ = ["BoneChannels", "baked_keys", "bone_channels", "sparse_frames", "sparse_keys"]
+__all__ = ["LOCATION", "BoneChannels", "baked_keys", "bone_channels", "sparse_frames", "sparse_keys"]
 
 SIDE_STEP = 0.05
 """Frames before and after a key at which its slopes are measured."""
 
-_LOCATION = 0.25
+LOCATION = 0.25
 """What a tolerance of one radian means for a location, in units of the rig's extent: about the length of a limb."""
 
 
@@ -53,7 +53,7 @@ def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[
             coarse = 0.5 if bone.rotation_mode == "QUATERNION" else 1.0  # a quaternion turns by half the angle
             channels.append(BoneChannels(bone.name, rotation_channel(bone.rotation_mode), values, coarse))
         if found.placed[number]:
-            channels.append(BoneChannels(bone.name, "location", local.locations[:, number], _LOCATION * extent))
+            channels.append(BoneChannels(bone.name, "location", local.locations[:, number], LOCATION * extent))
     return channels
 
 

@@ -34,6 +34,7 @@ from ...scene.motion.nla_strips import copy_strips
 from ...scene.motion.rigs import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of, two_rigs
 from .action_keys import SIDE_STEP, baked_keys, bone_channels, sparse_frames, sparse_keys
 from .bone_pairs import pairing_job
+from .steered_rig import found_again, is_steered, steered_steps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from ...scene.motion.motion_io import ActionKeys, BoneKeys
     from ..options.motion import MotionPlan
     from .bone_pairs import BonePairTransfer
+    from .steered_rig import SteeredRig
 
 __all__ = ["MotionJob"]
 
@@ -115,6 +117,7 @@ class MotionJob(SteppedJob):
             self._pairs = {uid: one for (_, uid), one in zip(waiting, made, strict=True)}
         self._found: dict[tuple[str, str], list[BoneKeys]] = {}
         self._poses: dict[str, TransferredMotion] = {}
+        self._steered: dict[str, SteeredRig] = {}
         super().__init__()
 
     def close(self) -> None:
@@ -152,12 +155,16 @@ class MotionJob(SteppedJob):
         for rig in rigs:
             before = next(paired) if rig.session_uid in self._pairs else None
             made = {action.name: self._write(rig, action, alone=len(actions) == 1) for action in actions}
+            steered = self._steered.get(rig.name)
             if not actions:
-                _set_pose(rig, self._poses[rig.name])
+                _set_pose(rig, self._poses[rig.name], steered)
             if self._plan.strips:
                 copy_strips(source, rig, made)
             moved = [row.target for row in rows_of(cast("bpy.types.Scene", context.scene), source, rig) if row.source]
-            report = TransferReport(_said(made), tuple(_notes(source, rig, actions, moved)))
+            if steered is not None:
+                moved = [name for name in moved if name in steered.controls.lost]
+            remarks = () if steered is None else steered.finished(rig)
+            report = TransferReport(_said(made), tuple(_notes(source, rig, actions, moved)), remarks)
             seconds = time.perf_counter() - self._begun
             if before is None:
                 done.append(Carried(rig.name, None, (report,), seconds))
@@ -172,7 +179,7 @@ class MotionJob(SteppedJob):
         return write_action(f"{action.name} {rig.name}", rig, action, keys, assign=assign)
 
     def _rigs(self) -> list[bpy.types.Object]:
-        return [_found_again(link) for link in (self._source, *self._targets)]
+        return [found_again(link) for link in (self._source, *self._targets)]
 
     def _action(self, name: str) -> bpy.types.Action:
         """Look an action up again."""
@@ -201,25 +208,31 @@ class MotionJob(SteppedJob):
 
     def _pairing_of(self, target: SideReference) -> BonePairing:
         """Return the pairs of one target: from the table, or just made."""
-        rig = _found_again(target)
+        rig = found_again(target)
         if rig.session_uid not in self._pairs:
-            return pairing_of(bpy.data.scenes[self._scene], _found_again(self._source), rig)
+            return pairing_of(bpy.data.scenes[self._scene], found_again(self._source), rig)
         pairing = cast("BonePairing", self._pairs[rig.session_uid].pairing)
         _check_channels(rig, pairing)
         return pairing
 
     def _pose_steps(self, pairings: list[BonePairing]) -> Steps[None]:
         """Carry the pose of the moment over."""
-        motion = current_motion(_found_again(self._source))
+        motion = current_motion(found_again(self._source))
         for link, pairing in zip(self._targets, pairings, strict=True):
             steps = self._transfer_steps(motion, pairing, link, MotionSettings(hands=self._plan.settings.hands))
-            self._poses[link.name] = yield from steps
+            found = self._poses[link.name] = yield from steps
+            steered = yield from steered_steps(link, found)
+            if steered is not None:
+                self._steered[link.name] = steered
+                yield from steered.posed_steps(link, found)
 
     def _action_steps(self, name: str, pairings: list[BonePairing]) -> Steps[None]:
         """Carry an action over."""
-        keys = read_keys(self._action(name), _found_again(self._source))
+        keys = read_keys(self._action(name), found_again(self._source))
         first, last = np.floor(keys.frames[0]), np.ceil(keys.frames[1])
         sparse = self._is_sparse(keys, last - first + 1)
+        if any(is_steered(found_again(link), pairing) for link, pairing in zip(self._targets, pairings, strict=True)):
+            sparse = False  # between keys, controls would turn otherwise than what they carry
         frames = sparse_frames(keys) if sparse else np.arange(first, last + 1)
         sampled = (frames[:, None] + np.array([-SIDE_STEP, 0, SIDE_STEP])).ravel() if sparse else frames
         motion = yield from within(self._reading_steps(name, sampled), 0.0, 0.5)
@@ -230,8 +243,15 @@ class MotionJob(SteppedJob):
         for number, (link, pairing) in enumerate(zip(self._targets, pairings, strict=True)):
             start, end = (0.5 + 0.5 * (number + step) / count for step in range(2))
             found = yield from within(self._transfer_steps(motion, pairing, link, settings), start, end)
-            rigs = _found_again(self._source), _found_again(link)
+            rigs = found_again(self._source), found_again(link)
             channels = bone_channels(rigs[1], found)
+            if link.name not in self._steered:
+                steered = yield from steered_steps(link, found)
+                if steered is not None:
+                    self._steered[link.name] = steered
+            if link.name in self._steered:
+                yield from self._steered[link.name].posed_steps(link, found)
+                channels = self._steered[link.name].channels(found_again(link), channels)
             if sparse:
                 made = sparse_keys(channels, frames, keys, pairing, rigs)
             else:
@@ -245,16 +265,16 @@ class MotionJob(SteppedJob):
             return False
         if plan.keys == "SOURCE":
             return True
-        return len(sparse_frames(keys)) < _FEW * count and not needs_evaluation(_found_again(self._source))
+        return len(sparse_frames(keys)) < _FEW * count and not needs_evaluation(found_again(self._source))
 
     def _reading_steps(self, name: str, frames: NDArray[np.float64]) -> Steps[Motion]:
         """Read the source's poses in frames (f,), some at a time."""
         parts = []
-        evaluated = needs_evaluation(_found_again(self._source))
+        evaluated = needs_evaluation(found_again(self._source))
         size = _EVALUATED_CHUNK if evaluated else _CHUNK
         for start in range(0, len(frames), size):
             yield Progress(start / len(frames), "Reading motion")
-            rig, action, some = _found_again(self._source), self._action(name), frames[start : start + size]
+            rig, action, some = found_again(self._source), self._action(name), frames[start : start + size]
             if evaluated:
                 parts.append(evaluated_frames(bpy.data.scenes[self._scene], action, rig, some))
             else:
@@ -266,23 +286,9 @@ class MotionJob(SteppedJob):
         self, motion: Motion, pairing: BonePairing, link: SideReference, settings: MotionSettings
     ) -> Steps[TransferredMotion]:
         """Compute the motion of one target."""
-        rigs = _found_again(self._source), _found_again(link)
+        rigs = found_again(self._source), found_again(link)
         ups = np.array([object_rotation(rig)[2] for rig in rigs])  # the world's z axis in their spaces
         return (yield from transfer_motion_steps(motion, pairing, own_skeleton(rigs[1]), settings, ups=ups))
-
-
-def _found_again(reference: SideReference) -> bpy.types.Object:
-    """Look an armature up again.
-
-    Raises
-    ------
-    ObjectError
-        If it was deleted.
-    """
-    found = reference.find()
-    if found is None:
-        raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
-    return rig_of(found)
 
 
 def _said(made: dict[str, bpy.types.Action]) -> str:
@@ -294,7 +300,7 @@ def _said(made: dict[str, bpy.types.Action]) -> str:
 
 
 def _check_channels(rig: bpy.types.Object, pairing: BonePairing) -> None:
-    """Make sure that the rotations of all bones with partners may be changed.
+    """Make sure that the rotations of all bones with partners may be changed; controls of others are sought later.
 
     Raises
     ------
@@ -304,15 +310,15 @@ def _check_channels(rig: bpy.types.Object, pairing: BonePairing) -> None:
     bones = cast("bpy.types.Pose", rig.pose).bones
     paired = [bones[int(number)] for number in np.unique(pairing.targets)]
     locked = [bone.name for bone in paired if any(cast("Any", bone.lock_rotation))]
-    if locked:
+    if locked and not is_steered(rig, pairing):
         raise ObjectError(
             f'The rotation of {listed(locked)} of "{rig.name}" is locked. Unlock it (in the sidebar: Item), or clear '
             "these bones in the table of pairs."
         )
 
 
-def _set_pose(rig: bpy.types.Object, found: TransferredMotion) -> None:
-    """Pose an armature as computed: bones with partners only."""
+def _set_pose(rig: bpy.types.Object, found: TransferredMotion, steered: SteeredRig | None) -> None:
+    """Pose an armature as computed: bones with partners, or what turns them, only."""
     bones = cast("bpy.types.Pose", rig.pose).bones
     inherits = np.array([bone.use_inherit_rotation for bone in armature_of(rig).bones], bool)
     local = local_transforms(found.motion, rest_matrices(rig)[:, :3, :3], inherits)
@@ -323,7 +329,7 @@ def _set_pose(rig: bpy.types.Object, found: TransferredMotion) -> None:
             basis[:3, :3] = local.rotations[0, number]
             basis[:3, 3] = local.locations[0, number] if found.placed[number] else bone.location
             bases[bone.name] = basis
-    set_pose(rig, bases)
+    set_pose(rig, bases if steered is None else steered.bases(bases))
 
 
 def _notes(

@@ -53,6 +53,22 @@ def test_a_foot_that_hangs_on_nothing_is_held_by_the_leg_that_ends_in_it():
     assert segments.held_in(Motion(bones, turns, apart)).parents.tolist() == [-1, 0, 1, -1]
 
 
+def test_hips_that_move_above_a_root_have_a_place_of_their_own():
+    parents = [-1, 0, 1, 2]
+    heads = np.array([[0.0, 0, number] for number in range(4)])
+    bones = Skeleton(np.array(parents), heads, heads + np.array([0, 0, 1]))
+    segments = Segments.of(np.arange(4), np.arange(4), bones, bones)
+    places, turns = np.tile(heads, (5, 1, 1)), np.tile(np.eye(3), (5, 4, 1, 1))
+    assert segments.freed_in(Motion(bones, turns, places)).parents.tolist() == parents
+    walking = places + np.linspace(0, 3, 5)[:, None, None] * [0, 1, 0]
+    assert segments.freed_in(Motion(bones, turns, walking)).parents.tolist() == parents  # the root walks
+    walking[:, 0] = heads[0]
+    assert segments.freed_in(Motion(bones, turns, walking)).parents.tolist() == [-1, -1, 1, 2]
+    stretched = places.copy()
+    stretched[:, 3, 2] += np.linspace(0, 1, 5)  # a part that carries little stays where it hangs
+    assert segments.freed_in(Motion(bones, turns, stretched)).parents.tolist() == parents
+
+
 def test_without_pairs_there_are_none():
     nothing = np.zeros(0, np.int64)
     assert len(Segments.of(nothing, nothing, tree([-1]), tree([-1]))) == 0
