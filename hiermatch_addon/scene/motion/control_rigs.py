@@ -187,7 +187,7 @@ def chosen_controls(
         With which it was tried; of all that was tried if not given, without any if that is enough.
     """
     pose = cast("bpy.types.Pose", armature.pose).bones
-    turning, needed, lost = {}, [], []
+    turning, needed, lost = dict[str, str](), list[Switch](), list[str]()
     for bone in found.bones:
         ranks = {}
         for (tried, name), followers in found.followers.items():
@@ -206,11 +206,10 @@ def chosen_controls(
         else:
             lost.append(bone)
     parents = {bone: getattr(armature_of(armature).bones[bone].parent, "name", "") for bone in lost}
-    for bone in list(
-        lost
-    ):  # what hangs on a bone and turns with its control, as the lower half of an arm in two pieces
-        tried = [each for (_, name), each in found.followers.items() if name == turning.get(parents[bone])]
-        if any(each[bone][0] <= _FOLLOWS for each in tried):
+    # What hangs on a bone may turn with its control, as the lower half of an arm in two pieces.
+    for bone in list(lost):
+        beside = [each for (_, name), each in found.followers.items() if name == turning.get(parents[bone])]
+        if any(each[bone][0] <= _FOLLOWS for each in beside):
             lost.remove(bone)
     return Controls(turning, (), switches or tuple(dict.fromkeys(needed)), tuple(lost))
 
@@ -227,7 +226,7 @@ def with_carrier(found: Candidates, controls: Controls, placed: Sequence[str]) -
     placed : sequence of str
         The bones that get a place.
     """
-    turning, places = dict(controls.turning), []
+    turning, places = dict(controls.turning), list[str]()
     for bone in placed:
         ways = {
             name: followers[bone][1]
@@ -332,7 +331,7 @@ def _pose(bone: Any, start: Matrix, wished: tuple[NDArray[np.float64], ...], *, 
 def _levels(armature: bpy.types.Object, controls: list[str]) -> list[set[str]]:
     """Sort controls so that each comes after all that it follows."""
     above = {name: set(_above(armature, name)[1:]) & set(controls) - {name} for name in controls}
-    levels, done = [], set[str]()
+    levels, done = list[set[str]](), set[str]()
     while len(done) < len(controls) and len(levels) < _LEVELS:
         ready = {name for name in controls if name not in done and above[name] <= done}
         ready = ready or {name for name in controls if name not in done}
@@ -433,8 +432,8 @@ def _at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator
             animation.action = before[0]
             if before[1] is not None:
                 animation.action_slot = before[1]
-        for bone, values in zip(pose, stood, strict=True):
-            for channel, value in zip(_CHANNELS, values, strict=True):
+        for bone, channels in zip(pose, stood, strict=True):
+            for channel, value in zip(_CHANNELS, channels, strict=True):
                 setattr(bone, channel, value)
         armature.update_tag(refresh={"OBJECT", "DATA", "TIME"})
         _update()

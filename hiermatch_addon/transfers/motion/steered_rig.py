@@ -74,7 +74,7 @@ class SteeredRig:
     def channels(self, armature: bpy.types.Object, plain: list[BoneChannels]) -> list[BoneChannels]:
         """Make the channels of the controls; bones without one that may be turned keep theirs (`plain`)."""
         pose = cast("bpy.types.Pose", armature.pose).bones
-        locked = {bone.name for bone in pose if any(bone.lock_rotation)}  # type: ignore[arg-type]
+        locked = {bone.name for bone in pose if any(bone.lock_rotation)}
         tree = own_skeleton(armature)
         extent = float(np.ptp(np.concatenate([tree.heads, tree.tails]), axis=0).max())
         made = [each for each in plain if each.bone in self.controls.lost and each.bone not in locked]
