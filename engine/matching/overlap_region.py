@@ -287,7 +287,7 @@ class _Fitter:
     """Registers pieces of the whole to the part."""
 
     is_sent_once = True
-    """See `sharing.shared_steps`."""
+    """See `parallel_map.shared_steps`."""
 
     def __init__(self, whole: Shape, part: Shape) -> None:
         self.whole, self.part = whole, part

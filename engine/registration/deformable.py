@@ -58,7 +58,7 @@ class DeformableSurface:
     """
 
     is_sent_once = True
-    """See `sharing.shared_steps`."""
+    """See `parallel_map.shared_steps`."""
 
     def __init__(self, mesh: TriangleMesh, laplace: LaplaceBeltrami) -> None:
         self.mesh = mesh

@@ -195,7 +195,7 @@ class _Matcher:
     """Finds for each point of one surface the point of the other that is most like it, and the other way round."""
 
     is_sent_once = True
-    """See `sharing.shared_steps`."""
+    """See `parallel_map.shared_steps`."""
 
     def __init__(
         self, source: DeformableSurface, target: DeformableSurface, stage: Stage, guides: Guides | None

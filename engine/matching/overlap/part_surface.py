@@ -58,7 +58,7 @@ class PartSurface:
     """
 
     is_sent_once = True
-    """See `sharing.shared_steps`."""
+    """See `parallel_map.shared_steps`."""
 
     def __init__(self, mesh: TriangleMesh, ids: NDArray[np.int64] | None = None) -> None:
         self.mesh = mesh
