@@ -81,24 +81,28 @@ class SideReference:
     ----------
     name : str
         What it was called.
-    uids : tuple of int
-        By which Blender knows its parts.
+    parts : tuple of str and int
+        What each of its parts was called, and by what number Blender knows it.
     """
 
     name: str
-    uids: tuple[int, ...]
+    parts: tuple[tuple[str, int], ...]
 
     @classmethod
     def of(cls, side: Side) -> SideReference:
         """Take what a side is known by."""
-        return cls(side.name, tuple(part.session_uid for part in parts_of(side)))
+        return cls(side.name, tuple((part.name, part.session_uid) for part in parts_of(side)))
 
     def find(self) -> Side | None:
         """Look the side up again; None if a part of it is gone."""
-        found = {obj.session_uid: obj for obj in bpy.data.objects if obj.session_uid in self.uids}
-        if len(found) < len(self.uids):
+        objects = bpy.data.objects
+        named = [(objects.get(name), uid) for name, uid in self.parts]
+        found = {uid: obj for obj, uid in named if obj is not None and obj.session_uid == uid}
+        if len(found) < len(self.parts):  # renamed, or gone: only then all objects of the file are looked through
+            found = {obj.session_uid: obj for obj in objects}
+        if any(uid not in found for _, uid in self.parts):
             return None
-        parts = tuple(found[uid] for uid in self.uids)
+        parts = tuple(found[uid] for _, uid in self.parts)
         return parts[0] if len(parts) == 1 else Character(self.name, parts)
 
 

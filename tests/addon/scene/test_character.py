@@ -215,3 +215,12 @@ class TestSurface:
         rig = read_rig(side)
         np.testing.assert_array_equal(rig.weights.toarray()[own, rig.names.index("head")], 1)
         assert rig.weights[own].sum() == own.stop - own.start
+
+
+def test_a_side_is_found_again_though_others_take_its_names():
+    first, second = add_blob("First"), add_blob("Second")
+    reference = SideReference.of(first)
+    first.name, second.name = "Elsewhere", "First"
+    assert reference.find() is first
+    bpy.data.objects.remove(first)
+    assert reference.find() is None
