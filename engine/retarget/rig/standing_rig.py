@@ -72,8 +72,10 @@ def carry_standing_rig(
 ) -> PlacedJoints:
     """Carry a rig that stands in a body; see `carry_standing_rig_steps`."""
     maps = source_to_target, target_to_source
-    how = {"skeleton": skeleton, "normals": normals, "frames": frames, "space": space}
-    return run(carry_standing_rig_steps(source, target, *maps, **how))
+    steps = carry_standing_rig_steps(
+        source, target, *maps, skeleton=skeleton, normals=normals, frames=frames, space=space
+    )
+    return run(steps)
 
 
 @can_go_beside
