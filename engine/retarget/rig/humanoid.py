@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 __all__ = ["humanoid_bones"]
 
 _ON_GROUND = 0.1
-"""How high the end of a leg is at most, in units of the height of the rig."""
+"""How high the end of a leg is at most, in units of the height of the rig.  With these numbers the bones of MakeHuman's
+four standard rigs are all found, by names that are known (`humanoid_bones`)."""
+
+_HIGH = 0.7
+"""How high a bone with a trunk above it reaches at least, in units of the height of the rig."""
 
 _ANKLE = 0.3
 """How high an ankle is at most, in units of the height of the hip."""
@@ -103,7 +107,7 @@ class _Tree:
         self.leaves = [int(b) for b in np.flatnonzero(self.used) if not self._children[b]]
         self.heights = skeleton.heads @ up
         ends = np.concatenate([self.heights[deforming], (skeleton.tails @ up)[self.leaves]])
-        self.low, self.height = float(ends.min()), max(float(np.ptp(ends)), float(np.finfo(float).tiny))
+        self.low, self.height = float(ends.min()), float(np.maximum(np.ptp(ends), np.finfo(float).tiny))
 
     def children(self, bone: int) -> list[int]:
         """Return the bones that hang directly on a bone."""
@@ -140,7 +144,8 @@ class _Tree:
     def legs(self) -> tuple[int, list[list[int]]]:
         """Find the bone on which both legs hang, and the bones of each."""
         low = [tip for tip in self.leaves if self.level(tip) < _ON_GROUND]
-        best, found = -1, []
+        best = -1
+        found: list[list[int]] = []
         for bone in np.flatnonzero(self.used):
             branches = [child for child in self.children(int(bone)) if set(self.tips(child)) & set(low)]
             long = [self._longest(int(bone), child, low) for child in branches]
@@ -156,7 +161,7 @@ class _Tree:
     def arms(self, hips: int, legs: list[list[int]]) -> tuple[int, list[list[int]], int]:
         """Find the bone of legs and spine, the bones of both arms, and the one on which they hang."""
         trunk = next(
-            (b for b in self.above(hips) if self.heights[self.below(b)].max() > self.low + 0.7 * self.height), hips
+            (b for b in self.above(hips) if self.heights[self.below(b)].max() > self.low + _HIGH * self.height), hips
         )
         taken = {each for way in legs for each in self.below(way[0])}
         side = self.bones.heads[_leg(self, legs[0])[0]] - self.bones.heads[_leg(self, legs[1])[0]]
