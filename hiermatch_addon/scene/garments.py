@@ -197,9 +197,15 @@ def fitted_copy(
     keys = keys_of(copy)
     if keys is None:
         return copy, []
-    theirs = [found for part in (largest, *parts_of(target)) if (found := keys_of(part)) is not None]
-    every: dict[bpy.types.ID, tuple[bpy.types.ID, ...]] = {mine: (other,) for mine, other in places.items()}
-    every |= {found: tuple(theirs) for part in parts_of(source) if (found := keys_of(part)) is not None}
+    theirs: list[bpy.types.ID] = []
+    every: dict[bpy.types.ID, list[bpy.types.ID]] = {mine: [other] for mine, other in places.items()}
+    for part in (largest, *parts_of(target)):
+        found = keys_of(part)
+        theirs += [] if found is None else [found]
+    for part, others in (*((part, theirs) for part in parts_of(source)), (item, [keys])):
+        own = keys_of(part)
+        if own is not None:
+            every[own] = others
     return copy, point_key_drivers(keys, every)
 
 

@@ -57,7 +57,8 @@ def read_body_keys(context: bpy.types.Context, body: Side) -> BodyKeys:
     """Read the shape keys of all parts of a body that clothes can follow: not those that draw it in below them."""
     absolute = [part.name for part in parts_of(body) if (keys := keys_of(part)) is not None and not keys.use_relative]
     names = [name for name in all_key_names(body) if name != COVERED and key_holder(body, name).name not in absolute]
-    settings, offsets = [], []
+    settings: list[KeySettings] = []
+    offsets: list[NDArray[np.float64]] = []
     for name in names:
         keys = cast("bpy.types.Key", keys_of(key_holder(body, name)))
         read = KeySettings.of(keys.key_blocks[name], ())
