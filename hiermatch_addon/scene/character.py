@@ -96,10 +96,11 @@ class SideReference:
     def find(self) -> Side | None:
         """Look the side up again; None if a part of it is gone."""
         objects = bpy.data.objects
-        named = [(objects.get(name), uid) for name, uid in self.parts]
-        found: dict[int, bpy.types.Object] = {
-            uid: obj for obj, uid in named if obj is not None and obj.session_uid == uid
-        }
+        found: dict[int, bpy.types.Object] = {}
+        for name, uid in self.parts:
+            obj = cast("bpy.types.Object | None", objects.get(name))
+            if obj is not None and obj.session_uid == uid:
+                found[uid] = obj
         if len(found) < len(self.parts):  # renamed, or gone: only then all objects of the file are looked through
             found = {obj.session_uid: obj for obj in objects}
         if any(uid not in found for _, uid in self.parts):

@@ -202,10 +202,10 @@ def fitted_copy(
     for part in (largest, *parts_of(target)):
         found = keys_of(part)
         theirs += [] if found is None else [found]
-    for part, others in (*((part, theirs) for part in parts_of(source)), (item, [keys])):
+    for part in (*parts_of(source), item):
         own = keys_of(part)
         if own is not None:
-            every[own] = others
+            every[own] = [keys] if part is item else theirs
     return copy, point_key_drivers(keys, every)
 
 
