@@ -4,28 +4,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..dense.credibility import EVEN, MUCH_ALIKE, RISE
+from ..runtime.arrays import Bools
 from ..runtime.errors import MatchError
-from ..runtime.progress import within
+from ..runtime.progress import Steps, within
 from ..shapes.enclosing_surface import separate_limbs, with_limbs_steps
 from ..shapes.landmarks import landmark_pairs
+from ..shapes.shape import Shape
 from .partial_match import has_border
 from .pieced_body import PiecedBody, resized_share, torn_share, without_partner
-from .shape_matching import matched_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..runtime.progress import Steps
-    from ..shapes.shape import Shape
-    from .result import MatchResult
-    from .shape_matching import MatchTask
-
-__all__ = ["has_limbs", "matched_with_pieces_steps"]
+from .result import MatchResult
+from .shape_matching import MatchTask, matched_steps
 
 _ALIKE = 0.1
 """By how much the main parts may differ, as parts of their bodies, for the pieces to be matched one by one at first."""
@@ -156,7 +148,7 @@ def _partnered(result: MatchResult) -> float:
     return min(quality.coverage, quality.source_coverage) * (1 - quality.pieces_alone)
 
 
-def _body(shape: Shape, limbs: NDArray[np.bool_]) -> PiecedBody:
+def _body(shape: Shape, limbs: Bools) -> PiecedBody:
     """Take what of a mesh is of the main part, or of limbs (n,)."""
     parts = shape.surface.cleaned.vertex_parts
     return PiecedBody(shape.original, np.where(limbs | (parts == 0), parts, -1))

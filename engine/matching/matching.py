@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, RISE
 from ..hierarchical.settings import MatchSettings
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, run, within
 from ..runtime.worker import call_helpers
-from ..shapes.prepared_surface import prepared_steps
+from ..shapes.known_shapes import KnownShapes
+from ..shapes.prepared_surface import PreparedSurface, prepared_steps
 from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
-from .overlap.overlap_match import CLEAR, overlap_match_steps
+from .overlap.overlap_match import CLEAR, OverlapMatch, overlap_match_steps
 from .partial_match import (
     has_border,
     is_as_alike,
@@ -29,20 +32,10 @@ from .partial_match import (
     piece_matched_steps,
     shows_all_of_part,
 )
+from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..shapes.known_shapes import KnownShapes
-    from ..shapes.prepared_surface import PreparedSurface
-    from .overlap.overlap_match import OverlapMatch
-    from .result import MatchResult
-
-    _Unprepared = tuple[TriangleMesh, str, NDArray[np.bool_] | None]
-
-__all__ = ["match", "match_steps"]
+_Unprepared = tuple[TriangleMesh, str, Bools | None]
 
 _FIRST, _FIRST_OF_CLOSED = 0.45, 0.95
 """Part of the work after which surfaces have been matched as they are, if one of them may be a part of the other, and

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
@@ -17,21 +16,16 @@ from ..dense.missing_parts import with_partner
 from ..dense.registered_hypotheses import Follower
 from ..dense.spectral_domain import MapDomain
 from ..geometry.best_distinct import best_distinct
+from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.deformable import DeformableSurface
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
 from ..shapes.shape import Shape
 from .partial_placement import part_placements_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.surface_map import SurfaceMap
-
-__all__ = ["CoveredPart", "best_and_rivals", "continued", "covered_parts_steps"]
 
 _VERTICES = 2000
 """Vertices of the coarse surfaces on which parts are looked for."""
@@ -94,7 +88,7 @@ class CoveredPart:
         Smaller is more credible; comparable between pieces, and between the two ways round.
     """
 
-    covered: NDArray[np.bool_]
+    covered: Bools
     score: float
 
 
@@ -104,7 +98,7 @@ class _Proposal:
 
     piece: Shape
     hypothesis: MapHypothesis
-    places: NDArray[np.float64]
+    places: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +118,8 @@ class _Fit:
     """
 
     score: float
-    places: NDArray[np.float64]
-    overhanging: NDArray[np.bool_]
+    places: Floats
+    overhanging: Bools
     unit: float
 
 
@@ -180,7 +174,7 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     return [CoveredPart(coarse.surface.spread(c.astype(np.float64), 0.0) > 1 / 2, score) for c, score in found]
 
 
-def best_and_rivals(scores: NDArray[np.float64], places: NDArray[np.float64], count: int, worse: float) -> list[int]:
+def best_and_rivals(scores: Floats, places: Floats, count: int, worse: float) -> list[int]:
     """Choose the best ways to lay a part onto a whole, and some more that differ from all of these.
 
     Parameters
@@ -210,9 +204,7 @@ def best_and_rivals(scores: NDArray[np.float64], places: NDArray[np.float64], co
     )
 
 
-def continued(
-    whole: Shape, part: Shape, places: NDArray[np.float64], overhanging: NDArray[np.bool_], unit: float
-) -> NDArray[np.bool_]:
+def continued(whole: Shape, part: Shape, places: Floats, overhanging: Bools, unit: float) -> Bools:
     """Tell where the whole goes on beyond a piece of it that was cut out too small, without a leg of the part.
 
     Parameters
@@ -244,11 +236,10 @@ def continued(
     longest = np.zeros(len(ends))
     np.maximum.at(longest, numbers, unit * lengths)
     distances = dijkstra(whole.solver.graph, directed=False, indices=ends, limit=float(longest.max()))
-    near: NDArray[np.bool_] = (distances <= longest[:, None]).any(axis=0)
-    return near
+    return (distances <= longest[:, None]).any(axis=0)
 
 
-def _registered_steps(fitter: _Fitter, starts: list[tuple[NDArray[np.bool_], NDArray[np.int64]]]) -> Steps[list[_Fit]]:
+def _registered_steps(fitter: _Fitter, starts: list[tuple[Bools, Ints]]) -> Steps[list[_Fit]]:
     """Compare pieces with the part, and register the most credible ones and their rivals."""
     proposed = yield from within(shared_steps(_proposed_steps, fitter, starts), 0.0, 0.6)
     proposals = [proposal for proposal in proposed if proposal is not None]
@@ -259,7 +250,7 @@ def _registered_steps(fitter: _Fitter, starts: list[tuple[NDArray[np.bool_], NDA
     return (yield from within(steps, 0.6, 1.0))
 
 
-def _proposed_steps(fitter: _Fitter, start: tuple[NDArray[np.bool_], NDArray[np.int64]]) -> Steps[_Proposal | None]:
+def _proposed_steps(fitter: _Fitter, start: tuple[Bools, Ints]) -> Steps[_Proposal | None]:
     """Compare a piece with the part."""
     return (yield from fitter.proposal_steps(*start))
 
@@ -269,7 +260,7 @@ def _fitted_steps(fitter: _Fitter, proposal: _Proposal) -> Steps[_Fit]:
     return (yield from fitter.fit_steps(proposal))
 
 
-def _refined_steps(fitter: _Fitter, start: tuple[NDArray[np.bool_], NDArray[np.int64], int]) -> Steps[list[_Fit]]:
+def _refined_steps(fitter: _Fitter, start: tuple[Bools, Ints, int]) -> Steps[list[_Fit]]:
     """Register a piece where it is known to lie, then again, so many times, what that covers."""
     refined: list[_Fit] = []
     covered, images, rounds = start
@@ -293,40 +284,35 @@ class _Fitter:
         self.whole, self.part = whole, part
         self._surface = DeformableSurface(part.mesh, part.laplace)
 
-    def roughly_covered(self, images: NDArray[np.int64]) -> NDArray[np.bool_]:
+    def roughly_covered(self, images: Ints) -> Bools:
         """Tell which vertices of the whole (n,) are near to samples that something goes to."""
-        near: NDArray[np.bool_] = self.whole.sample_rows[np.unique(images)].min(axis=0) < _ROUGHLY
-        return near
+        return self.whole.sample_rows[np.unique(images)].min(axis=0) < _ROUGHLY
 
-    def covered(self, fit: _Fit) -> NDArray[np.bool_]:
+    def covered(self, fit: _Fit) -> Bools:
         """Tell which vertices of the whole (n,) are near to the part's vertices or the middles of its triangles."""
         mesh = self.whole.mesh
         places = np.concatenate([fit.places, fit.places[self.part.mesh.triangles].mean(axis=1)])
         spacing = np.sqrt(mesh.area / mesh.vertex_count)
-        near: NDArray[np.bool_] = cKDTree(places).query(mesh.vertices)[0] < _SPACINGS * spacing
-        return near
+        return cKDTree(places).query(mesh.vertices)[0] < _SPACINGS * spacing
 
-    def grown(self, fit: _Fit) -> NDArray[np.bool_]:
+    def grown(self, fit: _Fit) -> Bools:
         """Tell where the whole (n,) goes on beyond a piece, see `continued`."""
         return continued(self.whole, self.part, fit.places, fit.overhanging, fit.unit)
 
-    def start(self, fit: _Fit) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+    def start(self, fit: _Fit) -> tuple[Bools, Ints]:
         """Tell what of the whole a registration covers, (n,), and its samples that those of the part go to."""
         return self.covered(fit) | self.grown(fit), self.nearest_samples(fit.places[self.part.samples])
 
-    def nearest_samples(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
+    def nearest_samples(self, places: Floats) -> Ints:
         """Find the samples of the whole that are nearest to places (k, 3)."""
-        found: NDArray[np.int64] = cKDTree(self.whole.mesh.vertices[self.whole.samples]).query(places)[1]
-        return found
+        return cKDTree(self.whole.mesh.vertices[self.whole.samples]).query(places)[1]
 
-    def common_part(self, first: NDArray[np.bool_], second: NDArray[np.bool_]) -> float:
+    def common_part(self, first: Bools, second: Bools) -> float:
         """Area that two pieces of the whole, (n,) each, have in common, as a part of that of both together."""
         areas = self.whole.mesh.vertex_areas
         return float(areas @ (first & second)) / max(float(areas @ (first | second)), float(np.finfo(float).tiny))
 
-    def proposal_steps(
-        self, covered: NDArray[np.bool_], images: NDArray[np.int64], *, known: bool = False
-    ) -> Steps[_Proposal | None]:
+    def proposal_steps(self, covered: Bools, images: Ints, *, known: bool = False) -> Steps[_Proposal | None]:
         """Cut a piece out of the whole and compare it with the part; None if it is too small for that.
 
         If the images of the part's samples are known well, functional maps would only make them worse.

@@ -4,37 +4,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import share_of, with_piece_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, RISE, is_less_alike
 from ..mesh.connectivity.components import joined_components
+from ..runtime.arrays import Bools
 from ..runtime.errors import MatchError
-from ..runtime.progress import within
+from ..runtime.progress import Steps, within
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.shape import Shape
 from .overlap_region import continued, covered_parts_steps
-from .shape_matching import matched_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..runtime.progress import Steps
-    from .result import MatchResult
-    from .shape_matching import MatchTask
-
-__all__ = [
-    "has_border",
-    "is_as_alike",
-    "is_better_part",
-    "longest_border",
-    "part_credibility",
-    "part_matched_steps",
-    "piece_matched_steps",
-    "shows_all_of_part",
-]
+from .result import MatchResult
+from .shape_matching import MatchTask, matched_steps
 
 _LEAST_BORDER = 0.1
 """Length of a border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
@@ -124,14 +108,7 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
 
 
 def piece_matched_steps(
-    result: MatchResult,
-    x: Shape,
-    y: Shape,
-    task: MatchTask,
-    piece: NDArray[np.bool_],
-    *,
-    of_source: bool,
-    least: float = CREDIBLE,
+    result: MatchResult, x: Shape, y: Shape, task: MatchTask, piece: Bools, *, of_source: bool, least: float = CREDIBLE
 ) -> Steps[MatchResult]:
     """Match with only a piece of one surface, and with more of it where the other goes on beyond.
 
@@ -178,7 +155,7 @@ class _Way:
     of_source: bool
     task: MatchTask
 
-    def matched_steps(self, piece: NDArray[np.bool_]) -> Steps[MatchResult | None]:
+    def matched_steps(self, piece: Bools) -> Steps[MatchResult | None]:
         """Match with some vertices (n,) of a surface only; None if these are all of it, or cannot be matched."""
         whole = self.x if self.of_source else self.y
         covered = whole.surface.spread(piece.astype(np.float64), 1.0) > 1 / 2
@@ -193,7 +170,7 @@ class _Way:
             return None
         return with_piece_only(result, covered, share, of_source=self.of_source)
 
-    def continued(self, result: MatchResult, piece: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
+    def continued(self, result: MatchResult, piece: Bools) -> Bools | None:
         """Tell where a surface goes on beyond a piece (n,), by what lacks a partner there; None if nothing does."""
         whole, part = (self.x, self.y) if self.of_source else (self.y, self.x)
         back = result.target_to_source if self.of_source else result.source_to_target
@@ -207,12 +184,12 @@ class _Way:
         return continued(whole, part, back.positions[part.vertices], alone, unit)
 
 
-def _misses(covered: NDArray[np.bool_], landmarks: ArrayLike | None, column: int) -> bool:
+def _misses(covered: Bools, landmarks: ArrayLike | None, column: int) -> bool:
     """Say whether a landmark lies outside of what is covered, (n,)."""
     return landmarks is not None and not covered[np.reshape(landmarks, (-1, 2))[:, column]].all()
 
 
-def _cut_steps(shape: Shape, covered: NDArray[np.bool_], name: str) -> Steps[Shape]:
+def _cut_steps(shape: Shape, covered: Bools, name: str) -> Steps[Shape]:
     """Make the shape of what is covered of a mesh, (n,), without what was left out before."""
     mesh, kept = shape.original, shape.surface.kept_triangles
     excluded = ~covered

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -12,15 +12,9 @@ from scipy.spatial import cKDTree
 from ..dense.extremity_search import beam_matchings
 from ..dense.lifted_matchings import squared_differences
 from ..geometry.orientation import signed_areas
-from ..runtime.progress import Progress
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..runtime.progress import Steps
-    from ..shapes.shape import Shape
-
-__all__ = ["PartPlacement", "part_placements_steps"]
+from ..runtime.arrays import Floats, Ints
+from ..runtime.progress import Progress, Steps
+from ..shapes.shape import Shape
 
 _MATCHED, _OFFERED = 6, 80
 """Samples of the part that are matched, and of the whole that they are matched to: the first, which are spread the
@@ -59,16 +53,16 @@ class PartPlacement:
     """
 
     misfit: float
-    images: NDArray[np.int64]
+    images: Ints
 
 
 class _Matching(NamedTuple):
     """Numbers of the whole's samples that the first of the part go to, (m,), and those that its scouts do, (k,)."""
 
-    images: NDArray[np.int64]
+    images: Ints
     unit: float
     misfit: float
-    landings: NDArray[np.int64]
+    landings: Ints
 
 
 def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[PartPlacement]]:
@@ -118,9 +112,9 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
     return [PartPlacement(matching.misfit, carrier.everywhere(matching)) for matching in chosen]
 
 
-def _different(matchings: NDArray[np.int64], distances: NDArray[np.float64], apart: float) -> list[NDArray[np.int64]]:
+def _different(matchings: Ints, distances: Floats, apart: float) -> list[Ints]:
     """Leave out matchings (r, m) that are nearly the same as an earlier one, and all beyond `_CARRIED`."""
-    kept: list[NDArray[np.int64]] = []
+    kept: list[Ints] = []
     for images in matchings:
         if len(kept) == _CARRIED:
             break
@@ -143,33 +137,32 @@ class _Carrier:
         self._sides[:, first, second] = signed_areas(whole.directions[:, offered])
         self._sides[:, second, first] = -self._sides[:, first, second]
 
-    def matchings(self, unit: float) -> NDArray[np.int64]:
+    def matchings(self, unit: float) -> Ints:
         """Match samples of the part, whose distances are in `unit` of those of the whole: images (r, m)."""
         m, n = self._part.shape[1], self._sides.shape[1]
         own = unit * self._part[:m]
         return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), kept=_WIDTH, width=_WIDTH).images
 
-    def carried(self, images: NDArray[np.int64], unit: float) -> _Matching:
+    def carried(self, images: Ints, unit: float) -> _Matching:
         """Carry a matching over to the scouts."""
         rows = self._part_rows()[:_SCOUTS].astype(np.float32)
         there = self._whole_rows(images, unit).astype(np.float32)
         squares = squared_differences(rows, there)
         return _Matching(images, unit, float(squares.min(axis=1).mean()), squares.argmin(axis=1))
 
-    def everywhere(self, matching: _Matching) -> NDArray[np.int64]:
+    def everywhere(self, matching: _Matching) -> Ints:
         """Carry a matching over to all samples of the part: numbers of samples of the whole."""
         tree = cKDTree(self._whole_rows(matching.images, matching.unit))
-        found: NDArray[np.int64] = tree.query(self._part_rows())[1]
-        return found
+        return tree.query(self._part_rows())[1]
 
-    def _part_rows(self) -> NDArray[np.float64]:
+    def _part_rows(self) -> Floats:
         return self._rows(self._part, self._part_sides)
 
-    def _whole_rows(self, images: NDArray[np.int64], unit: float) -> NDArray[np.float64]:
+    def _whole_rows(self, images: Ints, unit: float) -> Floats:
         sides = self._sides[:, images[self._first], images[self._second]]
         return self._rows(self._whole[:, images] / unit, sides)
 
-    def _rows(self, distances: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _rows(self, distances: Floats, sides: Floats) -> Floats:
         """Describe points by their distances (k, m) to what is matched, and by the signed areas (k, m (m - 1) / 2)."""
         columns = distances / np.sqrt(distances.shape[1]), _SIGNED_WEIGHT * sides / np.sqrt(max(sides.shape[1], 1))
         return np.concatenate(columns, axis=1)

@@ -5,18 +5,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.surface_map import SurfaceMap
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["PiecedBody", "resized_share", "torn_share", "without_partner"]
+from ..mesh.surface_map import SurfaceMap
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 
 _TOUCHING, _APART = 0.02, 0.08
 """How much farther than its nearest vertex from other pieces one may be that touches them, and how far apart the images
@@ -36,10 +31,10 @@ class PiecedBody:
     """
 
     mesh: TriangleMesh
-    pieces: NDArray[np.int64]
+    pieces: Ints
 
     @cached_property
-    def areas(self) -> NDArray[np.float64]:
+    def areas(self) -> Floats:
         """Area of each vertex as a part of the body's, (n,)."""
         areas = self.mesh.vertex_areas * (self.pieces >= 0)
         return areas / areas.sum()
@@ -50,24 +45,24 @@ class PiecedBody:
         return float(np.sqrt(self.mesh.vertex_areas[self.pieces >= 0].sum()))
 
     @cached_property
-    def shares(self) -> NDArray[np.float64]:
+    def shares(self) -> Floats:
         """Area of each piece as a part of the body's, (p,)."""
         return self._on_pieces(self.pieces, self.areas)
 
-    def without(self, pieces: NDArray[np.int64]) -> PiecedBody:
+    def without(self, pieces: Ints) -> PiecedBody:
         """Return the body without some pieces."""
         return PiecedBody(self.mesh, np.where(np.isin(self.pieces, pieces), -1, self.pieces))
 
-    def carried_shares(self, images: NDArray[np.int64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
+    def carried_shares(self, images: Ints, areas: Floats) -> Floats:
         """Sum areas (k,) that go to vertices (k,) of the mesh, for each piece, (p,)."""
         return self._on_pieces(self.pieces[images], areas)
 
-    def _on_pieces(self, pieces: NDArray[np.int64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
-        sums: NDArray[np.float64] = np.bincount(pieces + 1, areas, int(self.pieces.max()) + 2).astype(np.float64)
+    def _on_pieces(self, pieces: Ints, areas: Floats) -> Floats:
+        sums: Floats = np.bincount(pieces + 1, areas, int(self.pieces.max()) + 2).astype(np.float64)
         return sums[1:]
 
 
-def without_partner(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> NDArray[np.int64]:
+def without_partner(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> Ints:
     """Tell which pieces of a body but the first have none of the other: a map takes most of them to its first piece."""
     main = target.pieces[found.nearest_vertices] == 0
     shares = np.bincount(source.pieces + 1, source.areas * main, int(source.pieces.max()) + 2)[1:]

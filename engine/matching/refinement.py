@@ -3,35 +3,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import piece_of, with_pieces_only
 from ..dense.dense_registration import EIGENPAIRS, RegisteredPair
-from ..dense.densify import dense_match_steps
+from ..dense.densify import DenseMatch, dense_match_steps
 from ..mesh.reflection import reflected_mesh
+from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..registration.registration import FINE, Stage, register_steps, restarted_steps
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.progress import run, within
+from ..runtime.progress import Steps, run, within
 from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
 from ..shapes.landmarks import locate_landmarks
 from ..shapes.shape import Shape
 from ..shapes.shape_preparation import finer_shapes
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..dense.densify import DenseMatch
-    from ..mesh.surface_map import SurfaceMap
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..runtime.progress import Steps
-
-__all__ = ["distortion_after", "placed_by_map", "point_distortions", "refine_map", "refine_map_steps"]
 
 _DETAILED = 100
 """Eigenfunctions that a surface is placed by before it is registered."""
@@ -51,7 +43,7 @@ def refine_map(
     target: TriangleMesh,
     source_to_target: SurfaceMap,
     landmarks: ArrayLike,
-    excluded: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None] = (None, None),
+    excluded: tuple[Bools | None, Bools | None] = (None, None),
     *,
     target_to_source: SurfaceMap | None = None,
 ) -> DenseMatch:
@@ -66,7 +58,7 @@ def refine_map_steps(
     target: TriangleMesh,
     source_to_target: SurfaceMap,
     landmarks: ArrayLike,
-    excluded: tuple[NDArray[np.bool_] | None, NDArray[np.bool_] | None] = (None, None),
+    excluded: tuple[Bools | None, Bools | None] = (None, None),
     *,
     target_to_source: SurfaceMap | None = None,
 ) -> Steps[DenseMatch]:
@@ -132,7 +124,7 @@ def refine_map_steps(
     return with_pieces_only(dense, (source, target), pieces)
 
 
-def _ends(landmarks: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _ends(landmarks: ArrayLike) -> tuple[Ints, Ints]:
     """Take pairs of vertices apart; what is no such array has none, and is refused later."""
     pairs = np.asarray(landmarks)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.issubdtype(pairs.dtype, np.integer):
@@ -141,7 +133,7 @@ def _ends(landmarks: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return first, second
 
 
-def _left_out(excluded: NDArray[np.bool_] | None, piece: NDArray[np.bool_] | None) -> NDArray[np.bool_] | None:
+def _left_out(excluded: Bools | None, piece: Bools | None) -> Bools | None:
     """Leave out what is excluded, and what is beyond a piece, (n,) each."""
     if piece is None:
         return excluded
@@ -150,7 +142,7 @@ def _left_out(excluded: NDArray[np.bool_] | None, piece: NDArray[np.bool_] | Non
 
 def placed_by_map(
     source: TriangleMesh, target: TriangleMesh, source_points: SurfacePoints, found: SurfaceMap
-) -> tuple[SurfacePoints, NDArray[np.float64]]:
+) -> tuple[SurfacePoints, Floats]:
     """Let matched points lie where a map takes them.
 
     Parameters
@@ -179,7 +171,7 @@ def placed_by_map(
     return images, point_distortions(source, target, vertices, images.nearest_vertices)
 
 
-def distortion_after(distortion: float, before: NDArray[np.float64], after: NDArray[np.float64]) -> float:
+def distortion_after(distortion: float, before: Floats, after: Floats) -> float:
     """Scale the distortion of a match, which is made of the squares of its points' (k,), to what these are now."""
     squares = float(np.square(before).sum())
     return distortion * float(np.square(after).sum()) / squares if squares > 0 else distortion
@@ -187,7 +179,7 @@ def distortion_after(distortion: float, before: NDArray[np.float64], after: NDAr
 
 def point_distortions(
     source: TriangleMesh, target: TriangleMesh, source_vertices: ArrayLike, target_vertices: ArrayLike
-) -> NDArray[np.float64]:
+) -> Floats:
     """Measure how much the distances between corresponding vertices differ on two surfaces.
 
     Parameters

@@ -4,18 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ..dense.quality import MatchQuality
-    from ..hierarchical.sparse_result import CoarseMatch, Level
-    from ..mesh.surface_map import SurfaceMap
-    from ..mesh.surface_points import SurfacePoints
-
-__all__ = ["DIRECT", "MIRRORED", "MatchResult", "turned_name"]
+from ..dense.quality import MatchQuality
+from ..hierarchical.sparse_result import CoarseMatch, Level
+from ..mesh.surface_map import SurfaceMap
+from ..mesh.surface_points import SurfacePoints
+from ..runtime.arrays import Floats
 
 DIRECT, MIRRORED = "direct", "mirrored"
 """Names of the answer that was chosen and of the one that exchanges left and right."""
@@ -78,12 +72,12 @@ class MatchResult:
     distortion: float
     linear: float
     quadratic: float
-    point_distortion: NDArray[np.float64]
+    point_distortion: Floats
     orientation: float
     levels: tuple[Level, ...]
     coarse: CoarseMatch
-    source_distances: NDArray[np.float64] | None
-    target_distances: NDArray[np.float64] | None
+    source_distances: Floats | None
+    target_distances: Floats | None
     notes: tuple[str, ...]
     seconds: dict[str, float]
     source_to_target: SurfaceMap | None = None

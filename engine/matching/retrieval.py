@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,19 +15,12 @@ from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import CheckedSettings, MatchSettings, setting
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
 from ..runtime.progress import Progress, Steps, run, within
 from ..shapes.shape import Shape
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["Retrieval", "RetrievalSettings", "RetrievedMatch", "retrieve", "retrieve_steps"]
 
 _LEVELS = (np.arange(64) + 0.5) / 64  # at which the quantiles of distances are taken
 
@@ -117,24 +110,22 @@ class Retrieval:
         The matches, in the order of their scores.
     """
 
-    order: NDArray[np.int64]
-    scores: NDArray[np.float64]
-    bounds: NDArray[np.float64]
+    order: Ints
+    scores: Floats
+    bounds: Floats
     matches: tuple[RetrievedMatch, ...]
 
     def __repr__(self) -> str:
         return f"<Retrieval: {len(self.order)} shapes, {len(self.matches)} of them matched>"
 
     @property
-    def by_bound_only(self) -> NDArray[np.bool_]:
+    def by_bound_only(self) -> Bools:
         """For each shape of the list, whether only the bound decided its place, (n,)."""
         return np.isnan(self.scores)
 
 
 def retrieve(
-    query: TriangleMesh | Shape,
-    shapes: Sequence[TriangleMesh | Shape],
-    settings: RetrievalSettings | None = None,
+    query: TriangleMesh | Shape, shapes: Sequence[TriangleMesh | Shape], settings: RetrievalSettings | None = None
 ) -> Retrieval:
     r"""Rank shapes by the distortion of a sparse match with a query.
 
@@ -176,9 +167,7 @@ def retrieve(
 
 @can_go_beside
 def retrieve_steps(
-    query: TriangleMesh | Shape,
-    shapes: Sequence[TriangleMesh | Shape],
-    settings: RetrievalSettings | None = None,
+    query: TriangleMesh | Shape, shapes: Sequence[TriangleMesh | Shape], settings: RetrievalSettings | None = None
 ) -> Steps[Retrieval]:
     """Rank shapes in short steps; see `retrieve`.
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment
 
 from ..dense.dense_hypotheses import USUAL, LandmarkStart, map_domains
@@ -17,26 +17,19 @@ from ..dense.initial_maps import RoughSearch
 from ..dense.quality import with_alternatives
 from ..hierarchical.hierarchy import refine_steps
 from ..hierarchical.sampled_pair import Pair
+from ..hierarchical.settings import MatchSettings
 from ..hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
 from ..hierarchical.sparse_result import CoarseMatch
 from ..mesh.surface_points import SurfacePoints
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
-from ..runtime.progress import within
+from ..runtime.progress import Steps, within
 from ..shapes.genus_reduction import evened_steps
-from ..shapes.landmarks import locate_landmarks, placed_at_vertices
+from ..shapes.landmarks import Landmarks, locate_landmarks, placed_at_vertices
+from ..shapes.shape import Shape
 from ..shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from ..shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .result import MIRRORED, MatchResult, turned_name
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ..hierarchical.settings import MatchSettings
-    from ..runtime.progress import Steps
-    from ..shapes.landmarks import Landmarks
-    from ..shapes.shape import Shape
-
-__all__ = ["Clock", "MatchTask", "matched_steps"]
 
 _AGREEING = 0.15
 """Mean distance, in sqrt(area), up to which a sparse answer and the dense map are taken for the same."""
@@ -225,13 +218,13 @@ def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple
     return moved(direct, images), mirrored
 
 
-def _distinct_samples(rows: NDArray[np.float32], landmarks: int) -> NDArray[np.int64]:
+def _distinct_samples(rows: NDArray[np.float32], landmarks: int) -> Ints:
     """Assign to each point (k,) a sample of its own near to it, by distances (s, k); to landmarks their own."""
     _, samples = linear_sum_assignment(np.square(rows[landmarks:, landmarks:].T.astype(np.float64)))
     return np.concatenate([np.arange(landmarks), landmarks + samples])
 
 
-def _distance_rows_steps(answer: Answer) -> Steps[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+def _distance_rows_steps(answer: Answer) -> Steps[tuple[Floats, Floats]]:
     """Distances from the matched points to all vertices: geodesic ones whatever the metric."""
     x, y = answer.coarse.pair.source, answer.coarse.pair.target
     metric = answer.coarse.pair.target_metric
@@ -245,7 +238,7 @@ def _result(
     landmarks: Landmarks | None,
     notes: tuple[str, ...],
     seconds: dict[str, float],
-    rows: tuple[NDArray[np.float64] | None, NDArray[np.float64] | None] = (None, None),
+    rows: tuple[Floats | None, Floats | None] = (None, None),
 ) -> MatchResult:
     pair, coarse = answer.coarse.pair, answer.coarse.matching
     x, y, count = pair.source, pair.target, len(answer.points)
@@ -286,6 +279,6 @@ def _result(
     )
 
 
-def _sample_distances(shape: Shape, count: int) -> NDArray[np.float64]:
+def _sample_distances(shape: Shape, count: int) -> Floats:
     """Distances from the first samples to all vertices of the whole surface, in its units; inf on other parts."""
     return shape.surface.spread(shape.sample_rows[:count].astype(np.float64) * shape.scale, np.inf)

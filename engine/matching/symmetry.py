@@ -4,30 +4,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-from ..hierarchical.exact.branch_and_bound import branch_and_bound_steps
+from ..hierarchical.exact.branch_and_bound import BoundedMatching, branch_and_bound_steps
 from ..hierarchical.exact.exclusion import Exclusion
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, run, within
 from ..shapes.shape import Shape
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..hierarchical.exact.branch_and_bound import BoundedMatching
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["SymmetryResult", "find_symmetry", "find_symmetry_steps"]
 
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
 _MOVED_SHARE = 0.3  # part of the coarse points that has to be in another place: the others may lie on the axis
@@ -81,7 +74,7 @@ class SymmetryResult:
     orientation: float
     involution: float
     curvature: float
-    sides: NDArray[np.float64]
+    sides: Floats
     axis_points: SurfacePoints
     alternatives: tuple[SymmetryResult, ...]
     proven: bool
@@ -102,7 +95,7 @@ class _Candidate:
     """A map of all samples, on its way to a result."""
 
     coarse: BoundedMatching
-    images: NDArray[np.int64]  # (S,) sample numbers
+    images: Ints  # (S,) sample numbers
     orientation: float
     involution: float
     curvature: float
@@ -226,7 +219,7 @@ def _candidate_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[list[_C
     distances = pair.source.sample_distances
     identity = np.arange(pair.source.sample_count)
 
-    def moved(candidate: _Candidate, other: NDArray[np.int64]) -> bool:
+    def moved(candidate: _Candidate, other: Ints) -> bool:
         """Say whether a candidate takes a good part of the samples elsewhere than other images (n,)."""
         return bool((distances[candidate.images, other] > _FAR / 2).mean() > _MOVED_SHARE)
 
@@ -235,7 +228,7 @@ def _candidate_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[list[_C
     return best_distinct(moving, lambda candidate, other: moved(candidate, other.images)) or ranked[:1]
 
 
-def _assess(shape: Shape, coarse: BoundedMatching, assignment: NDArray[np.int64], sign: int) -> _Candidate:
+def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) -> _Candidate:
     """Carry a matching to all samples, make the map its own inverse if it can be, and judge it."""
     distances, count = shape.sample_distances, len(assignment)
     everywhere = np.arange(len(distances))
@@ -291,12 +284,12 @@ def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
     )
 
 
-def _rows_from(shape: Shape, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+def _rows_from(shape: Shape, vertices: Ints) -> Floats:
     """Distances from some vertices to all, in sqrt(area), (k, n)."""
     return np.concatenate([block for _, block in shape.solver.distances_in_blocks(vertices)]) / shape.scale
 
 
-def _images_at_vertices(shape: Shape, rows: NDArray[np.float64], image_rows: NDArray[np.float64]) -> NDArray[np.int64]:
+def _images_at_vertices(shape: Shape, rows: Floats, image_rows: Floats) -> Ints:
     """Find the vertex near each point's image that keeps its distances to all points and images best, (k,).
 
     `rows` and `image_rows` (k, n) are the distances from the points, which are the first samples, and from their
@@ -314,7 +307,7 @@ def _images_at_vertices(shape: Shape, rows: NDArray[np.float64], image_rows: NDA
     return found
 
 
-def _sides(shape: Shape, differences: NDArray[np.float64]) -> NDArray[np.float64]:
+def _sides(shape: Shape, differences: Floats) -> Floats:
     """Tell the sides of the axis apart by how much nearer each vertex is to points than to their images, (n,).
 
     `differences` (k, n) is d(v, p_i) - d(v, T p_i).  A vertex is nearer to whichever of the two lies on its own side:
@@ -327,7 +320,7 @@ def _sides(shape: Shape, differences: NDArray[np.float64]) -> NDArray[np.float64
     return -(weights / np.abs(weights).sum()) @ differences / 2
 
 
-def _zero_crossings(mesh: TriangleMesh, values: NDArray[np.float64], *, reflection: bool) -> SurfacePoints:
+def _zero_crossings(mesh: TriangleMesh, values: Floats, *, reflection: bool) -> SurfacePoints:
     """Points on edges at which a function given at the vertices, NaN where unknown, changes its sign."""
     corners = mesh.triangles if reflection else mesh.triangles[:0]
     first, second = corners.ravel(), np.roll(corners, -1, axis=1).ravel()

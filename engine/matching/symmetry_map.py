@@ -3,21 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from ..dense.densify import densify_steps
+from ..dense.densify import DenseMatch, densify_steps
+from ..hierarchical.settings import MatchSettings
+from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.background import can_go_beside
-from ..runtime.progress import run, within
+from ..runtime.progress import Steps, run, within
 from ..shapes.shape import Shape
 from .symmetry import find_symmetry_steps
-
-if TYPE_CHECKING:
-    from ..dense.densify import DenseMatch
-    from ..hierarchical.settings import MatchSettings
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..runtime.progress import Steps
-
-__all__ = ["symmetry_map", "symmetry_map_steps"]
 
 
 def symmetry_map(mesh: TriangleMesh, settings: MatchSettings | None = None) -> DenseMatch:

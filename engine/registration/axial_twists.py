@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import minimum_filter
@@ -14,16 +14,11 @@ from scipy.spatial.transform import Rotation
 from ..geometry.orientation import tangent_gradient
 from ..geometry.procrustes import nearest_rotations
 from ..mesh.unit_vectors import unit_vectors
+from ..runtime.arrays import Floats, Ints
 from ..runtime.worker import search_threads
 from ..shapes.extremities import spread_extremities
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..shapes.shape import Shape
-    from .deformable import DeformableSurface
-
-__all__ = ["Untwisted", "Winding", "rolled_back", "untwisted"]
+from ..shapes.shape import Shape
+from .deformable import DeformableSurface
 
 _LIMBS, _APART = 8, 0.25
 """How many limbs are looked at, and how far apart, in sqrt(area), their tips are at least."""
@@ -81,14 +76,14 @@ _LYING, _MOST_LYING = 3.0, 3
 class Winding(NamedTuple):
     """Vertices (v,) of a limb, and their positions (v, 3) in each other way that it might be wound about its axis."""
 
-    vertices: NDArray[np.int64]
-    positions: list[NDArray[np.float64]]
+    vertices: Ints
+    positions: list[Floats]
 
 
 class Untwisted(NamedTuple):
     """Positions (n, 3) with limbs turned back, and how else each of some limbs, or the body, might be turned."""
 
-    positions: NDArray[np.float64]
+    positions: Floats
     otherwise: list[Winding]
 
 
@@ -96,8 +91,8 @@ class _Ring(NamedTuple):
     """What lies around a limb at some distance from its tip."""
 
     distance: float
-    vertices: NDArray[np.int64]  # (m,)
-    weights: NDArray[np.float64]  # (m,), with the sum one
+    vertices: Ints  # (m,)
+    weights: Floats  # (m,), with the sum one
     area: float  # that the ring stands for
 
 
@@ -119,19 +114,15 @@ class _Limb:
         Whether the last ring stays where it is.
     """
 
-    vertices: NDArray[np.int64]
-    distances: NDArray[np.float64]
+    vertices: Ints
+    distances: Floats
     rings: list[_Ring]
-    radii: NDArray[np.float64]
+    radii: Floats
     held: bool
 
 
 def untwisted(
-    shape: Shape,
-    source: DeformableSurface,
-    target: DeformableSurface,
-    positions: NDArray[np.float64],
-    isometry: float = 1.0,
+    shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: Floats, isometry: float = 1.0
 ) -> Untwisted:
     r"""Turn back what a registration has turned about the axis of a limb.
 
@@ -176,9 +167,7 @@ def untwisted(
     return _turned_back(_limbs(shape, source), source, target, positions, gain)
 
 
-def rolled_back(
-    shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: NDArray[np.float64]
-) -> Untwisted:
+def rolled_back(shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: Floats) -> Untwisted:
     """Turn back what a registration has turned about the axis of a long body: a snake's, a fish's, a whale's.
 
     The lowest eigenfunctions of such a body say where along it a point is, but not which way round it lies, and the
@@ -206,11 +195,7 @@ def rolled_back(
 
 
 def _turned_back(
-    limbs: list[_Limb],
-    source: DeformableSurface,
-    target: DeformableSurface,
-    positions: NDArray[np.float64],
-    gain: float,
+    limbs: list[_Limb], source: DeformableSurface, target: DeformableSurface, positions: Floats, gain: float
 ) -> Untwisted:
     """Turn back limbs that have no vertex in common; the positions themselves if there is nothing to be turned."""
     if not limbs:
@@ -278,7 +263,7 @@ def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
     return limbs
 
 
-def _slender(radii: NDArray[np.float64]) -> int:
+def _slender(radii: Floats) -> int:
     """How many of the rings of these radii (k,), from the tip on, are of the limb: the others are of the body."""
     # A hand is wider than its fingers, but the forearm is not: only what is wide from there on is the body.
     last = 0
@@ -290,7 +275,7 @@ def _slender(radii: NDArray[np.float64]) -> int:
     return min(last + 1, len(radii))
 
 
-def _stout(radii: NDArray[np.float64]) -> slice:
+def _stout(radii: Floats) -> slice:
     """Which rings of a limb say how it is turned: all but those at the tip that are so thin that any turn is cheap."""
     enough = np.flatnonzero(radii >= _THIN * np.median(radii)) if len(radii) else [0]
     return slice(int(enough[0]), len(radii))
@@ -308,7 +293,7 @@ def _long_body(shape: Shape, source: DeformableSurface) -> list[_Limb]:
     return [_Limb(everything, lengths, rings, _radii(source, rings), held=False)]
 
 
-def _lengthwise(shape: Shape) -> NDArray[np.float64]:
+def _lengthwise(shape: Shape) -> Floats:
     """Lengths, in sqrt(area), along a body up to each vertex, (n,): the first eigenfunction, made to grow evenly."""
     # Distances from an end would not do: a whale's fluke has two.
     function = shape.spectrum.functions[:, 1]
@@ -320,13 +305,10 @@ def _lengthwise(shape: Shape) -> NDArray[np.float64]:
     sums = np.bincount(slices, shape.mesh.vertex_areas * slopes, _SLICES)
     known = np.flatnonzero(sums > 0)
     steepness = np.interp(np.arange(_SLICES), known, sums[known] / areas[known])
-    lengths: NDArray[np.float64] = np.interp(function, edges, np.append(0, np.cumsum(np.diff(edges) / steepness)))
-    return lengths
+    return np.interp(function, edges, np.append(0, np.cumsum(np.diff(edges) / steepness)))
 
 
-def _rings(
-    source: DeformableSurface, vertices: NDArray[np.int64], distances: NDArray[np.float64], length: float
-) -> list[_Ring]:
+def _rings(source: DeformableSurface, vertices: Ints, distances: Floats, length: float) -> list[_Ring]:
     """Cut the vertices (v,) of a limb into rings by their distances (v,) from its tip, up to where some are missing."""
     rings: list[_Ring] = []
     for distance in (np.arange(int(length / _WIDTH)) + 0.5) * _WIDTH:
@@ -341,7 +323,7 @@ def _rings(
     return rings
 
 
-def _radii(source: DeformableSurface, rings: list[_Ring]) -> NDArray[np.float64]:
+def _radii(source: DeformableSurface, rings: list[_Ring]) -> Floats:
     """Root mean square distances of rings from the axis through their centres, at rest, (k,)."""
     centres, axes = _axis(source.vertices, rings)
     radii = []
@@ -352,22 +334,20 @@ def _radii(source: DeformableSurface, rings: list[_Ring]) -> NDArray[np.float64]
     return np.array(radii)
 
 
-def _axis(positions: NDArray[np.float64], rings: list[_Ring]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _axis(positions: Floats, rings: list[_Ring]) -> tuple[Floats, Floats]:
     """Centres (k, 3) of rings, and unit vectors (k, 3) along the curve through them."""
     centres = np.array([ring.weights @ positions[ring.vertices] for ring in rings])
     return centres, unit_vectors(np.gradient(centres, axis=0))
 
 
-def _turned(vectors: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turned(vectors: Floats, axis: Floats) -> Floats:
     """Turn vectors (m, 3) about a unit axis by the angles that are tried, (a, m, 3)."""
     angles = np.arange(_TRIED) * (2 * np.pi / _TRIED)
     rotations = Rotation.from_rotvec(angles[:, None] * axis).as_matrix()
     return vectors @ rotations.transpose(0, 2, 1)
 
 
-def _rigid_misfits(
-    rest: NDArray[np.float64], images: NDArray[np.float64], weights: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _rigid_misfits(rest: Floats, images: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Mean squared distances (a,) of points (m, 3), moved as a rigid body, from images (a, m, 3), and rotations."""
     rest = rest - weights @ rest
     images = images - np.einsum("m,amd->ad", weights, images)[:, None]
@@ -377,16 +357,14 @@ def _rigid_misfits(
     return spreads - 2 * np.einsum("ade,ade->a", rotations, products), rotations
 
 
-def _twists(rotations: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+def _twists(rotations: Floats, axes: Floats) -> Floats:
     """Angles (k - 1,) about the axis by which each of the rotations (k, 3, 3) turns more than the one before."""
     between = Rotation.from_matrix(rotations[1:] @ rotations[:-1].transpose(0, 2, 1)).as_quat()
     along = np.einsum("kd,kd->k", between[:, :3], unit_vectors(axes[1:] + axes[:-1]))
     return _wrapped(2 * np.arctan2(along, between[:, 3]))
 
 
-def _best_angles(
-    limb: _Limb, costs: NDArray[np.float64], twists: NDArray[np.float64], gain: float
-) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
+def _best_angles(limb: _Limb, costs: Floats, twists: Floats, gain: float) -> tuple[Floats, list[Floats]]:
     """Find the angles (k,) of least cost to turn the rings by, all zero if they save no more than a gain, and others.
 
     The gain is a part of the cost as it is.  The others are the best that turn the tip otherwise, or the other end if
@@ -413,7 +391,7 @@ def _best_angles(
     total, last, choices = total[inside], last[inside], [choice[inside] for choice in choices]
     minima = minima[inside] | (total == total.min())
 
-    def angles(end: int, tip: int) -> NDArray[np.float64]:
+    def angles(end: int, tip: int) -> Floats:
         """Follow the best choices from an angle of the tip to the last ring, which has one of its own."""
         path = [tip]
         for choice in choices[::-1]:
@@ -440,27 +418,20 @@ def _best_angles(
     return chosen, [angles(*way) for way in taken[1:]]
 
 
-def _moved(
-    limb: _Limb,
-    centres: NDArray[np.float64],
-    axes: NDArray[np.float64],
-    angles: NDArray[np.float64],
-    positions: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _moved(limb: _Limb, centres: Floats, axes: Floats, angles: Floats, positions: Floats) -> Floats:
     """Turn a limb: each vertex by the angle, and about the axis, between those of the rings beside it, (v, 3)."""
     centre, axis = (_between(limb, values) for values in (centres, axes))
     angle = np.interp(limb.distances, [ring.distance for ring in limb.rings], angles)
     turns = Rotation.from_rotvec(angle[:, None] * unit_vectors(axis))
-    moved: NDArray[np.float64] = centre + turns.apply(positions[limb.vertices] - centre)
-    return moved
+    return centre + turns.apply(positions[limb.vertices] - centre)
 
 
-def _between(limb: _Limb, values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _between(limb: _Limb, values: Floats) -> Floats:
     """Interpolate values (k, 3) at the rings for the vertices, (v, 3)."""
     at = [ring.distance for ring in limb.rings]
     return np.stack([np.interp(limb.distances, at, column) for column in values.T], axis=1)
 
 
-def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+def _wrapped(angles: Floats) -> Floats:
     """Angles from -pi to pi."""
     return (angles + np.pi) % (2 * np.pi) - np.pi

@@ -3,25 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..mesh.closest_points import FoundPoints
+from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Steps, within
-from .registration import FINE
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from ..mesh.closest_points import FoundPoints
-    from .axial_twists import Untwisted
-    from .deformable import DeformableSurface
-    from .registration import Registration, Stage
-
-__all__ = ["local_costs", "wound_steps"]
+from .axial_twists import Untwisted
+from .deformable import DeformableSurface
+from .registration import FINE, Registration, Stage
 
 _TOGETHER = replace(FINE, weights=FINE.weights[-1:])
 """How the source is registered from where several registrations have brought its limbs."""
@@ -42,7 +34,7 @@ _MOST_CURVED = 0.2
 
 
 def wound_steps(
-    register: Callable[[list[NDArray[np.float64]], Stage], Steps[list[Registration]]],
+    register: Callable[[list[Floats], Stage], Steps[list[Registration]]],
     source: DeformableSurface,
     target: DeformableSurface,
     untwisted: Untwisted,
@@ -96,9 +88,7 @@ def wound_steps(
     return registration
 
 
-def local_costs(
-    source: DeformableSurface, target: DeformableSurface, registration: Registration
-) -> NDArray[np.float64]:
+def local_costs(source: DeformableSurface, target: DeformableSurface, registration: Registration) -> Floats:
     """Costs (n_x,) of a registration around each vertex of the source: energy, and misfits to and from the target."""
     positions = registration.positions
     on_target, on_source = registration.on_target, registration.on_source
@@ -112,23 +102,17 @@ def local_costs(
     return costs + np.bincount(nearest, apart, len(costs))
 
 
-def _misfits(
-    matches: FoundPoints,
-    triangles: NDArray[np.int64],
-    own: tuple[NDArray[np.float64], ...],
-    others: tuple[NDArray[np.float64], ...],
-) -> NDArray[np.float64]:
+def _misfits(matches: FoundPoints, triangles: Ints, own: tuple[Floats, ...], others: tuple[Floats, ...]) -> Floats:
     """Squared differences (k,) of positions, normals and curvatures between vertices and the points they match."""
     corners = triangles[matches.triangles]
     places, normals, curvatures = (
         np.square(np.einsum("kc,kcd->kd", matches.barycentric, theirs[corners]) - mine).sum(axis=1)
         for mine, theirs in zip(own, others, strict=True)
     )
-    misfits: NDArray[np.float64] = places + _FEATURE_LENGTH**2 * (normals + np.minimum(curvatures, _MOST_CURVED**2))
-    return misfits
+    return places + _FEATURE_LENGTH**2 * (normals + np.minimum(curvatures, _MOST_CURVED**2))
 
 
-def _wound(untwisted: Untwisted, ways: list[int]) -> NDArray[np.float64]:
+def _wound(untwisted: Untwisted, ways: list[int]) -> Floats:
     """Positions (n, 3) with each limb wound in one of its ways: 0 as it is, then each of the others."""
     positions = untwisted.positions.copy()
     for limb, way in zip(untwisted.otherwise, ways, strict=True):

@@ -4,25 +4,18 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import diags_array
+from scipy.sparse import csr_array, diags_array
 
+from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats
 from ..runtime.progress import Progress, Steps
 from .elastic import ElasticSurface
 from .normal_equations import NormalEquations
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-    from ..geometry.laplacian import LaplaceBeltrami
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["DeformableSurface", "heat_curvatures"]
 
 _HEAT_STEPS = 3
 """Implicit steps in which heat spreads."""
@@ -76,7 +69,7 @@ class DeformableSurface:
         return ClosestPoints(self.mesh)
 
     @cached_property
-    def border(self) -> NDArray[np.float64]:
+    def border(self) -> Floats:
         """One for the vertices at which the surface ends, zero for all others, (n,)."""
         border = np.zeros(len(self.vertices))
         border[self.mesh.boundary_edges] = 1
@@ -98,27 +91,23 @@ class DeformableSurface:
             getattr(self, name)
             yield Progress((number + 1) / len(_PREPARED), "Fitting the surfaces")
 
-    def in_its_units(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    def in_its_units(self, positions: Floats) -> Floats:
         """Turn positions (k, 3) around the unit surface into the coordinates of its mesh."""
         return positions * self._scale + self._centre
 
-    def in_unit_size(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    def in_unit_size(self, positions: Floats) -> Floats:
         """Turn coordinates of its mesh (k, 3) into positions around the unit surface."""
         return (positions - self._centre) / self._scale
 
     @cached_property
-    def curvatures(self) -> NDArray[np.float64]:
+    def curvatures(self) -> Floats:
         """Mean curvature at two scales, positive where the surface bulges outwards, (n, 2); see `heat_curvatures`."""
         return heat_curvatures(self._laplace.stiffness, self.mass, self.vertices, self.normals, _CURVATURE_TIMES)
 
 
 def heat_curvatures(
-    stiffness: csr_array,
-    mass: NDArray[np.float64],
-    vertices: NDArray[np.float64],
-    normals: NDArray[np.float64],
-    times: tuple[float, ...],
-) -> NDArray[np.float64]:
+    stiffness: csr_array, mass: Floats, vertices: Floats, normals: Floats, times: tuple[float, ...]
+) -> Floats:
     r"""Mean curvature at several scales, smoothed by heat.
 
     Parameters

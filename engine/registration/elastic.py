@@ -4,22 +4,15 @@
 from __future__ import annotations
 
 import copy
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 
+from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.procrustes import nearest_rotations
 from ..geometry.symmetric_factor import symmetric_factor
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from ..geometry.laplacian import LaplaceBeltrami
-
-__all__ = ["ElasticSurface"]
+from ..runtime.arrays import Floats
 
 _LEAST_WEIGHT = 1e-4
 """Least weight of an edge: one without would let its ends drift apart where all triangles around are right-angled."""
@@ -69,12 +62,7 @@ class ElasticSurface:
     .. [1] O. Sorkine, M. Alexa, "As-rigid-as-possible surface modeling", SGP 2007.
     """
 
-    def __init__(
-        self,
-        vertices: NDArray[np.float64],
-        laplace: LaplaceBeltrami,
-        edges: NDArray[np.float64] | None = None,
-    ) -> None:
+    def __init__(self, vertices: Floats, laplace: LaplaceBeltrami, edges: Floats | None = None) -> None:
         n = len(vertices)
         self._vertices, self._laplace = vertices, laplace
         entries = coo_array(laplace.stiffness)
@@ -95,13 +83,13 @@ class ElasticSurface:
         self._edge_length = float(np.sqrt(np.square(self._edges).sum(axis=1).mean())) if count else 1.0
         self._resist(self._weights)
 
-    def _resist(self, weights: NDArray[np.float64]) -> None:
+    def _resist(self, weights: Floats) -> None:
         """Let edges have weights (e,) in the energy."""
         self._resisting = weights
         self.stiffness = csr_array(self._divergence @ diags_array(weights) @ self._divergence.T)
         self._pull = csr_array(self._covariances(weights).T) / 2
 
-    def _covariances(self, weights: NDArray[np.float64]) -> csr_array:
+    def _covariances(self, weights: Floats) -> csr_array:
         """Matrix (3 n, n) that makes of positions the covariances (3, 3) of rest edges and edges around each vertex."""
         weighted = weights[:, None] * self._edges  # (e, 3)
         ends = self._tails, self._heads
@@ -111,7 +99,7 @@ class ElasticSurface:
         n = len(self._vertices)
         return csr_array((signed.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, n))
 
-    def rotations(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+    def rotations(self, positions: Floats, radius: float) -> Floats:
         """Fit a rotation to the deformation around each vertex.
 
         Parameters
@@ -131,7 +119,7 @@ class ElasticSurface:
         # The rest edges come first: of such a matrix the nearest rotation is the inverse.
         return nearest_rotations(fit.reshape(-1, 3, 3)).transpose(0, 2, 1)
 
-    def scales(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+    def scales(self, positions: Floats, radius: float) -> Floats:
         """Measure by what factor the deformation lengthens edges, averaged over a radius around each vertex, (n,)."""
         now = np.square(positions[self._tails] - positions[self._heads]).sum(axis=1)
         before = self._around @ (self._weights * np.square(self._edges).sum(axis=1))
@@ -140,13 +128,7 @@ class ElasticSurface:
         return np.exp(self._averaged(logarithms, radius))
 
     def softened(
-        self,
-        positions: NDArray[np.float64],
-        radius: float,
-        power: float = 0.5,
-        constant: float = 1.0,
-        *,
-        directed: float = 0.0,
+        self, positions: Floats, radius: float, power: float = 0.5, constant: float = 1.0, *, directed: float = 0.0
     ) -> ElasticSurface:
         r"""Take the surface as softer where a deformation strains it more, and the way it does.
 
@@ -192,21 +174,18 @@ class ElasticSurface:
         softer._resist(self._weights * factors)  # noqa: SLF001
         return softer
 
-    def _strains_around(
-        self, positions: NDArray[np.float64], radius: float, lengths: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _strains_around(self, positions: Floats, radius: float, lengths: Floats) -> Floats:
         """Squared strain around the ends of each edge, whichever way, (e,); the weighted squared lengths are given."""
         misfits = self._weights * self._misfit(positions, self.rotations(positions, radius))
         strains = self._averaged(self._around @ misfits / np.maximum(self._around @ lengths, _TINY), radius)
-        means: NDArray[np.float64] = self._around.T @ strains / 2
-        return means
+        return self._around.T @ strains / 2
 
-    def _strains_along(self, positions: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+    def _strains_along(self, positions: Floats, radius: float) -> Floats:
         """Squared strain of each edge by the stretch around its ends, (e,)."""
         apart = self._at_edges(self._stretches(positions, lambda values: self._averaged(values, radius)) - np.eye(3))
         return np.square(apart).sum(axis=1) / np.maximum(np.square(self._edges).sum(axis=1), _TINY)
 
-    def strained(self, positions: NDArray[np.float64], radius: float) -> ElasticSurface:
+    def strained(self, positions: Floats, radius: float) -> ElasticSurface:
         r"""Take the surface as at rest when strained as it is on average over a neighbourhood.
 
         The arm of one body may be half as long again as that of another, and a stiff surface would pull it short.
@@ -236,13 +215,11 @@ class ElasticSurface:
         stretch = np.einsum("nab,nb,ncb->nac", vectors, np.exp(np.sign(logarithms) * accepted), vectors)
         return ElasticSurface(self._vertices, self._laplace, self._at_edges(stretch))
 
-    def resized(self, scales: NDArray[np.float64]) -> ElasticSurface:
+    def resized(self, scales: Floats) -> ElasticSurface:
         """Take the surface as at rest in other sizes, so many times as large at each vertex (n,)."""
         return ElasticSurface(self._vertices, self._laplace, self._at_edges(scales[:, None, None] * np.eye(3)))
 
-    def _stretches(
-        self, positions: NDArray[np.float64], averaged: Callable[[NDArray[np.float64]], NDArray[np.float64]]
-    ) -> NDArray[np.float64]:
+    def _stretches(self, positions: Floats, averaged: Callable[[Floats], Floats]) -> Floats:
         """Fit a linear map to the deformation around each vertex: the symmetric part of its polar decomposition.
 
         Sums over edges (n, 9) are averaged by the function that is given.
@@ -256,28 +233,23 @@ class ElasticSurface:
         stretch = nearest_rotations(linear).transpose(0, 2, 1) @ linear
         return (stretch + stretch.transpose(0, 2, 1)) / 2
 
-    def _at_edges(self, linear: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _at_edges(self, linear: Floats) -> Floats:
         """Map each edge at rest by the mean of the linear maps (n, 3, 3) of its ends, (e, 3)."""
-        mapped: NDArray[np.float64] = np.einsum(
-            "eab,eb->ea", (linear[self._tails] + linear[self._heads]) / 2, self._edges
-        )
-        return mapped
+        return np.einsum("eab,eb->ea", (linear[self._tails] + linear[self._heads]) / 2, self._edges)
 
-    def pull(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    def pull(self, rotations: Floats) -> Floats:
         """Sum of the rotated edges at each vertex, (n, 3): the right-hand side of the equilibrium."""
-        pulled: NDArray[np.float64] = self._pull @ rotations.transpose(0, 2, 1).reshape(-1, 3)
-        return pulled
+        return self._pull @ rotations.transpose(0, 2, 1).reshape(-1, 3)
 
-    def energy(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> float:
+    def energy(self, positions: Floats, rotations: Floats) -> float:
         """Energy of a deformation, an area: a number without unit for a surface of unit area."""
         return float(self._resisting @ self._misfit(positions, rotations))
 
-    def energies(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    def energies(self, positions: Floats, rotations: Floats) -> Floats:
         """Share of each vertex in the energy of a deformation, (n,): half of what its edges have."""
-        shares: NDArray[np.float64] = self._around @ (self._resisting * self._misfit(positions, rotations)) / 2
-        return shares
+        return self._around @ (self._resisting * self._misfit(positions, rotations)) / 2
 
-    def _averaged(self, values: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+    def _averaged(self, values: Floats, radius: float) -> Floats:
         """Average values (n, ...) over a neighbourhood."""
         # Each round spreads by the root of half the squared edge length.
         rounds = round(2 * (radius / self._edge_length) ** 2)
@@ -285,7 +257,7 @@ class ElasticSurface:
             values = self._average @ values
         return values
 
-    def _misfit(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _misfit(self, positions: Floats, rotations: Floats) -> Floats:
         """Squared distance of each edge from what it would be by the rotations alone, (e,)."""
         apart = positions[self._tails] - positions[self._heads] - self._at_edges(rotations)
         return np.square(apart).sum(axis=1)

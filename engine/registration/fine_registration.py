@@ -5,30 +5,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from ..geometry.laplacian import laplace_beltrami
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats, Ints
 from ..runtime.parallel_map import shared_steps
-from ..runtime.progress import within
+from ..runtime.progress import Steps, within
+from ..shapes.landmarks import Landmarks
+from ..shapes.prepared_surface import PreparedSurface
 from ..shapes.proxy import Proxy, proxy_steps
 from .deformable import DeformableSurface
 from .positional_constraints import Ties
 from .prolongation import lift_steps
-from .registration import LAST, register_steps
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..runtime.progress import Steps
-    from ..shapes.landmarks import Landmarks
-    from ..shapes.prepared_surface import PreparedSurface
-    from .registration import Stage
-
-__all__ = ["FinerSurface", "Polish", "finer_surfaces_steps"]
+from .registration import LAST, Stage, register_steps
 
 _VERTICES = 12_000
 """About how many vertices are registered of a dense mesh: enough for each finger to have its own.  With all of 80,000
@@ -100,7 +91,7 @@ class Polish:
         self._stage = stage
         self._landmarks = None if landmarks is None else (landmarks.source, landmarks.target)
 
-    def steps(self, registered: NDArray[np.float64], proxy_map: NDArray[np.int64], here: int) -> Steps[SurfacePoints]:
+    def steps(self, registered: Floats, proxy_map: Ints, here: int) -> Steps[SurfacePoints]:
         """Map every vertex of the main part of X to that of Y (`here` is 0), or of Y to that of X (1).
 
         Parameters

@@ -3,21 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..geometry.geodesic_ball import distances_to_others, vicinity
+from ..mesh.closest_points import ClosestPoints
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Ints
 from ..shapes.landmarks import placed_at_vertices
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.closest_points import ClosestPoints
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["pinned"]
 
 _REACH = 4.0
 """How far around a vertex the map is moved with it, in units of how far that is moved: enough that nothing folds."""
@@ -30,8 +23,8 @@ def pinned(
     source: TriangleMesh,
     target: TriangleMesh,
     points: SurfacePoints,
-    vertices: NDArray[np.int64],
-    partners: NDArray[np.int64],
+    vertices: Ints,
+    partners: Ints,
     *,
     search: ClosestPoints,
 ) -> SurfacePoints:

@@ -3,24 +3,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array
+from scipy.sparse import coo_array, csc_array, csr_array
 
 from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.closest_points import FoundPoints
+from ..runtime.arrays import Floats, Ints
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-    from ..mesh.closest_points import FoundPoints
-
-    Solve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
-
-__all__ = ["NormalEquations"]
+Solve = Callable[[Floats], Floats]
 
 
 class NormalEquations:
@@ -42,7 +34,7 @@ class NormalEquations:
         Corners of the triangles.
     """
 
-    def __init__(self, stiffness: csr_array, triangles: NDArray[np.int64]) -> None:
+    def __init__(self, stiffness: csr_array, triangles: Ints) -> None:
         n = stiffness.shape[0]
         known, vertices = coo_array(stiffness), np.arange(n)
         corners = np.stack([triangles.repeat(3, axis=1).ravel(), np.tile(triangles, 3).ravel()])
@@ -59,14 +51,7 @@ class NormalEquations:
         self._triangles = triangles
         self._stiffness = self._values(stiffness)
 
-    def solver(
-        self,
-        own: NDArray[np.float64],
-        points: FoundPoints,
-        weights: NDArray[np.float64],
-        *,
-        stiffness: csr_array | None = None,
-    ) -> Solve:
+    def solver(self, own: Floats, points: FoundPoints, weights: Floats, *, stiffness: csr_array | None = None) -> Solve:
         """Factor the matrix for some points.
 
         Parameters
@@ -93,18 +78,17 @@ class NormalEquations:
         n = len(self._place)
         factor = symmetric_factor(csc_array((values, self._rows, self._starts), shape=(n, n)), ordered=True)
 
-        def solve(right: NDArray[np.float64]) -> NDArray[np.float64]:
+        def solve(right: Floats) -> Floats:
             """Solve for a right-hand side in the order of the vertices."""
-            solution: NDArray[np.float64] = factor.solve(right[self._order])[self._place]
-            return solution
+            return factor.solve(right[self._order])[self._place]
 
         return solve
 
-    def _values(self, stiffness: csr_array) -> NDArray[np.float64]:
+    def _values(self, stiffness: csr_array) -> Floats:
         """Entries of a stiffness, in the order of all."""
         return np.bincount(self._of_stiffness, coo_array(stiffness).data, len(self._rows)).astype(float, copy=False)
 
-    def pull(self, points: FoundPoints, forces: NDArray[np.float64]) -> NDArray[np.float64]:
+    def pull(self, points: FoundPoints, forces: Floats) -> Floats:
         """Sum forces (k, 3) at points (k,) of the triangles, over the vertices that they act on: (n, 3)."""
         corners = self._triangles[points.triangles].ravel()
         shares = points.barycentric[:, :, None] * forces[:, None, :]  # (k, 3, 3)

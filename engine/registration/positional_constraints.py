@@ -3,26 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from ..geometry.geodesic_ball import distances_to_others, vicinity
 from ..mesh.surface_points import SurfacePoints
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..shapes.landmarks import LandmarkPlaces
-    from ..shapes.proxy import Proxy
-    from .deformable import DeformableSurface
-
-__all__ = ["Ties"]
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Floats
+from ..shapes.landmarks import LandmarkPlaces
+from ..shapes.proxy import Proxy
+from .deformable import DeformableSurface
 
 _SPREAD = 0.03
 """Radius around a tied point, in sqrt(area), on which the force that holds it is spread: about that of a thumb."""
@@ -54,11 +47,11 @@ class Ties:
     """
 
     evaluate: csr_array
-    places: NDArray[np.float64]
-    forces: NDArray[np.float64]
+    places: Floats
+    forces: Floats
 
     @classmethod
-    def at(cls, mesh: TriangleMesh, points: SurfacePoints, places: NDArray[np.float64]) -> Ties:
+    def at(cls, mesh: TriangleMesh, points: SurfacePoints, places: Floats) -> Ties:
         """Tie points (k,) of a mesh to places (k, 3)."""
         k, n = len(points), mesh.vertex_count
         rows = np.repeat(np.arange(k), 3)
@@ -80,11 +73,11 @@ class Ties:
         at = SurfacePoints.from_barycentric(source.mesh, points.triangles[vertices], points.barycentric[vertices])
         return cls.at(source.mesh, at, there.in_unit_size(target.points.positions[partners.main]))
 
-    def response(self, solve: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> NDArray[np.float64]:
+    def response(self, solve: Callable[[Floats], Floats]) -> Floats:
         """How the surface moves when each tied point is pulled by one unit of force, (n, k)."""
         return solve(self.forces)
 
-    def held(self, positions: NDArray[np.float64], response: NDArray[np.float64]) -> NDArray[np.float64]:
+    def held(self, positions: Floats, response: Floats) -> Floats:
         """Move free positions (n, 3) so that the ties hold, by the surface's own response."""
         missing = self.places - self.evaluate @ positions
         strengths, *_ = np.linalg.lstsq(self.evaluate @ response, missing, rcond=_REDUNDANT)

@@ -3,27 +3,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array
 
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.connectivity.adjacency import vertex_adjacency
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
 from ..mesh.unit_vectors import unit_vectors
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
+from ..shapes.proxy import Proxy
 from .torn_patches import NearVertices, with_patches_mended
 from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..shapes.proxy import Proxy
-
-__all__ = ["lift_steps"]
 
 _ROTATION_ROUNDS = 2  # of averaging rotation and scale over the proxy
 _FIELD_ROUNDS = 2  # of averaging the whole motion over the proxy
@@ -43,11 +36,11 @@ _LABEL = "Mapping every vertex"
 def lift_steps(
     source: TriangleMesh,
     source_proxy: Proxy,
-    registered: NDArray[np.float64],
+    registered: Floats,
     target: TriangleMesh,
     *,
     target_proxy: Proxy | None = None,
-    proxy_map: NDArray[np.int64] | None = None,
+    proxy_map: Ints | None = None,
     search: ClosestPoints | None = None,
     untangled: bool = True,
 ) -> Steps[SurfacePoints]:
@@ -159,12 +152,12 @@ class _Lift:
         self.source, self.proxy, self.target, self.search = source, proxy, target, search
         self.near: NearVertices | None = None
 
-    def restrict(self, target_proxy: Proxy, proxy_map: NDArray[np.int64]) -> None:
+    def restrict(self, target_proxy: Proxy, proxy_map: Ints) -> None:
         """Look for a vertex only near to the match of its proxy vertex."""
         self.target_proxy, self.near = target_proxy, NearVertices(target_proxy.mesh, _RINGS)
         self.proxy_map = with_patches_mended(self.proxy.mesh, proxy_map, target_proxy.mesh, self.near)
 
-    def _blended(self, motion: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def _blended(self, motion: Floats, vertices: Ints) -> Floats:
         """Motion at vertices (q,) of the dense mesh, (q, 3, 4)."""
         places = self.proxy.points
         corners, weights = places.corners[vertices], places.barycentric[vertices]
@@ -174,25 +167,21 @@ class _Lift:
             blended += weights[:, corner, None] * flat.take(corners[:, corner], axis=0)
         return blended.reshape(-1, 3, 4)
 
-    def moved(
-        self, motion: NDArray[np.float64], vertices: NDArray[np.int64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def moved(self, motion: Floats, vertices: Ints) -> tuple[Floats, Floats]:
         """Positions and normals of vertices (q,) after the motion, (q, 3) each."""
         blended = self._blended(motion, vertices)
         positions = np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertices[vertices]) + blended[:, :, 3]
         return positions, self._turned(blended, vertices)
 
-    def turned(self, motion: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def turned(self, motion: Floats, vertices: Ints) -> Floats:
         """Turn the normals of vertices (q,) by the motion, (q, 3): cheaper to do again than to keep them."""
         return self._turned(self._blended(motion, vertices), vertices)
 
-    def _turned(self, blended: NDArray[np.float64], vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def _turned(self, blended: Floats, vertices: Ints) -> Floats:
         normals = np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertex_normals[vertices])
         return unit_vectors(normals)
 
-    def starts(
-        self, vertices: NDArray[np.int64], positions: NDArray[np.float64], normals: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    def starts(self, vertices: Ints, positions: Floats, normals: Floats) -> tuple[Ints, Bools]:
         """Vertices of the target from which to search for those of the source, (q,), and which are astray, (q,)."""
         starts = self.search.nearest_vertices(positions)
         astray = np.einsum("qd,qd->q", normals, self.search.vertex_normals[starts]) < _NORMAL_GATE
@@ -203,16 +192,10 @@ class _Lift:
             astray |= far
         return starts, astray
 
-    def search_from(
-        self, starts: NDArray[np.int64], positions: NDArray[np.float64], normals: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    def search_from(self, starts: Ints, positions: Floats, normals: Floats) -> tuple[Ints, Floats, Floats]:
         """Triangles (q,) and coordinates (q, 3) of the closest points, and how far the normals agree there, (q,)."""
         found = self.search.walk(
-            positions,
-            starts,
-            normals,
-            normal_weight=_NORMAL_REACH**2 * self.target.area,
-            normal_gate=_NORMAL_GATE,
+            positions, starts, normals, normal_weight=_NORMAL_REACH**2 * self.target.area, normal_gate=_NORMAL_GATE
         )
         # Not the normal of the triangle: which of two a point is in, on their edge, is for rounding to decide.
         corners = self.target.vertex_normals[self.target.triangles[found.triangles]]
@@ -220,9 +203,7 @@ class _Lift:
         agreement = np.einsum("qd,qd->q", normals, there)
         return found.triangles, found.barycentric, agreement
 
-    def correction(
-        self, motion: NDArray[np.float64], samples: NDArray[np.int64], average: csr_array
-    ) -> NDArray[np.float64]:
+    def correction(self, motion: Floats, samples: Ints, average: csr_array) -> Floats:
         """Shift of the proxy's vertices, (k, 3), that brings samples (q,) of the dense mesh nearer to the target."""
         k = average.shape[0]
         steps, trust = np.empty((len(samples), 3)), np.empty(len(samples))
@@ -255,7 +236,7 @@ def _averaging(mesh: TriangleMesh) -> csr_array:
     return csr_array(eye_array(k) / 2 + diags_array(0.5 / degrees) @ neighbours)
 
 
-def _motion(proxy: Proxy, registered: NDArray[np.float64], average: csr_array) -> NDArray[np.float64]:
+def _motion(proxy: Proxy, registered: Floats, average: csr_array) -> Floats:
     """Motion of the surroundings of each proxy vertex, (k, 3, 4): x goes to motion[:, :3] x + motion[:, 3]."""
     rest, (a, b) = proxy.mesh.vertices, proxy.mesh.edges.T
     k = len(rest)
@@ -284,7 +265,7 @@ def _motion(proxy: Proxy, registered: NDArray[np.float64], average: csr_array) -
     return motion.reshape(k, 3, 4)
 
 
-def _check(source: TriangleMesh, source_proxy: Proxy, registered: NDArray[np.float64]) -> None:
+def _check(source: TriangleMesh, source_proxy: Proxy, registered: Floats) -> None:
     """Raise an error if the registered positions are not those of the proxy."""
     k = source_proxy.mesh.vertex_count
     _check_proxy("source", source, source_proxy)
@@ -297,7 +278,7 @@ def _check(source: TriangleMesh, source_proxy: Proxy, registered: NDArray[np.flo
         raise MatchError("Some registered positions are not finite numbers. Register the proxy again.")
 
 
-def _check_map(source_proxy: Proxy, target: TriangleMesh, target_proxy: Proxy, proxy_map: NDArray[np.int64]) -> None:
+def _check_map(source_proxy: Proxy, target: TriangleMesh, target_proxy: Proxy, proxy_map: Ints) -> None:
     """Raise an error if a map does not lead from proxy to proxy."""
     k, size = source_proxy.mesh.vertex_count, target_proxy.mesh.vertex_count
     _check_proxy("target", target, target_proxy)

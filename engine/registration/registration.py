@@ -3,45 +3,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from ..geometry.procrustes import nearest_rotations
+from ..mesh.closest_points import ClosestPoints, FoundPoints
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.parallel_map import beside_steps
 from ..runtime.progress import Progress, Steps, within
+from .deformable import DeformableSurface
+from .elastic import ElasticSurface
+from .positional_constraints import Ties
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from ..mesh.closest_points import ClosestPoints, FoundPoints
-    from .deformable import DeformableSurface
-    from .elastic import ElasticSurface
-    from .positional_constraints import Ties
-
-    Find = Callable[[ClosestPoints, NDArray[np.float64]], FoundPoints]
-    Guides = tuple[NDArray[np.float64], NDArray[np.float64]]
-    Matches = tuple[FoundPoints, FoundPoints]
-
-__all__ = [
-    "AGAIN",
-    "CLOSE",
-    "FINE",
-    "GUIDED",
-    "LAST",
-    "POLISH",
-    "SOFT",
-    "Registration",
-    "Stage",
-    "points_at",
-    "register_steps",
-    "restarted_steps",
-    "smooth_start",
-]
+Find = Callable[[ClosestPoints, Floats], FoundPoints]
+Guides = tuple[Floats, Floats]
+Matches = tuple[FoundPoints, FoundPoints]
 
 _LEAST_AGREEMENT = 0.05
 """Least part of its area with which a point counts whose normal disagrees with that of its match."""
@@ -118,14 +98,7 @@ AGAIN = Stage((80, 160, 640, 1280), 0.1, 0.05, matched="around", guide_length=0.
 the other body's does not reach its end yet, whose closest points may be on the next leg: guides keep them apart."""
 
 CLOSE = Stage(
-    (1280,) * 3 + (2560,) * 5,
-    0.05,
-    0.0,
-    matched="around",
-    lead=0.5,
-    momentum=0.9,
-    softened=(0.5, 0.75),
-    further=3,
+    (1280,) * 3 + (2560,) * 5, 0.05, 0.0, matched="around", lead=0.5, momentum=0.9, softened=(0.5, 0.75), further=3
 )
 """Without the curvatures: features of unlike bodies are not alike to the last detail."""
 
@@ -157,7 +130,7 @@ class Registration:
         of the square root of the area.
     """
 
-    positions: NDArray[np.float64]
+    positions: Floats
     on_target: FoundPoints
     on_source: FoundPoints
     energy: float
@@ -220,7 +193,7 @@ class _Matcher:
         """Search on the target by features."""
         return self.target.search.moved(self.target_features)
 
-    def source_search(self, positions: NDArray[np.float64]) -> tuple[ClosestPoints, NDArray[np.float64]]:
+    def source_search(self, positions: Floats) -> tuple[ClosestPoints, Floats]:
         """Search on the deformed source by features, and its normals (n_x, 3)."""
         normals = self.source.search.moved(positions).vertex_normals
         features = np.concatenate([positions, self.stage.normal_length * normals, self._source_features], axis=1)
@@ -231,13 +204,8 @@ class _Matcher:
         return {name: value for name, value in self.__dict__.items() if name != "target_search"}
 
     def fitted_steps(
-        self,
-        positions: NDArray[np.float64],
-        source: ClosestPoints,
-        rotate: Callable[[], NDArray[np.float64]],
-        *,
-        last: bool = False,
-    ) -> Steps[tuple[Matches, NDArray[np.float64]]]:
+        self, positions: Floats, source: ClosestPoints, rotate: Callable[[], Floats], *, last: bool = False
+    ) -> Steps[tuple[Matches, Floats]]:
         """Match every vertex of either surface, by the features of the deformed source, and find rotations meanwhile.
 
         A helper matches the target, which takes longer.
@@ -246,7 +214,7 @@ class _Matcher:
         coarse = _are_coarse(self.source, self.target)
         find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
 
-        def own_steps() -> Steps[tuple[FoundPoints, NDArray[np.float64]]]:
+        def own_steps() -> Steps[tuple[FoundPoints, Floats]]:
             """Match the source, and find the rotations."""
             yield Progress(0.0, "Fitting the surfaces")
             return find(self.target_search, source.vertices), rotate()
@@ -256,7 +224,7 @@ class _Matcher:
         return (there, back), rotations
 
 
-def _matched_back_steps(common: tuple[_Matcher, Find], positions: NDArray[np.float64]) -> Steps[FoundPoints]:
+def _matched_back_steps(common: tuple[_Matcher, Find], positions: Floats) -> Steps[FoundPoints]:
     """Match the vertices of the target, where the source has these positions."""
     matcher, find = common
     yield Progress(0.0, "Fitting the surfaces")
@@ -268,24 +236,19 @@ def _are_coarse(source: DeformableSurface, target: DeformableSurface) -> bool:
     return min(len(source.vertices), len(target.vertices)) < _COARSE
 
 
-def _nearest_vertices(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
+def _nearest_vertices(search: ClosestPoints, points: Floats) -> FoundPoints:
     return search.at_vertices(points, search.nearest_vertices(points))
 
 
-def _around_nearest_vertices(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
+def _around_nearest_vertices(search: ClosestPoints, points: Floats) -> FoundPoints:
     return search.walk(points, search.nearest_vertices(points), steps=1)
 
 
-def _anywhere(search: ClosestPoints, points: NDArray[np.float64]) -> FoundPoints:
+def _anywhere(search: ClosestPoints, points: Floats) -> FoundPoints:
     return search.nearest(points)
 
 
-def smooth_start(
-    source: DeformableSurface,
-    target: DeformableSurface,
-    images: NDArray[np.int64],
-    functions: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def smooth_start(source: DeformableSurface, target: DeformableSurface, images: Ints, functions: Floats) -> Floats:
     """Place the source where a map puts it, without the map's noise.
 
     Parameters
@@ -309,7 +272,7 @@ def smooth_start(
 def restarted_steps(
     source: DeformableSurface,
     target: DeformableSurface,
-    functions: NDArray[np.float64],
+    functions: Floats,
     matches: Matches,
     *,
     stages: tuple[Stage, ...],
@@ -345,11 +308,11 @@ def restarted_steps(
 def register_steps(
     source: DeformableSurface,
     target: DeformableSurface,
-    start: NDArray[np.float64],
+    start: Floats,
     stages: tuple[Stage, ...] = (GUIDED, SOFT, FINE, CLOSE, LAST),
     first: Matches | None = None,
     *,
-    posed: NDArray[np.float64] | None = None,
+    posed: Floats | None = None,
     elastic: ElasticSurface | None = None,
     isometry: float = 1.0,
     ties: Ties | None = None,
@@ -445,7 +408,7 @@ def register_steps(
     return Registration(positions, on_target, on_source, energy, float(source.mass @ squared), gaps)
 
 
-def _softened(elastic: ElasticSurface, positions: NDArray[np.float64], stage: Stage, sparse: float) -> ElasticSurface:
+def _softened(elastic: ElasticSurface, positions: Floats, stage: Stage, sparse: float) -> ElasticSurface:
     """Take the surface as softer as a stage has it, from 0, strained everywhere, to 1, sparsely and one way."""
     spread, few = stage.softened
     power = spread + (few - spread) * sparse
@@ -455,7 +418,7 @@ def _softened(elastic: ElasticSurface, positions: NDArray[np.float64], stage: St
     return elastic.softened(positions, radius, power, 1 - (1 - _SPARSE) * sparse, directed=sparse)
 
 
-def points_at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+def points_at(points: FoundPoints, triangles: Ints, values: Floats) -> Floats:
     """Values (n, d) of vertices, interpolated at points (k, d)."""
     return np.einsum("kc,kcd->kd", points.barycentric, values[triangles[points.triangles]])
 
@@ -463,13 +426,13 @@ def points_at(points: FoundPoints, triangles: NDArray[np.int64], values: NDArray
 def _solved(
     matcher: _Matcher,
     elastic: ElasticSurface,
-    rotations: NDArray[np.float64],
-    normals: NDArray[np.float64],
+    rotations: Floats,
+    normals: Floats,
     matches: Matches,
     *,
     weight: float,
     ties: Ties | None,
-) -> NDArray[np.float64]:
+) -> Floats:
     """Positions of least energy for given matches, beginning with some rotations."""
     on_target, on_source = matches
     source, target = matcher.source, matcher.target
@@ -485,7 +448,7 @@ def _solved(
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
     response = None if ties is None else ties.response(solve)
 
-    def at_rest(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at_rest(rotations: Floats) -> Floats:
         """Positions of least energy for given rotations."""
         if len(beyond):
             # Harmonic extension: what has no partner turns with its surroundings, however it was squeezed before.
@@ -501,7 +464,7 @@ def _solved(
     return positions
 
 
-def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> NDArray[np.bool_]:
+def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> Bools:
     """Tell which vertices (n,) of a surface are matched to where the other ends, but not because they end themselves.
 
     What they would be matched to is missing: they are not to be drawn to what is left.
@@ -512,7 +475,7 @@ def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableS
     return (ends > _ENDS) & (surface.border == 0)
 
 
-def _agreement(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _agreement(first: Floats, second: Floats) -> Floats:
     """How far normals (k, 3) agree: their product squared, or little where they turn away, (k,)."""
     lengths = np.maximum(np.linalg.norm(second, axis=1) * np.linalg.norm(first, axis=1), np.finfo(float).tiny)
     return np.clip(np.einsum("kd,kd->k", first, second) / lengths, _LEAST_AGREEMENT, 1) ** 2

@@ -3,21 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array, csr_array, eye_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from ..mesh.connectivity.adjacency import vertex_adjacency
+from ..mesh.triangle_mesh import TriangleMesh
+from ..runtime.arrays import Bools, Floats, Ints
 from .untangling import follow_neighbours
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["NearVertices", "with_patches_mended"]
 
 _PATCH = 0.02
 """Part of the area below which what a map tears off is taken for an error."""
@@ -49,17 +42,14 @@ class NearVertices:
         first = np.repeat(np.arange(self._count), np.diff(reach.indptr))
         self._keys = np.sort(first * self._count + reach.indices)
 
-    def pairs(self, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.bool_]:
+    def pairs(self, first: Ints, second: Ints) -> Bools:
         """Tell for pairs (q,) of vertices whether they are near, (q,)."""
         asked = first * self._count + second
         found = np.searchsorted(self._keys, asked).clip(max=len(self._keys) - 1)
-        near: NDArray[np.bool_] = self._keys[found] == asked
-        return near
+        return self._keys[found] == asked
 
 
-def with_patches_mended(
-    mesh: TriangleMesh, images: NDArray[np.int64], target: TriangleMesh, near: NearVertices
-) -> NDArray[np.int64]:
+def with_patches_mended(mesh: TriangleMesh, images: Ints, target: TriangleMesh, near: NearVertices) -> Ints:
     """Give small patches that a map tears off the images of what is around them.
 
     A hand that rests on a thigh is as near to it in space as the thigh itself.  So a few vertices of the one may be
@@ -96,7 +86,7 @@ def with_patches_mended(
     return follow_neighbours(mesh, images, areas[parts] < _PATCH * mesh.area)
 
 
-def _least_distances(mesh: TriangleMesh, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.float64]:
+def _least_distances(mesh: TriangleMesh, first: Ints, second: Ints) -> Floats:
     """How far pairs (q,) of vertices are apart along edges at least, (q,): as far as their distances from others."""
     n, (a, b) = mesh.vertex_count, mesh.edges.T
     graph = coo_array((mesh.edge_lengths, (a, b)), shape=(n, n)).tocsr()

@@ -3,22 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array
 
 from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.closest_points import ClosestPoints
+from ..mesh.triangle_mesh import TriangleMesh
 from ..mesh.unit_vectors import unit_vectors
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.progress import Progress, Steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.closest_points import ClosestPoints
-    from ..mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["flipped_triangles", "follow_neighbours", "heaviest_corners", "located", "torn_vertices", "untangle_steps"]
 
 _ROUNDS = 11  # none of them is the last after averaging, which others have to put right
 _AVERAGED = 4  # every so many rounds, what is still flipped is averaged first
@@ -31,7 +24,7 @@ _CHUNK = 200_000
 _TORN = 6.0  # times the median: edges that a map stretches more than this lead to another place
 
 
-def follow_neighbours(mesh: TriangleMesh, values: NDArray[np.int64], astray: NDArray[np.bool_]) -> NDArray[np.int64]:
+def follow_neighbours(mesh: TriangleMesh, values: Ints, astray: Bools) -> Ints:
     """Replace the values of some vertices by those of vertices near by.
 
     Parameters
@@ -65,7 +58,7 @@ def follow_neighbours(mesh: TriangleMesh, values: NDArray[np.int64], astray: NDA
     return values
 
 
-def torn_vertices(mesh: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np.bool_]:
+def torn_vertices(mesh: TriangleMesh, images: Floats) -> Bools:
     """Find the vertices that a map takes far away from where it takes most of their neighbours.
 
     Parameters
@@ -90,12 +83,8 @@ def torn_vertices(mesh: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np
 
 
 def flipped_triangles(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    triangles: NDArray[np.int64],
-    barycentric: NDArray[np.float64],
-    among: NDArray[np.int64] | None = None,
-) -> NDArray[np.int64]:
+    source: TriangleMesh, target: TriangleMesh, triangles: Ints, barycentric: Floats, among: Ints | None = None
+) -> Ints:
     """Find the triangles that a map turns over.
 
     Parameters
@@ -125,12 +114,7 @@ class _Image:
     """Where a map takes some triangles (f,): their v vertices, with the sides of the target that they should be on."""
 
     def __init__(
-        self,
-        source: TriangleMesh,
-        target: TriangleMesh,
-        triangles: NDArray[np.int64],
-        barycentric: NDArray[np.float64],
-        among: NDArray[np.int64],
+        self, source: TriangleMesh, target: TriangleMesh, triangles: Ints, barycentric: Floats, among: Ints
     ) -> None:
         self.vertices, corners = np.unique(source.triangles[among], return_inverse=True)
         self.corners = corners.reshape(-1, 3)  # numbers in `vertices`
@@ -140,20 +124,18 @@ class _Image:
         normals = np.einsum("vc,vcd->vd", self.barycentric, target.vertex_normals[there])[self.corners].sum(axis=1)
         self.normals = unit_vectors(normals)  # (f, 3)
 
-    def areas(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    def areas(self, positions: Floats) -> Floats:
         """Areas of the triangles, as seen from their sides, for positions (v, 3) of the vertices: (f,)."""
         a, b, c = positions[self.corners].transpose(1, 0, 2)
-        areas: NDArray[np.float64] = np.einsum("fd,fd->f", np.cross(b - a, c - a), self.normals) / 2
-        return areas
+        return np.einsum("fd,fd->f", np.cross(b - a, c - a), self.normals) / 2
 
-    def slopes(self, positions: NDArray[np.float64], chosen: NDArray[np.int64]) -> NDArray[np.float64]:
+    def slopes(self, positions: Floats, chosen: Ints) -> Floats:
         """Differentiate the areas of some triangles (l,) by the positions of their corners, (l, 3, 3)."""
         a, b, c = positions[self.corners[chosen]].transpose(1, 0, 2)
         opposite = np.stack([b - c, c - a, a - b], axis=1)
-        slopes: NDArray[np.float64] = np.cross(opposite, self.normals[chosen, None]) / 2
-        return slopes
+        return np.cross(opposite, self.normals[chosen, None]) / 2
 
-    def average(self, chosen: NDArray[np.bool_]) -> None:
+    def average(self, chosen: Bools) -> None:
         """Move chosen ones of the vertices (v,) to the mean of their neighbours, some times."""
         for _ in range(_SWEEPS):
             around = np.zeros_like(self.positions)
@@ -165,26 +147,19 @@ class _Image:
             self.positions[chosen] = (around / counts[:, None])[chosen]
 
 
-def located(mesh: TriangleMesh, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]) -> NDArray[np.float64]:
+def located(mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -> Floats:
     """Positions (k, 3) of points given by triangles (k,) and barycentric coordinates (k, 3)."""
     return np.einsum("kc,kcd->kd", barycentric, mesh.vertices[mesh.triangles[triangles]])
 
 
-def heaviest_corners(
-    mesh: TriangleMesh, triangles: NDArray[np.int64], barycentric: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def heaviest_corners(mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -> Ints:
     """For each point, the corner of its triangle with the largest coordinate, (k,)."""
     corner = barycentric.argmax(axis=1)
     return mesh.triangles[triangles, corner]
 
 
 def untangle_steps(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    triangles: NDArray[np.int64],
-    barycentric: NDArray[np.float64],
-    *,
-    search: ClosestPoints,
+    source: TriangleMesh, target: TriangleMesh, triangles: Ints, barycentric: Floats, *, search: ClosestPoints
 ) -> Steps[None]:
     r"""Turn flipped triangles of a map back, in place.
 
@@ -243,7 +218,7 @@ def untangle_steps(
         yield Progress((number + 1) / _ROUNDS, "Mapping every vertex")
 
 
-def _opened(image: _Image, rest: NDArray[np.float64], free: NDArray[np.int64]) -> NDArray[np.float64]:
+def _opened(image: _Image, rest: Floats, free: Ints) -> Floats:
     """Positions of the free vertices (q,), (q, 3), at which the triangles come nearer to their areas (f,) at rest.
 
     Found by damped Gauss-Newton steps without a search along lines: none of them decides anything, so that what is
@@ -273,6 +248,6 @@ def _opened(image: _Image, rest: NDArray[np.float64], free: NDArray[np.int64]) -
     return now[free]
 
 
-def _both_ways(edges: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _both_ways(edges: Ints) -> tuple[Ints, Ints]:
     """Tails and heads of the edges (e, 2) in both directions: an edge and its opposite side by side, (2 e,) each."""
     return edges.ravel(), edges[:, ::-1].ravel()

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
@@ -13,21 +12,15 @@ from ..dense.components.similarity_field import Surroundings
 from ..geometry.laplacian import laplace_beltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.welded_parts import WeldedParts
+from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
+from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.elastic import ElasticSurface
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.progress import Progress
+from ..runtime.progress import Progress, Steps
 from .values.deformation_gradients import surface_frames
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..mesh.surface_map import SurfaceMap
-    from ..mesh.triangle_mesh import TriangleMesh
-    from ..runtime.progress import Steps
-
-__all__ = ["WrappedSurface", "kept_in_place", "wrap_steps"]
 
 _RETURN = 0.04
 """How far from where it set out, in sqrt(area), a vertex may return from the way there and back: one that returns
@@ -70,8 +63,8 @@ class WrappedSurface:
         Area of its triangles that are turned over against their neighbours, as a part of all, 0 to 1.
     """
 
-    positions: NDArray[np.float64]
-    held: NDArray[np.bool_]
+    positions: Floats
+    held: Bools
     folded: float
 
     def __repr__(self) -> str:
@@ -84,7 +77,7 @@ def wrap_steps(
     target: TriangleMesh,
     source_to_target: SurfaceMap,
     target_to_source: SurfaceMap,
-    registered: NDArray[np.float64] | None = None,
+    registered: Floats | None = None,
 ) -> Steps[WrappedSurface]:
     """Lay the source onto the target.
 
@@ -162,7 +155,7 @@ def wrap_steps(
     return WrappedSurface(_united(parts.mesh, (positions * unit)[parts.welded]), held[parts.welded], share)
 
 
-def kept_in_place(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+def kept_in_place(mesh: TriangleMesh, positions: Floats) -> Floats:
     """Turn and move a deformed surface back to where the surface was, as well as that goes without deforming it.
 
     Parameters
@@ -185,9 +178,7 @@ def kept_in_place(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray
     return (positions - after) @ (left @ right).T + before
 
 
-def _smoothed(
-    mesh: TriangleMesh, positions: NDArray[np.float64], folded: NDArray[np.bool_]
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _smoothed(mesh: TriangleMesh, positions: Floats, folded: Bools) -> tuple[Floats, Bools]:
     """Span the surface (n, 3) evenly over what is folded, (m,), and around that as far as needed: new ones of both."""
     n = mesh.vertex_count
     one, other = mesh.edges.T
@@ -216,7 +207,7 @@ def _smoothed(
     return positions, folded
 
 
-def _united(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+def _united(mesh: TriangleMesh, positions: Floats) -> Floats:
     """Bring vertices at one place of the mesh together again, (n, 3), unless they belong to different places by now.
 
     Such as both ends of an edge without length, or the corners of two shields one before the other; but not hands that
@@ -239,7 +230,7 @@ def _united(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.fl
     return np.where(together[:, None], middle[place], positions)
 
 
-def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> NDArray[np.bool_]:
+def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> Bools:
     """Tell which vertices of the source have a place on the target, (n_x,)."""
     returned = there.transfer(back.positions)
     away = np.linalg.norm(returned - source.vertices, axis=1)
@@ -247,13 +238,7 @@ def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> NDArray[
     return (away <= near) & (there.confidence >= _LEAST_CONFIDENCE)
 
 
-def _start(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    points: SurfacePoints,
-    wanted: NDArray[np.float64],
-    held: NDArray[np.bool_],
-) -> NDArray[np.float64]:
+def _start(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, wanted: Floats, held: Bools) -> Floats:
     """Where the vertices belong, those without a place moved along with what is around them, (n_x, 3)."""
     if held.all():
         return wanted
@@ -278,7 +263,7 @@ def _start(
     return start
 
 
-def _chosen(points: SurfacePoints, rows: NDArray[np.int64]) -> SurfacePoints:
+def _chosen(points: SurfacePoints, rows: Ints) -> SurfacePoints:
     """Return some of the points."""
     return SurfacePoints(
         points.triangles[rows],
@@ -289,7 +274,7 @@ def _chosen(points: SurfacePoints, rows: NDArray[np.int64]) -> SurfacePoints:
     )
 
 
-def _folded(mesh: TriangleMesh, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _folded(mesh: TriangleMesh, positions: Floats) -> Bools:
     """Tell which triangles are turned over against the way the surface around them is turned, (m,)."""
     frames = surface_frames(mesh, positions, radius=_RADIUS)
     a, b, c = (positions[corner] for corner in mesh.triangles.T)

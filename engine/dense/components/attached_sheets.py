@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -13,14 +12,9 @@ from scipy.sparse.csgraph import connected_components
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.triangle_mesh import TriangleMesh
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...repair.clean_surface import CleanSurface
-    from .similarity_field import Surroundings
-
-__all__ = ["MappedSheets", "mapped_sheets"]
+from ...repair.clean_surface import CleanSurface
+from ...runtime.arrays import Floats, Ints
+from .similarity_field import Surroundings
 
 _SMALL = 0.02
 """Pieces up to this part of the main part's area are taken apart into sheets."""
@@ -54,10 +48,10 @@ class MappedSheets:
         The piece of Y that each is mapped to.
     """
 
-    vertices: NDArray[np.int64]
-    triangles: NDArray[np.int64]
-    barycentric: NDArray[np.float64]
-    partners: NDArray[np.int64]
+    vertices: Ints
+    triangles: Ints
+    barycentric: Floats
+    partners: Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +59,8 @@ class _Sheet:
     """A sheet: its mesh, the original vertices and triangles, its piece, and whether that has others."""
 
     mesh: TriangleMesh
-    vertices: NDArray[np.int64]
-    triangles: NDArray[np.int64]
+    vertices: Ints
+    triangles: Ints
     piece: int
     has_others: bool
 
@@ -139,9 +133,7 @@ def _carried(sheet: _Sheet, around: Surroundings) -> TriangleMesh:
     return TriangleMesh(carried, sheet.mesh.triangles)
 
 
-def _paired(
-    here: list[_Sheet], there: list[_Sheet], around: Surroundings
-) -> list[tuple[_Sheet, _Sheet, NDArray[np.float64]]]:
+def _paired(here: list[_Sheet], there: list[_Sheet], around: Surroundings) -> list[tuple[_Sheet, _Sheet, Floats]]:
     """Find which sheets of X come to lie on which of Y, and the places (n, 3) of their vertices there."""
     carried = [_carried(sheet, around) for sheet in here]
     costs = np.full((len(here), len(there)), _NOT_POSSIBLE)

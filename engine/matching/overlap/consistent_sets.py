@@ -4,17 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .oriented_patches import OrientedPatches
-    from .patch_candidates import Candidates
-
-__all__ = ["PLANS", "ConsistentSet", "Plan", "consistent_sets"]
+from ...runtime.arrays import Bools, Floats, Ints
+from .oriented_patches import OrientedPatches
+from .patch_candidates import Candidates
 
 _ROUNDS = 5
 """Rounds of the power iteration."""
@@ -66,7 +62,7 @@ class ConsistentSet:
         How much each is supported by the others, at most 1.
     """
 
-    members: NDArray[np.int64]
+    members: Ints
     weights: NDArray[np.float32]
 
 
@@ -74,7 +70,7 @@ def consistent_sets(
     candidates: Candidates,
     together: NDArray[np.float32],
     patches: tuple[OrientedPatches, OrientedPatches],
-    shares: NDArray[np.float64],
+    shares: Floats,
     plan: Plan,
 ) -> list[ConsistentSet]:
     """Find sets of candidates that go together, by power iterations from single ones.
@@ -110,7 +106,7 @@ def consistent_sets(
     return _distinct([each for _, each in found], candidates, patches, plan.most)
 
 
-def _seeds(support: NDArray[np.float32], first: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+def _seeds(support: NDArray[np.float32], first: Ints, most: int) -> Ints:
     """Take the best supported candidates, so many at most: first the best of each place (k,), then the second best.
 
     What many candidates support would else be found again and again, and what two surfaces share may be small.
@@ -123,11 +119,7 @@ def _seeds(support: NDArray[np.float32], first: NDArray[np.int64], most: int) ->
 
 
 def _grown(
-    together: NDArray[np.float32],
-    places: _Places,
-    seed: int,
-    share: NDArray[np.float32],
-    near: NDArray[np.bool_],
+    together: NDArray[np.float32], places: _Places, seed: int, share: NDArray[np.float32], near: Bools
 ) -> tuple[float, ConsistentSet] | None:
     """Grow a set from a seed among candidates that are near, with its strength; None if it stays too small."""
     weights = together[seed] * near
@@ -153,7 +145,7 @@ def _distinct(
     """Keep the first of sets that are alike, so many at most."""
     between = patches[1].between
     kept: list[ConsistentSet] = []
-    taken: list[NDArray[np.int64]] = []
+    taken: list[Ints] = []
     for each in sets:
         images = np.full(len(patches[0]), -1)
         images[candidates.first[each.members]] = candidates.second[each.members]
@@ -165,7 +157,7 @@ def _distinct(
     return kept
 
 
-def _are_alike(images: NDArray[np.int64], others: NDArray[np.int64], between: NDArray[np.float64]) -> bool:
+def _are_alike(images: Ints, others: Ints, between: Floats) -> bool:
     """Say whether two sets take what they share to about the same places, (s,) each, -1 for none."""
     both = (images >= 0) & (others >= 0)
     if both.sum() < _COMMON * min((images >= 0).sum(), (others >= 0).sum()):
@@ -176,16 +168,14 @@ def _are_alike(images: NDArray[np.int64], others: NDArray[np.int64], between: ND
 class _Places:
     """Candidates in the order of their places, to find the best of each."""
 
-    def __init__(self, places: NDArray[np.int64]) -> None:
+    def __init__(self, places: Ints) -> None:
         self.numbers, self._starts = np.unique(places, return_index=True)
         self._of = np.repeat(np.arange(len(self.numbers)), np.diff(np.append(self._starts, len(places))))
 
     def best(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
         """Largest of the values (k, ...) of each place."""
-        largest: NDArray[np.float32] = np.maximum.reduceat(values, self._starts, axis=0)
-        return largest
+        return np.maximum.reduceat(values, self._starts, axis=0)
 
-    def is_best(self, values: NDArray[np.float32]) -> NDArray[np.bool_]:
+    def is_best(self, values: NDArray[np.float32]) -> Bools:
         """Say whether each value, (k,), is the largest of its place."""
-        largest: NDArray[np.bool_] = values >= self.best(values)[self._of] - _TIE
-        return largest
+        return values >= self.best(values)[self._of] - _TIE

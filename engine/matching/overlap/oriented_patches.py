@@ -4,19 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...mesh.unit_vectors import unit_vectors
-from .part_surface import summed_rows
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .part_surface import PartSurface
-
-__all__ = ["RINGS", "TURNS", "OrientedPatches", "oriented_patches"]
+from ...runtime.arrays import Floats, Ints
+from .part_surface import PartSurface, summed_rows
 
 _TINY = float(np.finfo(float).tiny)
 
@@ -55,17 +48,17 @@ class OrientedPatches:
         How much of each cell there is: nothing where the surface was cut off.
     """
 
-    vertices: NDArray[np.int64]
-    paths: NDArray[np.float64]
-    frames: NDArray[np.float64]
-    values: NDArray[np.float64]
-    weights: NDArray[np.float64]
+    vertices: Ints
+    paths: Floats
+    frames: Floats
+    values: Floats
+    weights: Floats
 
     def __len__(self) -> int:
         return len(self.vertices)
 
     @property
-    def between(self) -> NDArray[np.float64]:
+    def between(self) -> Floats:
         """Lengths of the paths between the points, (s, s)."""
         return self.paths[:, self.vertices]
 
@@ -102,7 +95,7 @@ def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:
     return OrientedPatches(vertices, paths, frames, values, weights)
 
 
-def _frames(normals: NDArray[np.float64]) -> NDArray[np.float64]:
+def _frames(normals: Floats) -> Floats:
     """Find axes (s, 3, 3), right-handed, the last along each normal (s, 3)."""
     upwards = unit_vectors(normals)
     # Any axis that is not along the normal will do.
@@ -111,19 +104,17 @@ def _frames(normals: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([first, np.cross(upwards, first), upwards], axis=1)
 
 
-def _seen(
-    offsets: NDArray[np.float64], normals: NDArray[np.float64], lengths: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _seen(offsets: Floats, normals: Floats, lengths: Floats) -> tuple[Ints, Floats]:
     """Find the cells of points (k,) and what is seen there, (k, 4), by places, normals and lengths of paths."""
     aside = np.hypot(offsets[:, 0], offsets[:, 1])
     outwards = (normals[:, :2] * offsets[:, :2]).sum(axis=1) / np.maximum(aside, _TINY)
     seen = offsets[:, 2] / _HEIGHT, (aside - lengths) / _HEIGHT, _FACING * normals[:, 2], _FACING * outwards
     angles = np.arctan2(offsets[:, 1], offsets[:, 0]) / (2 * np.pi) * TURNS
     rings = np.searchsorted(_RADII, lengths, side="right") - 1
-    cells: NDArray[np.int64] = rings * TURNS + np.floor(angles).astype(np.int64) % TURNS
+    cells: Ints = rings * TURNS + np.floor(angles).astype(np.int64) % TURNS
     return cells, np.stack(seen, axis=1)
 
 
-def _blurred(cells: NDArray[np.float64]) -> NDArray[np.float64]:
+def _blurred(cells: Floats) -> Floats:
     """Share what is in cells (RINGS, TURNS, ...) with those beside them on the ring."""
     return cells + (np.roll(cells, 1, axis=1) + np.roll(cells, -1, axis=1)) / 2

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import diags_array
@@ -12,21 +11,13 @@ from scipy.spatial import cKDTree
 
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.parallel_map import shared_steps
-from ...runtime.progress import Progress, within
+from ...runtime.progress import Progress, Steps, within
 from .overlap_score import shared_area
-from .overlap_search import CoarsePair, overlap_fits_steps, scored_fit
-from .part_registration import FINE, TURNED, Landmarks, placed, register_parts
+from .overlap_search import CoarsePair, ScoredFit, overlap_fits_steps, scored_fit
+from .part_registration import FINE, TURNED, Fit, Landmarks, placed, register_parts
 from .part_surface import PartSurface
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...runtime.progress import Steps
-    from .overlap_search import ScoredFit
-    from .part_registration import Fit
-
-__all__ = ["Overlap", "overlap_steps"]
 
 _COARSE = 800
 """Vertices of the coarse surfaces."""
@@ -81,9 +72,9 @@ class Overlap:
         Area of what is shared, as a part of that of the larger surface.
     """
 
-    positions: tuple[NDArray[np.float64], NDArray[np.float64]]
-    images: tuple[NDArray[np.int64], NDArray[np.int64]]
-    members: tuple[NDArray[np.bool_], NDArray[np.bool_]]
+    positions: tuple[Floats, Floats]
+    images: tuple[Ints, Ints]
+    members: tuple[Bools, Bools]
     score: float
     margin: float
     agreement: float
@@ -196,7 +187,7 @@ def _mutual_steps(pair: CoarsePair, ways: tuple[list[ScoredFit], list[ScoredFit]
     return sorted(found, key=lambda mutual: -mutual.score)
 
 
-_Side = tuple["NDArray[np.int64]", "NDArray[np.bool_]"]
+_Side = tuple["Ints", "Bools"]
 
 
 def _side(scored: ScoredFit, back: int) -> _Side:
@@ -237,7 +228,7 @@ def _fine_fits_steps(pair: CoarsePair, best: _MutualFit) -> Steps[tuple[Fit, Fit
     return there, back
 
 
-def _fine_fit(source: PartSurface, target: PartSurface, coarse: PartSurface, positions: NDArray[np.float64]) -> Fit:
+def _fine_fit(source: PartSurface, target: PartSurface, coarse: PartSurface, positions: Floats) -> Fit:
     """Register a surface from where the coarse one that stands for it is."""
     weights = np.zeros(source.count)
     weights[coarse.ids] = _HOLD * np.sqrt(1000 * source.area / source.count)
@@ -253,7 +244,7 @@ def _fine_fit(source: PartSurface, target: PartSurface, coarse: PartSurface, pos
 
 def _members_of_both(
     surfaces: tuple[PartSurface, PartSurface], fits: tuple[Fit, Fit]
-) -> tuple[tuple[NDArray[np.bool_], NDArray[np.bool_]], float]:
+) -> tuple[tuple[Bools, Bools], float]:
     """Say which vertices of either surface have a partner by both registrations, and how far these agree."""
     said = (fits[0].members, fits[1].members_back), (fits[1].members, fits[0].members_back)
     images = fits[0].there.images, fits[1].there.images

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import expit
@@ -17,21 +16,14 @@ from ...hierarchical.sparse_result import CoarseMatch, Level
 from ...mesh.connectivity.adjacency import neighbour_means
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import SurfacePoints
+from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.prolongation import lift_steps
-from ...runtime.progress import Progress, within
+from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.progress import Progress, Steps, within
+from ...shapes.shape import Shape
 from ..result import MatchResult
-from .overlap_maps import overlap_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...runtime.progress import Steps
-    from ...shapes.shape import Shape
-    from ..shape_matching import MatchTask
-    from .overlap_maps import Overlap
-
-__all__ = ["CLEAR", "OverlapMatch", "credibility", "overlap_match_steps"]
+from ..shape_matching import MatchTask
+from .overlap_maps import Overlap, overlap_steps
 
 CLEAR = 0.5
 """Credibility from which on an overlap is more likely right than not."""
@@ -151,7 +143,7 @@ class _Shared:
 
     meshes: tuple[TriangleMesh, TriangleMesh]
     maps: tuple[SurfacePoints, SurfacePoints]
-    known: tuple[NDArray[np.bool_], NDArray[np.bool_]]
+    known: tuple[Bools, Bools]
     likely: float
 
     @property
@@ -162,27 +154,25 @@ class _Shared:
         )
         return source, target
 
-    def trips(self, here: int) -> NDArray[np.float64]:
+    def trips(self, here: int) -> Floats:
         """Distance between each vertex of one surface and where both maps bring it, in sqrt(area)."""
-        trips: NDArray[np.float64] = round_trips(self.meshes[here], self.maps[here], self.maps[1 - here])
+        trips: Floats = round_trips(self.meshes[here], self.maps[here], self.maps[1 - here])
         return trips / np.sqrt(self.meshes[here].area)
 
-    def trust(self, here: int) -> NDArray[np.float64]:
+    def trust(self, here: int) -> Floats:
         """How far the image of each vertex of one surface can be trusted: no more than all of it."""
         confidence = neighbour_means(self.meshes[here], trip_confidence(self.trips(here)))
         return self.likely * self.known[here] * np.clip(confidence, 0, 1)
 
 
-def _lifted_steps(
-    own: Shape, other: Shape, positions: NDArray[np.float64], images: NDArray[np.int64]
-) -> Steps[SurfacePoints]:
+def _lifted_steps(own: Shape, other: Shape, positions: Floats, images: Ints) -> Steps[SurfacePoints]:
     """Map every vertex of the main part of one surface to that of the other."""
     surface, image = own.surface, other.surface
     ends = surface.cleaned.mesh, surface.proxy, positions, image.cleaned.mesh
     return (yield from lift_steps(*ends, target_proxy=image.proxy, proxy_map=images, search=image.dense_search))
 
 
-def _on_main(shape: Shape, members: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _on_main(shape: Shape, members: Bools) -> Bools:
     """Carry truth values (k,) of what is matched to the vertices of the main part."""
     proxy = shape.surface.proxy
     if proxy.is_identity:
@@ -271,7 +261,7 @@ def _on_main_part(shape: Shape, points: SurfacePoints) -> bool:
     return bool((shape.surface.cleaned.vertex_parts[points.nearest_vertices] == 0).all())
 
 
-def _spread(shape: Shape, members: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _spread(shape: Shape, members: Ints, count: int) -> Ints:
     """Take some of the vertices (k,) of a surface, far from each other; they may be in several pieces."""
     graph = shape.solver.graph
     centre = shape.mesh.vertices[members].mean(axis=0)

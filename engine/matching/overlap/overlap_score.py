@@ -3,17 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .part_registration import Fit
-    from .part_surface import PartSurface
-
-__all__ = ["overlap_score", "shared_area"]
+from ...runtime.arrays import Bools, Ints
+from .part_registration import Fit
+from .part_surface import PartSurface
 
 _TINY = float(np.finfo(float).tiny)
 
@@ -68,9 +62,7 @@ def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
     return _BIAS + sum(weight * float(np.log((value + more) / unit)) for (weight, more, unit), value in terms)
 
 
-def _inner_outline(
-    surface: PartSurface, other: PartSurface, members: NDArray[np.bool_], images: NDArray[np.int64]
-) -> float:
+def _inner_outline(surface: PartSurface, other: PartSurface, members: Bools, images: Ints) -> float:
     """Length of the outline of the overlap on a surface that is inside of both, about."""
     edges = surface.mesh.edges
     ends = members[edges]

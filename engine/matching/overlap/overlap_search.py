@@ -3,30 +3,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...runtime.progress import Progress, within
-from .consistent_sets import PLANS, consistent_sets
+from ...runtime.arrays import Floats
+from ...runtime.progress import Progress, Steps, within
+from .consistent_sets import PLANS, ConsistentSet, consistent_sets
 from .oriented_patches import oriented_patches
 from .overlap_score import overlap_score
-from .part_registration import FAST, REST, Landmarks, placed, register_parts
+from .part_registration import FAST, REST, Fit, Landmarks, Round, placed, register_parts
+from .part_surface import PartSurface
 from .patch_candidates import compatibilities, patch_candidates
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from numpy.typing import NDArray
-
-    from ...runtime.progress import Steps
-    from .consistent_sets import ConsistentSet
-    from .part_registration import Fit, Round
-    from .part_surface import PartSurface
-
-__all__ = ["CoarsePair", "ScoredFit", "overlap_fits_steps", "scored_fit"]
 
 _PATCHES = 160, 300
 """Patches of the surface that is laid onto the other, and of that one."""
@@ -117,9 +107,9 @@ class _Start:
         Distances from these, if they are only in a piece of it.
     """
 
-    positions: NDArray[np.float64]
+    positions: Floats
     marks: Landmarks
-    from_marks: NDArray[np.float64] | None
+    from_marks: Floats | None
 
 
 def _followed(

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import diags_array
@@ -12,14 +11,8 @@ from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
 from ...geometry.symmetric_factor import symmetric_factor
-from .part_surface import summed_rows
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .part_surface import PartSurface
-
-__all__ = ["FAST", "FINE", "REST", "TURNED", "Fit", "Landmarks", "PartMatches", "Round", "placed", "register_parts"]
+from ...runtime.arrays import Bools, Floats, Ints
+from .part_surface import PartSurface, summed_rows
 
 _LEAST_FACING = 0.05
 """Least part of its area with which a point counts whose normal disagrees with that of its match."""
@@ -107,9 +100,9 @@ _FOUND = Round(0, 0.06, 0.1, 0.05)
 class Landmarks:
     """Vertices (k,) that are to go to places (k, 3), and how much each counts, (k,)."""
 
-    vertices: NDArray[np.int64]
-    places: NDArray[np.float64]
-    weights: NDArray[np.float64]
+    vertices: Ints
+    places: Floats
+    weights: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,10 +121,10 @@ class PartMatches:
         How much the match counts: nothing if it is where the other surface was cut off, and this one was not.
     """
 
-    images: NDArray[np.int64]
-    gaps: NDArray[np.float64]
-    facing: NDArray[np.float64]
-    credit: NDArray[np.float64]
+    images: Ints
+    gaps: Floats
+    facing: Floats
+    credit: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,18 +145,16 @@ class Fit:
         Which vertices of it, and of the other surface, have a partner.
     """
 
-    positions: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    energies: NDArray[np.float64]
+    positions: Floats
+    rotations: Floats
+    energies: Floats
     there: PartMatches
     back: PartMatches
-    members: NDArray[np.bool_]
-    members_back: NDArray[np.bool_]
+    members: Bools
+    members_back: Bools
 
 
-def placed(
-    surface: PartSurface, marks: Landmarks, rotations: NDArray[np.float64], paths: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], Landmarks]:
+def placed(surface: PartSurface, marks: Landmarks, rotations: Floats, paths: Floats) -> tuple[Floats, Landmarks]:
     """Place a surface by landmarks, all else following as rigidly as it can.
 
     Parameters
@@ -201,11 +192,11 @@ def placed(
 def register_parts(
     source: PartSurface,
     target: PartSurface,
-    start: NDArray[np.float64],
+    start: Floats,
     rounds: tuple[Round, ...],
     *,
     marks: Landmarks | None = None,
-    from_marks: NDArray[np.float64] | None = None,
+    from_marks: Floats | None = None,
     done: int = 0,
 ) -> Fit:
     """Deform a surface onto another, where both have a partner.
@@ -253,7 +244,7 @@ def register_parts(
 
 
 def _matched(
-    source: PartSurface, target: PartSurface, positions: NDArray[np.float64], stage: Round
+    source: PartSurface, target: PartSurface, positions: Floats, stage: Round
 ) -> tuple[PartMatches, PartMatches]:
     """Find for each vertex of either surface the most similar one of the other."""
     normals = source.search.moved(positions).vertex_normals
@@ -276,12 +267,12 @@ def _matched(
     return there, back
 
 
-def _facing(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _facing(first: Floats, second: Floats) -> Floats:
     """How far unit normals (k, 3) agree, (k,): their product squared, or little where they turn away."""
     return np.clip(np.einsum("kd,kd->k", first, second), _LEAST_FACING, 1) ** 2
 
 
-def _members(surface: PartSurface, matches: PartMatches) -> NDArray[np.bool_]:
+def _members(surface: PartSurface, matches: PartMatches) -> Bools:
     """Say which vertices, (n,), have a partner: of these the largest connected piece, smooth in outline."""
     close = (matches.credit > 0) & (matches.gaps < _MEMBER_GAP) & (matches.facing > _MEMBER_FACING)
     return surface.largest_piece(surface.smoothed(close.astype(np.float64), _MEMBER_SMOOTHING) > 1 / 2)

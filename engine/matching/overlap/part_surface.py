@@ -4,28 +4,22 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.linalg import SuperLU
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.sampling import farthest_point_sampling
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import heat_curvatures
 from ...registration.elastic import ElasticSurface
+from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.progress import Steps
 from ...shapes.proxy import proxy_steps
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse.linalg import SuperLU
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...runtime.progress import Steps
-
-__all__ = ["PartSurface", "summed_rows"]
 
 _PINHOLE = 0.08
 """Length of a loop of the border, in sqrt(area) of the surface, up to which nothing was cut off there: it is a hole."""
@@ -60,7 +54,7 @@ class PartSurface:
     is_sent_once = True
     """See `parallel_map.shared_steps`."""
 
-    def __init__(self, mesh: TriangleMesh, ids: NDArray[np.int64] | None = None) -> None:
+    def __init__(self, mesh: TriangleMesh, ids: Ints | None = None) -> None:
         self.mesh = mesh
         self.ids = np.arange(mesh.vertex_count) if ids is None else ids
         self.vertices, self.normals = mesh.vertices, mesh.vertex_normals
@@ -99,7 +93,7 @@ class PartSurface:
         return ElasticSurface(self.vertices, self._laplace)
 
     @cached_property
-    def curvatures(self) -> NDArray[np.float64]:
+    def curvatures(self) -> Floats:
         """Mean curvature at two scales, without unit, (n, 2); see `heat_curvatures`."""
         return heat_curvatures(self._laplace.stiffness, self.mass, self.vertices, self.normals, _CURVATURE_TIMES)
 
@@ -111,7 +105,7 @@ class PartSurface:
         return csr_array((np.tile(self.mesh.edge_lengths, 2), ends), shape=(self.count,) * 2)
 
     @cached_property
-    def border(self) -> NDArray[np.bool_]:
+    def border(self) -> Bools:
         """Vertices (n,) at which something may have been cut off: those of loops of the border that are no pinholes."""
         edges = self.mesh.boundary_edges
         cut = np.zeros(self.count, bool)
@@ -123,23 +117,21 @@ class PartSurface:
         return cut
 
     @cached_property
-    def border_distances(self) -> NDArray[np.float64]:
+    def border_distances(self) -> Floats:
         """Distance of each vertex to where the surface was cut, (n,); `_UNREACHED` where it was not."""
         if not self.border.any():
             return np.full(self.count, _UNREACHED)
         return np.minimum(self.nearest_path(np.flatnonzero(self.border)), _UNREACHED)
 
-    def paths(self, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def paths(self, vertices: Ints) -> Floats:
         """Lengths of the shortest paths from vertices (k,) to all, (k, n); infinite where there is none."""
-        lengths: NDArray[np.float64] = dijkstra(self.graph, indices=vertices)
-        return lengths
+        return dijkstra(self.graph, indices=vertices)
 
-    def nearest_path(self, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def nearest_path(self, vertices: Ints) -> Floats:
         """Length of the shortest path from any of some vertices (k,) to each, (n,)."""
-        lengths: NDArray[np.float64] = dijkstra(self.graph, indices=vertices, min_only=True)
-        return lengths
+        return dijkstra(self.graph, indices=vertices, min_only=True)
 
-    def samples(self, count: int) -> NDArray[np.int64]:
+    def samples(self, count: int) -> Ints:
         """Take vertices far from each other, at most so many, that do not depend on the order of the vertices."""
         if self.border.any():
             start = int(self.border_distances.argmax())
@@ -148,14 +140,14 @@ class PartSurface:
             start = int(np.square(self.vertices - centre).sum(axis=1).argmax())
         return farthest_point_sampling(self.graph, min(count, self.count), start)
 
-    def smoothed(self, values: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+    def smoothed(self, values: Floats, time: float) -> Floats:
         """Let values (n, ...) at the vertices spread like heat for a time, in units of area."""
         if time not in self._factors:
             self._factors[time] = symmetric_factor(diags_array(self.mass) + time * self._laplace.stiffness)
         flat = values.reshape(self.count, -1)
         return self._factors[time].solve(self.mass[:, None] * flat).reshape(values.shape)
 
-    def largest_piece(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    def largest_piece(self, chosen: Bools) -> Bools:
         """Keep of the chosen vertices (n,) those of the connected piece with the largest area."""
         edges = self.mesh.edges[chosen[self.mesh.edges].all(axis=1)]
         graph = coo_array((np.ones(len(edges)), edges.T), shape=(self.count,) * 2)
@@ -164,6 +156,6 @@ class PartSurface:
         return chosen & (pieces == areas.argmax())
 
 
-def summed_rows(numbers: NDArray[np.int64], rows: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+def summed_rows(numbers: Ints, rows: Floats, count: int) -> Floats:
     """Sum the rows (k, d) of each number, (count, d)."""
     return np.stack([np.bincount(numbers, column, count) for column in rows.T], axis=1)

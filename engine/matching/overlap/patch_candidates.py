@@ -4,19 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .oriented_patches import TURNS
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .oriented_patches import OrientedPatches
-    from .part_surface import PartSurface
-
-__all__ = ["Candidates", "compatibilities", "patch_candidates"]
+from ...runtime.arrays import Floats, Ints
+from .oriented_patches import TURNS, OrientedPatches
+from .part_surface import PartSurface
 
 _RING_WEIGHTS = np.array([1.0, 1.0, 0.9, 0.7, 0.5, 0.35])
 """How much each ring counts, from the inside out: poses and cuts change what is far away."""
@@ -65,10 +59,10 @@ class Candidates:
         What turns the surroundings of the former to lie like those of the latter.
     """
 
-    first: NDArray[np.int64]
-    second: NDArray[np.int64]
-    credit: NDArray[np.float64]
-    rotations: NDArray[np.float64]
+    first: Ints
+    second: Ints
+    credit: Floats
+    rotations: Floats
 
     def __len__(self) -> int:
         return len(self.first)
@@ -100,12 +94,12 @@ def patch_candidates(first: OrientedPatches, second: OrientedPatches) -> Candida
     return Candidates(here, there, credit, rotations)
 
 
-def _costs(first: OrientedPatches, second: OrientedPatches) -> NDArray[np.float64]:
+def _costs(first: OrientedPatches, second: OrientedPatches) -> Floats:
     """Compare all patches of two surfaces, (TURNS, s, t), by the cells that both show."""
     rings = np.sqrt(_RING_WEIGHTS)[:, None]
     total = float(_RING_WEIGHTS.sum()) * TURNS
 
-    def moments(patches: OrientedPatches, shift: int) -> tuple[NDArray[np.float64], ...]:
+    def moments(patches: OrientedPatches, shift: int) -> tuple[Floats, ...]:
         """Weights of the cells, and with these the values and their squares, each in one row for a patch."""
         weights = np.roll(patches.weights * rings, shift, axis=2)
         values = np.roll(patches.values, shift, axis=2)
@@ -124,9 +118,7 @@ def _costs(first: OrientedPatches, second: OrientedPatches) -> NDArray[np.float6
 
 
 def compatibilities(
-    candidates: Candidates,
-    surfaces: tuple[PartSurface, PartSurface],
-    patches: tuple[OrientedPatches, OrientedPatches],
+    candidates: Candidates, surfaces: tuple[PartSurface, PartSurface], patches: tuple[OrientedPatches, OrientedPatches]
 ) -> NDArray[np.float32]:
     """Say of each two candidates how well they go together, (k, k), 0 to 1; those of one place do not.
 
@@ -172,7 +164,7 @@ class _Side:
     places: NDArray[np.float32]
     lengths: NDArray[np.float32]
     to_border: NDArray[np.float32]
-    patches: NDArray[np.int64]
+    patches: Ints
 
 
 def _doubts(sides: tuple[_Side, _Side], rotations: NDArray[np.float32], rows: slice) -> NDArray[np.float32]:
@@ -197,5 +189,4 @@ def _doubts(sides: tuple[_Side, _Side], rotations: NDArray[np.float32], rows: sl
         apart += np.square(along[rows] @ here.T - turned[rows, axis, None] + step)
         apart += np.square(here[rows] @ along.T - turned[:, axis] - step)
     wide = (far + _BESIDE) * (_DIRECTIONS + _BENT * np.minimum(far, _FARTHEST))
-    summed: NDArray[np.float32] = doubts + apart / (np.square(wide) * 4)
-    return summed
+    return doubts + apart / (np.square(wide) * 4)

@@ -3,31 +3,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import RigError
+from ..rig.fitted_rig import FittedRig
 from ..rig.joint_placement import least_turns, place_joints, standing
+from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import carried, row_sums
 from .segments import Segments
 from .tree_alignment import aligned
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ..rig.fitted_rig import FittedRig
-    from ..rig.skeleton import Skeleton
-
-__all__ = ["BonePairing", "pair_bones"]
 
 _SHARES = {"subtree": 0.45, "own": 0.35, "place": 0.2}
 """How much it counts that two bones move the same with all that hangs on them, and by themselves, and turn around the
@@ -78,12 +71,12 @@ class BonePairing:
         How the target stands as a whole, turned against the source.
     """
 
-    sources: NDArray[np.int64]
-    targets: NDArray[np.int64]
-    scores: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    places: NDArray[np.float64]
-    upright: NDArray[np.float64]
+    sources: Ints
+    targets: Ints
+    scores: Floats
+    rotations: Floats
+    places: Floats
+    upright: Floats
 
     def __post_init__(self) -> None:
         count = len(self.sources)
@@ -108,7 +101,7 @@ def pair_bones(
     *,
     fixed: Sequence[tuple[int, int]] = (),
     alone: Sequence[int] = (),
-    frames: NDArray[np.float64] | None = None,
+    frames: Floats | None = None,
 ) -> BonePairing:
     """Pair the bones of a rig that was fitted into a target with those that the target has itself.
 
@@ -190,9 +183,9 @@ class _Comparison:
     whether the source's (a,) and the target's bones (b,) move anything by themselves.
     """
 
-    scores: NDArray[np.float64]
-    inside: NDArray[np.float64]
-    moving: tuple[NDArray[np.bool_], NDArray[np.bool_]]
+    scores: Floats
+    inside: Floats
+    moving: tuple[Bools, Bools]
 
 
 def _compared(
@@ -241,12 +234,12 @@ def _below(tree: Skeleton) -> csr_array:
     return csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(tree), len(tree)))
 
 
-def _part(some: NDArray[np.float64], of: NDArray[np.float64]) -> NDArray[np.float64]:
+def _part(some: Floats, of: Floats) -> Floats:
     """Divide, and make it zero where there is nothing."""
     return np.divide(some, of, out=np.zeros_like(some), where=of > 0)
 
 
-def _common(one: csr_array, other: csr_array, areas: NDArray[np.float64]) -> NDArray[np.float64]:
+def _common(one: csr_array, other: csr_array, areas: Floats) -> Floats:
     """Area that columns of weights (n, b) and (n, a) have in common, as soft sets: the lesser of both, (b, a)."""
     result = np.zeros(one.shape[1] * other.shape[1])
     (first, mine), (second, theirs) = _entries(one), _entries(other)
@@ -257,7 +250,7 @@ def _common(one: csr_array, other: csr_array, areas: NDArray[np.float64]) -> NDA
     return result.reshape(one.shape[1], -1)
 
 
-def _entries(weights: csr_array) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _entries(weights: csr_array) -> tuple[Ints, Floats]:
     """Columns and values (n, k) of the entries of each row, filled up with zeros in the first column."""
     counts = np.diff(weights.indptr)
     rows = np.repeat(np.arange(len(counts)), counts)
@@ -270,7 +263,7 @@ def _entries(weights: csr_array) -> tuple[NDArray[np.int64], NDArray[np.float64]
     return columns, values
 
 
-def _gains(scores: NDArray[np.float64], fixed: Sequence[tuple[int, int]], alone: Sequence[int]) -> NDArray[np.float64]:
+def _gains(scores: Floats, fixed: Sequence[tuple[int, int]], alone: Sequence[int]) -> Floats:
     """Find what each pair is worth, (b, a), with those that are given and those that are forbidden."""
     gains = scores - _LEAST_SCORE
     for source, target in fixed:
@@ -280,12 +273,7 @@ def _gains(scores: NDArray[np.float64], fixed: Sequence[tuple[int, int]], alone:
     return gains
 
 
-def _chosen(
-    gains: NDArray[np.float64],
-    found: _Comparison,
-    trees: tuple[Skeleton, Skeleton],
-    given: dict[int, int],
-) -> NDArray[np.int64]:
+def _chosen(gains: Floats, found: _Comparison, trees: tuple[Skeleton, Skeleton], given: dict[int, int]) -> Ints:
     """Choose the pairs, (k, 2): the target's bones look for partners, and then those of the source that have none."""
     source_bones, bones = trees
     forth = aligned(gains, bones, source_bones, found.moving[0])
@@ -303,10 +291,7 @@ def _chosen(
 
 
 def _without_offshoots(
-    pairs: set[tuple[int, int]],
-    trees: tuple[Skeleton, Skeleton],
-    gains: NDArray[np.float64],
-    inside: NDArray[np.float64],
+    pairs: set[tuple[int, int]], trees: tuple[Skeleton, Skeleton], gains: Floats, inside: Floats
 ) -> set[tuple[int, int]]:
     """Leave out bones that share the partner of a better one, unless the chain goes on below them."""
     for side, tree in enumerate(trees):
@@ -341,14 +326,14 @@ def _ancestors(tree: Skeleton, bone: int) -> set[int]:
     return found
 
 
-def _any_normals(skeleton: Skeleton) -> NDArray[np.float64]:
+def _any_normals(skeleton: Skeleton) -> Floats:
     """Give each bone some direction across it, (b, 3)."""
     along = unit_vectors(skeleton.tails - skeleton.heads)
     other = np.eye(3)[np.abs(along).argmin(axis=1)]
     return unit_vectors(other - (other * along).sum(axis=1, keepdims=True) * along)
 
 
-def _upright(rig: FittedRig, source: TriangleMesh, frames: NDArray[np.float64] | None) -> NDArray[np.float64]:
+def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None) -> Floats:
     """Find how the target stands: turned by what takes axes to axes, or by one of the frames, if that is near."""
     middle = standing(rig, source)
     axes = np.array(
@@ -363,13 +348,7 @@ def _upright(rig: FittedRig, source: TriangleMesh, frames: NDArray[np.float64] |
     return known[cosines.argmax()] if cosines.max() > np.cos(_TRUNK_NEAR_AXES) else middle
 
 
-def _swung(
-    rotations: NDArray[np.float64],
-    sources: NDArray[np.int64],
-    targets: NDArray[np.int64],
-    source_bones: Skeleton,
-    bones: Skeleton,
-) -> NDArray[np.float64]:
+def _swung(rotations: Floats, sources: Ints, targets: Ints, source_bones: Skeleton, bones: Skeleton) -> Floats:
     """Rotations (k, 3, 3) of the pairs: about the bones as the surface is turned, along them as the joints lie.
 
     Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.

@@ -4,15 +4,11 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import binary_closing, binary_opening
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["contacts_of", "grounded_lifts", "held_shifts"]
+from ...runtime.arrays import Bools, Floats
 
 _LOW = 0.08
 """How far above its lowest place a point may be that stands, in units of the leg."""
@@ -30,7 +26,7 @@ _FADE = 0.15
 """Seconds over which a foot that was held goes back to where it was."""
 
 
-def contacts_of(points: NDArray[np.float64], up: NDArray[np.float64], length: float, rate: float) -> NDArray[np.bool_]:
+def contacts_of(points: Floats, up: Floats, length: float, rate: float) -> Bools:
     """Find out when points stand on the ground: those that are low and slow.
 
     Parameters
@@ -61,13 +57,7 @@ def contacts_of(points: NDArray[np.float64], up: NDArray[np.float64], length: fl
     return np.asarray(binary_opening(closed, span))[len(span) : -len(span)]
 
 
-def held_shifts(
-    points: NDArray[np.float64],
-    touching: NDArray[np.bool_],
-    heights: NDArray[np.float64],
-    up: NDArray[np.float64],
-    rate: float,
-) -> NDArray[np.float64]:
+def held_shifts(points: Floats, touching: Bools, heights: Floats, up: Floats, rate: float) -> Floats:
     """Find how far a foot has to be shifted in each pose so that what stands stays in place.
 
     The further point, the ball of a foot, is held if it stands, else the ankle.  Where one takes over from the other,
@@ -108,9 +98,7 @@ def held_shifts(
     return _faded(shifts, holding >= 0, max(1, round(_FADE * rate)))
 
 
-def grounded_lifts(
-    heights: NDArray[np.float64], wanted: NDArray[np.float64], level: NDArray[np.float64], length: float
-) -> NDArray[np.float64]:
+def grounded_lifts(heights: Floats, wanted: Floats, level: Floats, length: float) -> Floats:
     """Find how far a foot has to be lifted in each pose so that it is as near to the ground as it should be.
 
     This needs no foot that stands: in a walk on the spot the ground moves below it.
@@ -135,7 +123,7 @@ def grounded_lifts(
     return np.asarray(lifts + sunk.max(axis=1).clip(0))
 
 
-def _faded(values: NDArray[np.float64], held: NDArray[np.bool_], span: int) -> NDArray[np.float64]:
+def _faded(values: Floats, held: Bools, span: int) -> Floats:
     """Let values (f, d) fade smoothly where they are not held, over so many poses."""
     result, frames = values.copy(), np.arange(len(values))
     places = np.flatnonzero(held)

@@ -3,17 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["BodyLine", "hand_shifts"]
+from ...runtime.arrays import Floats
 
 _TOUCHING, _APART = 0.25, 0.45
 """Up to what distance from the middle of another part a hand touches it, and from where on it is free, in units of the
@@ -35,18 +30,12 @@ class BodyLine:
         How much of the way a hand goes there: half if the other hand comes to meet it.
     """
 
-    source: NDArray[np.float64]
-    target: NDArray[np.float64]
+    source: Floats
+    target: Floats
     share: float = 1.0
 
 
-def hand_shifts(
-    palms: NDArray[np.float64],
-    target_palms: NDArray[np.float64],
-    lines: Sequence[BodyLine],
-    arm: float,
-    turn: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def hand_shifts(palms: Floats, target_palms: Floats, lines: Sequence[BodyLine], arm: float, turn: Floats) -> Floats:
     """Find how far a hand has to be shifted so that it is where it is in the source, seen from what it is near to.
 
     Parameters
@@ -79,6 +68,6 @@ def hand_shifts(
     far = np.array(distances)  # (l, f)
     nearest = far.min(axis=0)
     weights = (np.maximum(nearest, 1e-6) / np.maximum(far, 1e-6)) ** _SHARPNESS
-    blended: NDArray[np.float64] = np.einsum("lf,lfi->fi", weights / weights.sum(axis=0), np.array(shifts))
+    blended: Floats = np.einsum("lf,lfi->fi", weights / weights.sum(axis=0), np.array(shifts))
     free = ((nearest - _TOUCHING) / (_APART - _TOUCHING)).clip(0, 1)
     return (1 - free * free * (3 - 2 * free))[:, None] * blended

@@ -3,19 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
-__all__ = ["reduced_keys", "slopes_of"]
-
-
-def reduced_keys(times: NDArray[np.float64], values: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
+def reduced_keys(times: Floats, values: Floats, tolerance: float) -> Ints:
     """Choose keys between which cubic curves stay close to all values.
 
     The curves have the slopes of the values at the keys (`slopes_of`), as Bézier curves with handles at a third of the
@@ -68,9 +62,8 @@ def reduced_keys(times: NDArray[np.float64], values: NDArray[np.float64], tolera
     return np.array(sorted(kept), np.int64)
 
 
-def slopes_of(times: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+def slopes_of(times: Floats, values: Floats) -> Floats:
     """Change of values (f, c) per unit of time at each time (f,): of the parabola through it and both neighbors."""
     if len(times) < 2:
         return np.zeros_like(values)
-    slopes: NDArray[np.float64] = np.gradient(values, times, axis=0, edge_order=2 if len(times) > 2 else 1)
-    return slopes
+    return np.gradient(values, times, axis=0, edge_order=2 if len(times) > 2 else 1)

@@ -5,18 +5,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..rig.skeleton import Skeleton
-    from .posed_motion import Motion
-    from .segments import Segments
-
-__all__ = ["Limb", "limbs_of"]
+from ...runtime.arrays import Floats, Ints
+from ..rig.skeleton import Skeleton
+from .posed_motion import Motion
+from .segments import Segments
 
 _NEAR_GROUND = 0.15
 """How high the end of a leg may be above the lowest joint at rest, in units of the rig's height."""
@@ -48,33 +43,32 @@ class Limb:
     """
 
     parts: tuple[int, int]
-    upper: NDArray[np.int64]
-    lower: NDArray[np.int64]
+    upper: Ints
+    lower: Ints
     source_joints: tuple[Joint, Joint, Joint, Joint, Joint]
     target_joints: tuple[Joint, Joint, Joint, Joint, Joint]
     foot: bool
     source_length: float
     target_length: float
 
-    def joints(self, posed: Motion) -> NDArray[np.float64]:
+    def joints(self, posed: Motion) -> Floats:
         """Where the target's upper segment begins, the lower one begins, and ends, (f, 3, 3)."""
         return np.stack([_place(posed, joint) for joint in self.target_joints[:3]], axis=-2)
 
-    def target_points(self, posed: Motion | Skeleton) -> NDArray[np.float64]:
+    def target_points(self, posed: Motion | Skeleton) -> Floats:
         """Where the last two joints of the target's limb are, (f, 2, 3) or (2, 3)."""
         return np.stack([_place(posed, joint) for joint in self.target_joints[3:]], axis=-2)
 
-    def source_points(self, posed: Motion | Skeleton) -> NDArray[np.float64]:
+    def source_points(self, posed: Motion | Skeleton) -> Floats:
         """Return the same two of the source."""
         return np.stack([_place(posed, joint) for joint in self.source_joints[3:]], axis=-2)
 
 
-def _place(posed: Motion | Skeleton, joint: Joint) -> NDArray[np.float64]:
-    ends: NDArray[np.float64] = (posed.tails if joint[1] else posed.heads)[..., joint[0], :]
-    return ends
+def _place(posed: Motion | Skeleton, joint: Joint) -> Floats:
+    return (posed.tails if joint[1] else posed.heads)[..., joint[0], :]
 
 
-def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: NDArray[np.float64]) -> list[Limb]:
+def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: Floats) -> list[Limb]:
     """Find the limbs: of each way from a tip up to the trunk the two longest segments in a row.
 
     Parameters

@@ -4,15 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ...geometry.procrustes import nearest_rotations
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, run
+from ...runtime.progress import Progress, Steps, run
+from ..rig.skeleton import Skeleton
+from .bone_pairing import BonePairing
 from .contacts import contacts_of, grounded_lifts, held_shifts
 from .hand_contacts import BodyLine, hand_shifts
 from .limbs import Limb, limbs_of
@@ -20,15 +22,6 @@ from .posed_motion import Motion
 from .rest_rotations import posed_rotations
 from .segments import Segments
 from .two_bone_ik import bent_limb, needed_drop
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...runtime.progress import Steps
-    from ..rig.skeleton import Skeleton
-    from .bone_pairing import BonePairing
-
-__all__ = ["MotionSettings", "TransferredMotion", "transfer_motion", "transfer_motion_steps"]
 
 _RATIOS = (1e-5, 1e5)
 """Ratios of sizes outside of these come from rigs without extent; units of a thousand and of one are common."""
@@ -84,9 +77,9 @@ class TransferredMotion:
     """
 
     motion: Motion
-    moved: NDArray[np.bool_]
-    placed: NDArray[np.bool_]
-    rooted: NDArray[np.bool_]
+    moved: Bools
+    placed: Bools
+    rooted: Bools
     scale: float
 
     def __repr__(self) -> str:
@@ -99,7 +92,7 @@ def transfer_motion(
     target: Skeleton,
     settings: MotionSettings | None = None,
     *,
-    ups: NDArray[np.float64] | None = None,
+    ups: Floats | None = None,
 ) -> TransferredMotion:
     """Transfer motion; see `transfer_motion_steps`."""
     return run(transfer_motion_steps(motion, pairing, target, settings, ups=ups))
@@ -112,7 +105,7 @@ def transfer_motion_steps(
     target: Skeleton,
     settings: MotionSettings | None = None,
     *,
-    ups: NDArray[np.float64] | None = None,
+    ups: Floats | None = None,
 ) -> Steps[TransferredMotion]:
     r"""Transfer motion from one skeleton to another, in steps.
 
@@ -183,7 +176,7 @@ def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: Mot
 class _Body:
     """The target's bones, and what moves them."""
 
-    def __init__(self, motion: Motion, pairing: BonePairing, target: Skeleton, ups: NDArray[np.float64]) -> None:
+    def __init__(self, motion: Motion, pairing: BonePairing, target: Skeleton, ups: Floats) -> None:
         self.source, self.pairing, self.target, self.ups = motion.skeleton, pairing, target, ups
         self.segments = (
             Segments.of(pairing.sources, pairing.targets, self.source, target).held_in(motion).freed_in(motion)
@@ -220,7 +213,7 @@ class _Body:
         turns = self.turns(np.tile(np.eye(3), (1, len(self.source), 1, 1)))
         return self.posed(turns, self.paths(heads, turns, 1.0))
 
-    def turns(self, source_turns: NDArray[np.float64]) -> NDArray[np.float64]:
+    def turns(self, source_turns: Floats) -> Floats:
         """How the target's bones with partners turn, (f, b, 3, 3); the others are left at rest."""
         pairing = self.pairing
         turned = pairing.upright @ source_turns[:, pairing.sources] @ np.swapaxes(self._rotations, -1, -2)
@@ -246,9 +239,7 @@ class _Body:
         ratio = lengths[1] / lengths[0] if min(lengths) > 0 else 1.0
         return float(ratio) if _RATIOS[0] < ratio < _RATIOS[1] else 1.0
 
-    def paths(
-        self, source_heads: NDArray[np.float64], turns: NDArray[np.float64], stride: float
-    ) -> dict[int, NDArray[np.float64]]:
+    def paths(self, source_heads: Floats, turns: Floats, stride: float) -> dict[int, Floats]:
         """Where the first bones of the segments are that hang on nothing, (f, t, 3) each."""
         up, pairing, segments = self.ups[1], self.pairing, self.segments
         paths = {}
@@ -262,7 +253,7 @@ class _Body:
             paths[int(part)] = (joint + way)[:, None] + np.einsum("ftij,tj->fti", turns[:, self.tops[part]], offsets)
         return paths
 
-    def posed(self, turns: NDArray[np.float64], paths: dict[int, NDArray[np.float64]]) -> Motion:
+    def posed(self, turns: Floats, paths: dict[int, Floats]) -> Motion:
         """Pose all bones: those without partners go with their parents."""
         target = self.target
         full, heads = turns.copy(), np.tile(target.heads, (len(turns), 1, 1))
@@ -277,13 +268,7 @@ class _Body:
                 heads[:, bone] = heads[:, holder] + full[:, holder] @ (target.heads[bone] - target.heads[holder])
         return Motion(target, full, heads)
 
-    def bent(
-        self,
-        turns: NDArray[np.float64],
-        paths: dict[int, NDArray[np.float64]],
-        limbs: list[Limb],
-        goals: list[NDArray[np.float64]],
-    ) -> NDArray[np.float64]:
+    def bent(self, turns: Floats, paths: dict[int, Floats], limbs: list[Limb], goals: list[Floats]) -> Floats:
         """Bend limbs so that they end at goals (f, 3); what is beyond stays turned as it was."""
         posed, result = self.posed(turns, paths), turns.copy()
         for limb, goal in zip(limbs, goals, strict=True):
@@ -300,7 +285,7 @@ class _Body:
             layer = [below for each in layer for below in self.segments.below(each).tolist()]
         return found
 
-    def _in_order(self) -> NDArray[np.int64]:
+    def _in_order(self) -> Ints:
         """Order the bones, each after its parent and what holds it."""
         found: list[int] = []
         left, known = self.target.order.tolist(), {-1}
@@ -323,7 +308,7 @@ def _ancestors(tree: Skeleton, bone: int) -> list[int]:
 
 def _with_feet(
     body: _Body, motion: Motion, posed: Motion, feet: list[Limb], settings: MotionSettings
-) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
+) -> tuple[list[Floats], Floats]:
     """Find where legs are to end so that feet stay where they stand, (f, 3) each, and how much lower the body is."""
     up, length = body.ups[0], float(np.mean([limb.source_length for limb in feet]))
     goals, levels = [], body.rest_pose()
@@ -339,14 +324,14 @@ def _with_feet(
     return goals, _smoothed(np.max(drops, axis=0), settings.rate)
 
 
-def _smoothed(drops: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def _smoothed(drops: Floats, rate: float) -> Floats:
     """Make values (f,) smooth, and nowhere less than they were."""
     span = max(1, round(_SMOOTH * rate))
     highest = maximum_filter1d(drops, 2 * span + 1, mode="nearest")
     return np.asarray(uniform_filter1d(highest, 2 * span + 1, mode="nearest"))
 
 
-def _hand_goals(body: _Body, motion: Motion, posed: Motion, arms: list[Limb]) -> list[NDArray[np.float64]]:
+def _hand_goals(body: _Body, motion: Motion, posed: Motion, arms: list[Limb]) -> list[Floats]:
     """Find where arms are to end so that hands are to the body as they are in the source, (f, 3) each."""
     lines, owners = [], []
     segments = body.segments
@@ -386,7 +371,7 @@ def _arms(limbs: list[Limb]) -> list[Limb]:
     ]
 
 
-def _in_place(posed: Motion, up: NDArray[np.float64], roots: NDArray[np.int64]) -> Motion:
+def _in_place(posed: Motion, up: Floats, roots: Ints) -> Motion:
     """Take out the way along the ground from the first pose to the last."""
     way = (posed.heads[-1, roots] - posed.heads[0, roots]).mean(axis=0)
     way = way - (way @ up) * up

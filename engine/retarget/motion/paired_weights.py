@@ -3,22 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array
 
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
+from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
+from .bone_pairing import BonePairing
 from .segments import Segments
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..rig.skeleton import Skeleton
-    from .bone_pairing import BonePairing
-
-__all__ = ["paired_weights"]
 
 _WIDTH = 1.0
 """Over what part of the shorter of two bones weights go over from one to the other at the joint between them."""
@@ -30,7 +23,7 @@ other places."""
 
 def paired_weights(
     weights: csr_array,
-    vertices: NDArray[np.float64],
+    vertices: Floats,
     pairing: BonePairing,
     source_bones: Skeleton,
     bones: Skeleton,
@@ -74,7 +67,7 @@ def paired_weights(
         raise RigError("No bones of the two rigs are paired. Pair them first.")
     segments = Segments.of(pairing.sources, pairing.targets, source_bones, bones)
     owners = _owners(segments, source_bones)
-    parts: list[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]] = []
+    parts: list[tuple[Ints, Ints, Floats]] = []
     columns = weights.tocsc()
     for members, chain in _chains(segments, pairing, bones):
         own = np.flatnonzero(np.isin(owners, members))
@@ -93,7 +86,7 @@ def paired_weights(
     return handed
 
 
-def _chains(segments: Segments, pairing: BonePairing, bones: Skeleton) -> list[tuple[list[int], NDArray[np.int64]]]:
+def _chains(segments: Segments, pairing: BonePairing, bones: Skeleton) -> list[tuple[list[int], Ints]]:
     """Put segments in a row together that are cut in other places in the target: their numbers, and the target's bones.
 
     Three bones of a spine may each stand for one or two of five, whose joints are not those of the three.
@@ -115,7 +108,7 @@ def _chains(segments: Segments, pairing: BonePairing, bones: Skeleton) -> list[t
     return chains
 
 
-def _owners(segments: Segments, tree: Skeleton) -> NDArray[np.int64]:
+def _owners(segments: Segments, tree: Skeleton) -> Ints:
     """For each bone of the source (a,) the segment that gets what it moves; -1 if there is none above nor below."""
     owners = np.full(len(tree), -1)
     for part, members in enumerate(segments.sources):
@@ -130,7 +123,7 @@ def _owners(segments: Segments, tree: Skeleton) -> NDArray[np.int64]:
     return owners
 
 
-def _along(points: NDArray[np.float64], chain: NDArray[np.int64], bones: Skeleton) -> NDArray[np.float64]:
+def _along(points: Floats, chain: Ints, bones: Skeleton) -> Floats:
     """Share points (n, 3) out along a chain of bones (c,): they go over smoothly from one to the next, (n, c)."""
     joints = np.concatenate([bones.heads[chain], bones.tails[chain[-1]][None]])
     steps = np.diff(joints, axis=0)

@@ -4,19 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...geometry.procrustes import nearest_rotations
+from ...runtime.arrays import Bools, Floats
 from ...runtime.errors import RigError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..rig.skeleton import Skeleton
-
-__all__ = ["LocalTransforms", "Motion", "local_transforms", "posed_motion"]
+from ..rig.skeleton import Skeleton
 
 _SCALED = 1e-5
 """From what difference from one on the scale of a bone counts."""
@@ -37,8 +31,8 @@ class Motion:
     """
 
     skeleton: Skeleton
-    turns: NDArray[np.float64]
-    heads: NDArray[np.float64]
+    turns: Floats
+    heads: Floats
 
     def __post_init__(self) -> None:
         count = len(self.skeleton)
@@ -57,7 +51,7 @@ class Motion:
         return f"<Motion: {len(self)} poses of {len(self.skeleton)} bones>"
 
     @property
-    def tails(self) -> NDArray[np.float64]:
+    def tails(self) -> Floats:
         """Where the tails of the bones are, (f, b, 3)."""
         along = self.skeleton.tails - self.skeleton.heads
         return self.heads + np.einsum("fbij,bj->fbi", self.turns, along)
@@ -75,15 +69,15 @@ class LocalTransforms:
         In the same axes.
     """
 
-    rotations: NDArray[np.float64]
-    locations: NDArray[np.float64]
+    rotations: Floats
+    locations: Floats
 
     def __repr__(self) -> str:
         poses, bones = self.locations.shape[:2]
         return f"<LocalTransforms: {poses} poses of {bones} bones>"
 
 
-def posed_motion(skeleton: Skeleton, rest: NDArray[np.float64], basis: NDArray[np.float64]) -> Motion:
+def posed_motion(skeleton: Skeleton, rest: Floats, basis: Floats) -> Motion:
     """Pose a skeleton: forward kinematics.
 
     Parameters
@@ -113,9 +107,7 @@ def posed_motion(skeleton: Skeleton, rest: NDArray[np.float64], basis: NDArray[n
     return Motion(skeleton, turns, posed[..., :3, 3].copy())
 
 
-def local_transforms(
-    motion: Motion, axes: NDArray[np.float64], inherits: NDArray[np.bool_] | None = None
-) -> LocalTransforms:
+def local_transforms(motion: Motion, axes: Floats, inherits: Bools | None = None) -> LocalTransforms:
     """Find the transforms of the bones against their parents: the inverse of `posed_motion`.
 
     Parameters

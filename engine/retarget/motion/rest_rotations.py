@@ -3,24 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
 from ...mesh.unit_vectors import unit_vectors
+from ...runtime.arrays import Floats, Ints
 from ..rig.joint_placement import least_turns
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ..rig.skeleton import Skeleton
-    from .bone_pairing import BonePairing
-    from .limbs import Limb
-    from .segments import Segments
-
-__all__ = ["posed_rotations"]
+from ..rig.skeleton import Skeleton
+from .bone_pairing import BonePairing
+from .limbs import Limb
+from .segments import Segments
 
 _BUILT = np.radians(60.0)
 """Up to this angle a trunk or a foot is built in another way: more is a body that lies, or a foot that hangs.  Chosen
@@ -29,7 +22,7 @@ by strips of walks and runs, horse to cow, and fox to dog and cat, whose paws ar
 
 def posed_rotations(
     pairing: BonePairing, segments: Segments, limbs: Sequence[Limb], source: Skeleton, target: Skeleton
-) -> NDArray[np.float64]:
+) -> Floats:
     """Rotations by which the rest poses of two rigs differ, without those that come from how the bodies are built.
 
     A cow's back falls off where a horse's does not, and heels are higher or lower.  The cow is to walk as level as it
@@ -75,7 +68,7 @@ def posed_rotations(
     return rotations
 
 
-def _next_joints(tree: Skeleton, bones: NDArray[np.int64]) -> NDArray[np.float64]:
+def _next_joints(tree: Skeleton, bones: Ints) -> Floats:
     """Directions from bones (k,) to the one that hangs on each, (k, 3); zero where none or several do."""
     below = [tree.children(int(bone)) for bone in bones]
     ends = [each[0] if len(each) == 1 else bone for bone, each in zip(bones, below, strict=True)]

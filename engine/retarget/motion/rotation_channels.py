@@ -3,22 +3,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ...runtime.arrays import Floats
 from ...runtime.errors import RigError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["rotation_channels", "rotation_matrices"]
 
 _TINY = np.finfo(float).tiny
 
 
-def rotation_matrices(channels: NDArray[np.float64], mode: str) -> NDArray[np.float64]:
+def rotation_matrices(channels: Floats, mode: str) -> Floats:
     """Make rotations of channels.
 
     Parameters
@@ -51,7 +45,7 @@ def rotation_matrices(channels: NDArray[np.float64], mode: str) -> NDArray[np.fl
     return np.asarray(Rotation.from_euler(mode.lower(), channels[:, places]).as_matrix())
 
 
-def rotation_channels(matrices: NDArray[np.float64], mode: str) -> NDArray[np.float64]:
+def rotation_channels(matrices: Floats, mode: str) -> Floats:
     """Make channels of rotations (f, 3, 3), of which each is as near to the one before as it can be.
 
     Parameters and what is returned are those of `rotation_matrices`, the other way round.
@@ -78,7 +72,7 @@ def rotation_channels(matrices: NDArray[np.float64], mode: str) -> NDArray[np.fl
     return angles
 
 
-def _axes_and_angles(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:
+def _axes_and_angles(quaternions: Floats) -> Floats:
     """Angles and axes (f, 4) of unit quaternions without jumps between them; still rotations keep the axis."""
     halves = np.linalg.norm(quaternions[:, 1:], axis=1)
     turning = halves > 1e-9

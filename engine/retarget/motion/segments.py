@@ -4,19 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..rig.skeleton import Skeleton
-    from .posed_motion import Motion
-
-__all__ = ["Segments"]
+from ...runtime.arrays import Bools, Ints
+from ..rig.skeleton import Skeleton
+from .posed_motion import Motion
 
 _FIXED = 0.01
 """How far a joint may move against a bone that holds it, in units of the rig's extent."""
@@ -39,16 +34,14 @@ class Segments:
         Whether its bones in the target hang there in truth.
     """
 
-    rows: tuple[NDArray[np.int64], ...]
-    sources: tuple[NDArray[np.int64], ...]
-    targets: tuple[NDArray[np.int64], ...]
-    parents: NDArray[np.int64]
-    carried: NDArray[np.bool_]
+    rows: tuple[Ints, ...]
+    sources: tuple[Ints, ...]
+    targets: tuple[Ints, ...]
+    parents: Ints
+    carried: Bools
 
     @classmethod
-    def of(
-        cls, sources: NDArray[np.int64], targets: NDArray[np.int64], source_bones: Skeleton, bones: Skeleton
-    ) -> Segments:
+    def of(cls, sources: Ints, targets: Ints, source_bones: Skeleton, bones: Skeleton) -> Segments:
         """Find the segments of pairs of bones (k,)."""
         if not len(sources):
             return cls((), (), (), np.zeros(0, np.int64), np.zeros(0, bool))
@@ -75,11 +68,11 @@ class Segments:
         return f"<Segments: {len(self)} of {sum(len(part) for part in self.targets)} bones>"
 
     @property
-    def single(self) -> NDArray[np.bool_]:
+    def single(self) -> Bools:
         """Whether a segment is one bone in either rig, (s,)."""
         return np.array([len(part) == 1 for part in self.rows], bool)
 
-    def below(self, part: int) -> NDArray[np.int64]:
+    def below(self, part: int) -> Ints:
         """Segments that hang directly on one."""
         return np.flatnonzero(self.parents == part)
 
@@ -132,12 +125,12 @@ class Segments:
         return replace(self, parents=parents)
 
 
-def _in_order(tree: Skeleton, bones: NDArray[np.int64]) -> NDArray[np.int64]:
+def _in_order(tree: Skeleton, bones: Ints) -> Ints:
     """Bones, each once, parents before children."""
     return tree.order[np.isin(tree.order, bones)]
 
 
-def _above(tree: Skeleton, parts: tuple[NDArray[np.int64], ...]) -> NDArray[np.int64]:
+def _above(tree: Skeleton, parts: tuple[Ints, ...]) -> Ints:
     """For each part of a tree the nearest other part that its first bone hangs on, -1 for none."""
     owner = np.full(len(tree), -1)
     for part, bones in enumerate(parts):
@@ -151,7 +144,7 @@ def _above(tree: Skeleton, parts: tuple[NDArray[np.int64], ...]) -> NDArray[np.i
     return _without_loops(result)
 
 
-def _without_loops(parents: NDArray[np.int64]) -> NDArray[np.int64]:
+def _without_loops(parents: Ints) -> Ints:
     """Cut parents that lead back to where one came from: parts may cross one another."""
     for part in range(len(parents)):
         if part in _chain(parents, part):
@@ -159,7 +152,7 @@ def _without_loops(parents: NDArray[np.int64]) -> NDArray[np.int64]:
     return parents
 
 
-def _chain(parents: NDArray[np.int64], part: int) -> list[int]:
+def _chain(parents: Ints, part: int) -> list[int]:
     """Parts above one, until the top or until they repeat."""
     found: list[int] = []
     above = int(parents[part])

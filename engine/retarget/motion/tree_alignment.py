@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..rig.skeleton import Skeleton
-
-__all__ = ["aligned"]
+from ...runtime.arrays import Bools, Floats
+from ..rig.skeleton import Skeleton
 
 _REPEATED = 0.12
 """What it costs that a node gets the partner of its parent again, in units of gains."""
@@ -24,7 +21,7 @@ _ELSEWHERE = 0.3
 """What it costs that the partner of a node hangs on another branch than that of its parent."""
 
 
-def aligned(gains: NDArray[np.float64], nodes: Skeleton, partners: Skeleton, real: NDArray[np.bool_]) -> NDArray[Any]:
+def aligned(gains: Floats, nodes: Skeleton, partners: Skeleton, real: Bools) -> NDArray[Any]:
     r"""Choose a partner for each node of a tree so that chains are aligned as chains.
 
     The sum of the gains is made as large as it gets, less what the steps from a node to its children cost: the partner
@@ -77,7 +74,7 @@ def aligned(gains: NDArray[np.float64], nodes: Skeleton, partners: Skeleton, rea
     return result
 
 
-def _step_costs(tree: Skeleton, real: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _step_costs(tree: Skeleton, real: Bools) -> Floats:
     """Cost of the step from one partner to another, (a + 1, a); the last row is for no partner above."""
     count = len(tree)
     costs = np.full((count + 1, count), _ELSEWHERE)

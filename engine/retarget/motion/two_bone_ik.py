@@ -3,17 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ...mesh.unit_vectors import unit_vectors
+from ...runtime.arrays import Bools, Floats
 from ..rig.joint_placement import least_turns
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["bent_limb", "needed_drop"]
 
 _STRAIGHT = 1e-3
 """Sine of the bend below which a limb counts as straight, so that its plane is not known."""
@@ -22,9 +16,7 @@ _STRETCHED = 0.9995
 """How far a limb may be stretched that was not so before, in units of its length: short of that knees would snap."""
 
 
-def bent_limb(
-    joints: NDArray[np.float64], goals: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def bent_limb(joints: Floats, goals: Floats) -> tuple[Floats, Floats]:
     """Turn the two bones of a limb so that it ends at a goal, in the plane in which it is bent.
 
     Parameters
@@ -67,9 +59,7 @@ def bent_limb(
     return first, _around(axes, hip + knee) @ swing
 
 
-def needed_drop(
-    joints: NDArray[np.float64], goals: NDArray[np.float64], up: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def needed_drop(joints: Floats, goals: Floats, up: Floats) -> Floats:
     """Find by how much limbs have to begin lower so that they reach their goals, (f,): zero where they do.
 
     Parameters
@@ -91,9 +81,7 @@ def needed_drop(
     return np.where(np.linalg.norm(way, axis=1) > allowed * (1 + 1e-9), np.maximum(drop, 0), 0.0)
 
 
-def _steady_normals(
-    upper: NDArray[np.float64], normals: NDArray[np.float64], flat: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _steady_normals(upper: Floats, normals: Floats, flat: Bools) -> Floats:
     """Find normals for poses in which a limb is straight, from the nearest pose in which it is not."""
     known = np.flatnonzero(~flat)
     wanted = np.flatnonzero(flat)
@@ -105,11 +93,10 @@ def _steady_normals(
     else:
         guess = np.eye(3)[np.abs(upper[wanted]).argmin(axis=1)]
     along = unit_vectors(upper[wanted])
-    across: NDArray[np.float64] = guess - (guess * along).sum(axis=1, keepdims=True) * along
-    return across
+    return guess - (guess * along).sum(axis=1, keepdims=True) * along
 
 
-def _around(axes: NDArray[np.float64], angles: NDArray[np.float64]) -> NDArray[np.float64]:
+def _around(axes: Floats, angles: Floats) -> Floats:
     """Rotations (f, 3, 3) around axes (f, 3) of length one by angles (f,)."""
     cross = np.zeros((len(axes), 3, 3))
     x, y, z = axes.T

@@ -4,24 +4,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.spatial.transform import Rotation
 
 from ...geometry.procrustes import nearest_rotations
+from ...mesh.closest_points import FoundPoints
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-    from ...mesh.closest_points import FoundPoints
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .digit_groups import DigitGroup
-    from .skeleton import Skeleton
-
-__all__ = ["Hand", "HandPose", "HandSolver"]
+from ...runtime.arrays import Floats, Ints
+from .digit_groups import DigitGroup
+from .skeleton import Skeleton
 
 _SAMPLES = 350
 """Points of either surface that are compared."""
@@ -62,9 +56,9 @@ class HandPose:
         How badly the pose fits, see `HandSolver.cost`; infinite if that is not known.
     """
 
-    unknowns: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
+    unknowns: Floats
+    rotations: Floats
+    scales: Floats
     cost: float = np.inf
 
 
@@ -92,12 +86,12 @@ class Hand:
 
     group: DigitGroup
     skeleton: Skeleton
-    numbers: NDArray[np.int64]
-    points: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    places: NDArray[np.float64]
-    sides: NDArray[np.float64]
+    numbers: Ints
+    points: Floats
+    normals: Floats
+    weights: Floats
+    places: Floats
+    sides: Floats
     length: float
 
     @classmethod
@@ -143,7 +137,7 @@ class Hand:
         )
 
 
-def _spread_out(points: NDArray[np.float64], count: int) -> NDArray[np.int64]:
+def _spread_out(points: Floats, count: int) -> Ints:
     """Choose so many points, each the farthest from those before it."""
     if len(points) <= count:
         return np.arange(len(points))
@@ -204,16 +198,14 @@ class HandSolver:
             pose = self._round(pose, float(done))
         return replace(pose, cost=self.cost(pose))
 
-    def _placed(self, pose: HandPose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _placed(self, pose: HandPose) -> tuple[Floats, Floats]:
         """Points (s, 3) and normals of the hand in a pose."""
         points = self._design @ pose.unknowns.reshape(-1, 3)
         turns = (self._hand.weights @ pose.rotations.reshape(-1, 9)).reshape(-1, 3, 3)
         normals = np.einsum("sij,sj->si", turns, self._hand.normals)
         return points, unit_vectors(normals)
 
-    def _found_pairs(
-        self, pose: HandPose, reach: float
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    def _found_pairs(self, pose: HandPose, reach: float) -> tuple[Ints, Ints, Floats, Floats]:
         """Match both ways: numbers in the hand and in the target, distances, and cosines of the normals."""
         hand = self._hand
         points, normals = self._placed(pose)
@@ -255,7 +247,7 @@ class HandSolver:
         scales = np.clip(np.einsum("kij,kij->k", rotations, linear) / 3, 0.2 * pose.scales, 5 * pose.scales)
         return HandPose(unknowns, rotations, np.sqrt(scales * np.median(scales)))
 
-    def _untwisted(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _untwisted(self, rotations: Floats) -> Floats:
         """Take back most of the turn of each digit's bones around themselves, against the bones that they hang on."""
         relative = rotations[self._above].transpose(0, 2, 1) @ rotations[self._own]
         skew = relative - relative.transpose(0, 2, 1)

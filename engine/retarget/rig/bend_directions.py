@@ -3,18 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ...mesh.unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .skeleton import Skeleton
-
-__all__ = ["kept_bends"]
+from ...runtime.arrays import Floats, Ints
+from .skeleton import Skeleton
 
 _LEAST = 2e-3
 """Least way from a joint to the line between those beside it, in units of the length of that line, that is a bend."""
@@ -26,13 +19,7 @@ _MOST = 0.05
 """Most that a joint is moved by, in the same units: what is bent more is another pose."""
 
 
-def kept_bends(
-    skeleton: Skeleton,
-    heads: NDArray[np.float64],
-    tails: NDArray[np.float64],
-    turns: NDArray[np.float64],
-    places: NDArray[np.int64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def kept_bends(skeleton: Skeleton, heads: Floats, tails: Floats, turns: Floats, places: Ints) -> tuple[Floats, Floats]:
     """Bend limbs that came out straight, or bent a little the wrong way, as they were.
 
     Parameters
@@ -73,7 +60,7 @@ def kept_bends(
     return after[:count], after[count:]
 
 
-def _bend(joints: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+def _bend(joints: Floats) -> tuple[Floats, float]:
     """Find the way (3,) to the second of three joints from the line between the others, and the length of that."""
     start, middle, end = joints
     line = end - start

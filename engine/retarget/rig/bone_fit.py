@@ -4,20 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ...geometry.procrustes import nearest_rotations
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .skeleton import Skeleton
-
-__all__ = ["BoneTransforms", "fit_bones", "skinned"]
+from ...runtime.arrays import Floats, Ints
+from .skeleton import Skeleton
 
 _ROUNDS = 12
 """Rounds of finding transforms, their nearest similarities and the trust in each vertex in turn."""
@@ -68,25 +62,21 @@ class BoneTransforms:
         The vertices, moved by their bones.
     """
 
-    linear: NDArray[np.float64]
-    translations: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
-    posed: NDArray[np.float64]
+    linear: Floats
+    translations: Floats
+    rotations: Floats
+    scales: Floats
+    posed: Floats
 
 
-def _similarities(matrices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _similarities(matrices: Floats) -> tuple[Floats, Floats]:
     """Find the nearest rotation to each matrix (k, 3, 3), and its mean scale along the axes, (k,)."""
     rotations = nearest_rotations(matrices)
     return rotations, np.einsum("kij,kij->k", rotations, matrices) / 3
 
 
 def fit_bones(
-    vertices: NDArray[np.float64],
-    positions: NDArray[np.float64],
-    areas: NDArray[np.float64],
-    weights: csr_array,
-    skeleton: Skeleton,
+    vertices: Floats, positions: Floats, areas: Floats, weights: csr_array, skeleton: Skeleton
 ) -> BoneTransforms:
     r"""Find the transforms of all bones at once.
 
@@ -132,18 +122,13 @@ def fit_bones(
     return BoneTransforms(linear, translations, rotations, scales, posed)
 
 
-def skinned(
-    vertices: NDArray[np.float64],
-    weights: csr_array,
-    linear: NDArray[np.float64],
-    translations: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def skinned(vertices: Floats, weights: csr_array, linear: Floats, translations: Floats) -> Floats:
     """Move vertices (n, 3) by bones with the weights (n, b): linear blend skinning."""
     blended = (weights @ linear.reshape(-1, 9)).reshape(-1, 3, 3)
     return np.einsum("nij,nj->ni", blended, vertices) + weights @ translations
 
 
-def _leaders(skeleton: Skeleton, active: NDArray[np.int64]) -> NDArray[np.int64]:
+def _leaders(skeleton: Skeleton, active: Ints) -> Ints:
     """For each bone the place in `active` of itself or its nearest active ancestor; one past the end if none, (b,)."""
     leaders = np.full(len(skeleton), len(active))
     place = np.full(len(skeleton), -1)
@@ -160,20 +145,18 @@ def _leaders(skeleton: Skeleton, active: NDArray[np.int64]) -> NDArray[np.int64]
 class _Joints:
     """Where active bones hang on their nearest active ancestors: numbers (j,) of both, and places (j, 3) at rest."""
 
-    child: NDArray[np.int64]
-    above: NDArray[np.int64]
-    places: NDArray[np.float64]
+    child: Ints
+    above: Ints
+    places: Floats
 
 
-def _joints(skeleton: Skeleton, active: NDArray[np.int64], above: NDArray[np.int64]) -> _Joints:
+def _joints(skeleton: Skeleton, active: Ints, above: Ints) -> _Joints:
     """Find the joints of active bones, of which `above` says for each on which other one it hangs."""
     child = np.flatnonzero(above < len(active))
     return _Joints(child, above[child], skeleton.heads[active[child]])
 
 
-def _similarity(
-    vertices: NDArray[np.float64], positions: NDArray[np.float64], areas: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _similarity(vertices: Floats, positions: Floats, areas: Floats) -> tuple[Floats, Floats]:
     """Find the similarity that brings the body nearest to where it went: linear part (3, 3) and translation (3,)."""
     share = areas / areas.sum()
     here, there = share @ vertices, share @ positions
@@ -190,14 +173,7 @@ class _System:
     """The least squares problem of k bones that move vertices."""
 
     def __init__(
-        self,
-        vertices: NDArray[np.float64],
-        positions: NDArray[np.float64],
-        areas: NDArray[np.float64],
-        weights: csr_array,
-        joints: _Joints,
-        *,
-        axes: NDArray[np.float64],
+        self, vertices: Floats, positions: Floats, areas: Floats, weights: csr_array, joints: _Joints, *, axes: Floats
     ) -> None:
         lengths = np.linalg.norm(axes, axis=1, keepdims=True)
         self._axes = np.where(lengths > 0, axes / np.maximum(lengths, np.finfo(float).tiny), [0.0, 0.0, 1.0])
@@ -229,7 +205,7 @@ class _System:
         self._pull = np.zeros((count, 4))
         self._pull[:, :3] = _SIMILARITY * np.maximum(moments, _LEAST_MASS**2)[:, None]
 
-    def _tied(self, joints: _Joints, mass: NDArray[np.float64]) -> csr_array:
+    def _tied(self, joints: _Joints, mass: Floats) -> csr_array:
         """Weighted rows that say that both bones of a joint take it to the same place, times their transpose."""
         child, above, count = joints.child, joints.above, len(joints.child)
         ends = np.concatenate([(joints.places - self._middle) / self._size, np.ones((count, 1))], axis=1)
@@ -240,7 +216,7 @@ class _System:
         strength = _JOINT * np.maximum(np.minimum(mass[child], mass[above]), _LEAST_MASS)
         return csr_array(ties.T @ diags_array(strength) @ ties)
 
-    def solved(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def solved(self) -> tuple[Floats, Floats]:
         """Find the transforms of the bones: linear parts (k, 3, 3) and translations (k, 3)."""
         similar, trust, doubt = self._start, self._areas, _DOUBT * _ROOT_OF_AREA * self._lengths
         count = len(similar)
@@ -259,7 +235,7 @@ class _System:
         linear = blocks[:, :3].transpose(0, 2, 1) / self._size
         return linear, blocks[:, 3] - linear @ self._middle
 
-    def _stretched(self, linear: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _stretched(self, linear: Floats) -> Floats:
         """Find rotations with a stretch along the bone and one across near linear parts (k, 3, 3).
 
         A limb that is thicker need not be longer: a similarity would make it so, and its points would slide along it.
@@ -274,10 +250,9 @@ class _System:
         stretch = across[:, None, None] * np.eye(3) + (along - across)[:, None, None] * outer
         return rotations @ stretch
 
-    def _usual(self, scales: NDArray[np.float64], part: float) -> NDArray[np.float64]:
+    def _usual(self, scales: Floats, part: float) -> Floats:
         """Draw scales (k,) of bones to that of the body."""
         logarithms = np.log(np.maximum(scales, np.finfo(float).tiny))
         common = self._mass @ logarithms / self._mass.sum()
         most = np.log(_MOST_SCALE)
-        usual: NDArray[np.float64] = np.exp(common + np.clip((1 - part) * (logarithms - common), -most, most))
-        return usual
+        return np.exp(common + np.clip((1 - part) * (logarithms - common), -most, most))

@@ -4,25 +4,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.spatial.transform import Rotation
 
+from ...mesh.closest_points import FoundPoints
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats
 from .articulated_hand import Hand, HandPose, HandSolver
-from .bone_fit import skinned
+from .bone_fit import BoneTransforms, skinned
 from .digit_groups import digit_groups
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-    from ...mesh.closest_points import FoundPoints
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .bone_fit import BoneTransforms
-    from .skeleton import Skeleton
-
-__all__ = ["with_digits"]
+from .skeleton import Skeleton
 
 _ROLLS = (0.0, 30.0, -30.0, 60.0, -60.0, 180.0)
 """Degrees by which the palm is turned around its own axis to begin with."""
@@ -145,7 +138,7 @@ class _PoseSearch:
         unknowns = np.concatenate([linear.transpose(0, 2, 1), shift[:, None]], axis=1)
         return HandPose(unknowns, bones.rotations[self._hand.numbers], bones.scales[self._hand.numbers])
 
-    def _variations(self) -> list[tuple[NDArray[np.float64], float]]:
+    def _variations(self) -> list[tuple[Floats, float]]:
         """List small turns of the hand, vectors of rotation in degrees at rest, and bends of all joints of digits."""
         along, across = self._axes
         turns = [sign * _TURN * axis for axis in (along, across, np.cross(along, across)) for sign in (1, -1)]
@@ -157,12 +150,12 @@ class _PoseSearch:
         palm = base.rotations[1] @ _turn(roll * along)
         return self._arranged(base, np.repeat(palm[None], len(self._hand.numbers), axis=0), curl)
 
-    def _turned(self, base: HandPose, turn: NDArray[np.float64], curl: float) -> HandPose:
+    def _turned(self, base: HandPose, turn: Floats, curl: float) -> HandPose:
         """Turn the hand at the wrist, and bend the digits more."""
         palm = base.rotations[1]
         return self._arranged(base, palm @ _turn(turn) @ palm.T @ base.rotations, curl)
 
-    def _arranged(self, base: HandPose, rotations: NDArray[np.float64], curl: float) -> HandPose:
+    def _arranged(self, base: HandPose, rotations: Floats, curl: float) -> HandPose:
         """Give the hand's own bones rotations (k, 3, 3), and more bend the farther out; joints stay together."""
         skeleton, group = self._hand.skeleton, self._hand.group
         place = {int(bone): number for number, bone in enumerate(self._hand.numbers)}
@@ -185,7 +178,7 @@ class _PoseSearch:
         return HandPose(unknowns, turns, scales)
 
 
-def _hand_axes(hand: Hand) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _hand_axes(hand: Hand) -> tuple[Floats, Floats]:
     """Direction from the wrist to the knuckles at rest, and that of the knuckles, (3,) each."""
     knuckles = hand.skeleton.heads[[chain[0] for chain in hand.group.chains]]
     along = knuckles.mean(axis=0) - hand.skeleton.heads[hand.group.hub]
@@ -195,7 +188,6 @@ def _hand_axes(hand: Hand) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return along, across / max(float(np.linalg.norm(across)), _TINY)
 
 
-def _turn(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turn(degrees: Floats) -> Floats:
     """Rotation (3, 3) by a vector of degrees."""
-    matrix: NDArray[np.float64] = Rotation.from_rotvec(np.radians(degrees)).as_matrix()
-    return matrix
+    return Rotation.from_rotvec(np.radians(degrees)).as_matrix()

@@ -4,16 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from .skeleton import Skeleton
-
-__all__ = ["DigitGroup", "digit_groups"]
+from ...runtime.arrays import Floats, Ints
+from .skeleton import Skeleton
 
 _LEAST_CHAINS = 3
 """Digits from which on they can be mistaken."""
@@ -41,12 +36,12 @@ class DigitGroup:
     chains: tuple[tuple[int, ...], ...]
 
     @property
-    def bones(self) -> NDArray[np.int64]:
+    def bones(self) -> Ints:
         """The palm and all digits."""
         return np.array([self.hub, *(bone for chain in self.chains for bone in chain)])
 
 
-def digit_groups(skeleton: Skeleton, mass: NDArray[np.float64]) -> list[DigitGroup]:
+def digit_groups(skeleton: Skeleton, mass: Floats) -> list[DigitGroup]:
     """Find the hands of a skeleton.
 
     Parameters

@@ -4,18 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-    from ...mesh.surface_map import SurfaceMap
-    from .skeleton import Skeleton
-
-__all__ = ["FittedRig"]
+from ...mesh.surface_map import SurfaceMap
+from ...runtime.arrays import Floats
+from .skeleton import Skeleton
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +41,12 @@ class FittedRig:
 
     skeleton: Skeleton
     weights: csr_array
-    linear: NDArray[np.float64]
-    translations: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
-    posed: NDArray[np.float64]
-    registered: NDArray[np.float64]
+    linear: Floats
+    translations: Floats
+    rotations: Floats
+    scales: Floats
+    posed: Floats
+    registered: Floats
     source_to_target: SurfaceMap
     target_to_source: SurfaceMap
 
@@ -59,15 +54,15 @@ class FittedRig:
         return f"<FittedRig: {len(self.scales)} bones, {len(self.posed)} vertices>"
 
     @property
-    def heads(self) -> NDArray[np.float64]:
+    def heads(self) -> Floats:
         """Where the heads of the bones lie in the target, (b, 3)."""
         return self._placed(self.skeleton.heads)
 
     @property
-    def tails(self) -> NDArray[np.float64]:
+    def tails(self) -> Floats:
         """Where their tails lie, (b, 3)."""
         return self._placed(self.skeleton.tails)
 
-    def _placed(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _placed(self, points: Floats) -> Floats:
         """Move one point (b, 3) with each bone."""
         return np.einsum("bij,bj->bi", self.linear, points) + self.translations

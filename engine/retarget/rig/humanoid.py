@@ -3,20 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
+from ...runtime.arrays import Bools, Floats
 from ...runtime.errors import RigError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from .skeleton import Skeleton
-
-__all__ = ["humanoid_bones"]
+from .skeleton import Skeleton
 
 _ON_GROUND = 0.1
 """How high the end of a leg is at most, in units of the height of the rig.  With these numbers the bones of MakeHuman's
@@ -43,7 +36,7 @@ _PALM = 0.5
 _FINGERS = ("index", "middle", "ring", "little")
 
 
-def humanoid_bones(skeleton: Skeleton, deforming: NDArray[np.bool_], up: NDArray[np.float64]) -> dict[str, int]:
+def humanoid_bones(skeleton: Skeleton, deforming: Bools, up: Floats) -> dict[str, int]:
     """Find out what the bones of a person's rig are, whatever they are called.
 
     Legs are what reaches the ground, arms what reaches furthest to the sides, the head is what is highest between them,
@@ -95,7 +88,7 @@ _ARM = ("shoulder", "upper_arm", "lower_arm", "hand")
 class _Tree:
     """The bones that move something, and what they hang on."""
 
-    def __init__(self, skeleton: Skeleton, deforming: NDArray[np.bool_], up: NDArray[np.float64]) -> None:
+    def __init__(self, skeleton: Skeleton, deforming: Bools, up: Floats) -> None:
         self.bones, self.up = skeleton, up
         self.used = deforming.copy() if deforming.any() else np.ones(len(skeleton), bool)
         for bone in skeleton.order[::-1]:

@@ -8,23 +8,17 @@ ankle.  So joints are grouped by their place first, and each group is carried as
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import RigError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .fitted_rig import FittedRig
-    from .skeleton import Skeleton
-
-__all__ = ["JointCarriers", "carriers_of", "joint_places", "moved_areas", "nearest_on_bones", "sums_below"]
+from .fitted_rig import FittedRig
+from .skeleton import Skeleton
 
 _SAME_PLACE = 1e-4
 """Joints closer than this, in units of the skeleton's extent, are at one place."""
@@ -64,14 +58,14 @@ class JointCarriers:
         The nearest bone above each that moves vertices; -1 if there is none.
     """
 
-    places: NDArray[np.int64]
-    of_places: NDArray[np.float64]
-    of_turns: NDArray[np.float64]
-    moving: NDArray[np.bool_]
-    free: NDArray[np.bool_]
-    loose: NDArray[np.bool_]
-    anchors: NDArray[np.int64]
-    above: NDArray[np.int64]
+    places: Ints
+    of_places: Floats
+    of_turns: Floats
+    moving: Bools
+    free: Bools
+    loose: Bools
+    anchors: Ints
+    above: Ints
 
 
 def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
@@ -116,7 +110,7 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
     return JointCarriers(places, shares, of_turns, moving, free, free & ~moving, anchors, above)
 
 
-def moved_areas(rig: FittedRig, source: TriangleMesh) -> NDArray[np.float64]:
+def moved_areas(rig: FittedRig, source: TriangleMesh) -> Floats:
     """Sum the area that each bone moves, (b,); zero for those that move nothing to speak of."""
     if source.vertex_count != rig.weights.shape[0]:
         raise RigError(f"The rig moves {rig.weights.shape[0]} vertices, but the body has {source.vertex_count}.")
@@ -127,7 +121,7 @@ def moved_areas(rig: FittedRig, source: TriangleMesh) -> NDArray[np.float64]:
     return masses
 
 
-def nearest_on_bones(skeleton: Skeleton, point: NDArray[np.float64]) -> NDArray[np.float64]:
+def nearest_on_bones(skeleton: Skeleton, point: Floats) -> Floats:
     """Find the point of each bone that is nearest to a point, (b, 3)."""
     axes = skeleton.tails - skeleton.heads
     squares = np.maximum(np.square(axes).sum(axis=1), np.finfo(float).tiny)
@@ -135,7 +129,7 @@ def nearest_on_bones(skeleton: Skeleton, point: NDArray[np.float64]) -> NDArray[
     return skeleton.heads + along.clip(0, 1)[:, None] * axes
 
 
-def joint_places(skeleton: Skeleton) -> NDArray[np.int64]:
+def joint_places(skeleton: Skeleton) -> Ints:
     """Give each place of heads and then tails a number, (2 b,)."""
     joints = np.concatenate([skeleton.heads, skeleton.tails])
     extent = float(np.linalg.norm(np.ptp(joints, axis=0)))
@@ -146,7 +140,7 @@ def joint_places(skeleton: Skeleton) -> NDArray[np.int64]:
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
-def _moving_above(skeleton: Skeleton, moving: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _moving_above(skeleton: Skeleton, moving: Bools) -> Ints:
     """For each bone its nearest ancestor that moves vertices, -1 if there is none, (b,)."""
     found = np.full(len(skeleton), -1)
     for bone in skeleton.order:
@@ -156,7 +150,7 @@ def _moving_above(skeleton: Skeleton, moving: NDArray[np.bool_]) -> NDArray[np.i
     return found
 
 
-def sums_below(skeleton: Skeleton, masses: NDArray[np.float64]) -> NDArray[np.float64]:
+def sums_below(skeleton: Skeleton, masses: Floats) -> Floats:
     """Sum the masses of each bone and all that hang on it, (b,)."""
     sums = masses.copy()
     for bone in skeleton.order[::-1]:
@@ -165,7 +159,7 @@ def sums_below(skeleton: Skeleton, masses: NDArray[np.float64]) -> NDArray[np.fl
     return sums
 
 
-def _joint_leader(skeleton: Skeleton, places: NDArray[np.int64], moving: NDArray[np.bool_], bone: int) -> int:
+def _joint_leader(skeleton: Skeleton, places: Ints, moving: Bools, bone: int) -> int:
     """Find the moving bone that starts where a bone starts, or else that ends there; -1 if there is none.
 
     Of several, the one whose other end is nearest to the bone's own.
@@ -178,7 +172,7 @@ def _joint_leader(skeleton: Skeleton, places: NDArray[np.int64], moving: NDArray
     return -1
 
 
-def _heaviest_moving(skeleton: Skeleton, moving: NDArray[np.bool_], below: NDArray[np.float64], bone: int) -> np.int64:
+def _heaviest_moving(skeleton: Skeleton, moving: Bools, below: Floats, bone: int) -> np.int64:
     """Go down from a bone, always to the heaviest child, until a bone moves vertices."""
     found = np.int64(bone)
     while not moving[found]:
@@ -187,7 +181,7 @@ def _heaviest_moving(skeleton: Skeleton, moving: NDArray[np.bool_], below: NDArr
     return found
 
 
-def _nearness(skeleton: Skeleton, moving: NDArray[np.bool_], point: NDArray[np.float64]) -> NDArray[np.float64]:
+def _nearness(skeleton: Skeleton, moving: Bools, point: Floats) -> Floats:
     """Share one among the bones, (b,), by how near each moving bone is to a point."""
     distances = np.linalg.norm(nearest_on_bones(skeleton, point) - point, axis=1)
     distances = np.where(moving, distances, np.inf)

@@ -4,32 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...geometry.procrustes import nearest_rotations
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
+from .fitted_rig import FittedRig
 from .joint_carriers import carriers_of, moved_areas, nearest_on_bones, sums_below
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .fitted_rig import FittedRig
-    from .skeleton import Skeleton
-
-__all__ = [
-    "PlacedJoints",
-    "across_axes",
-    "least_turns",
-    "place_joints",
-    "root_direction",
-    "standing",
-    "swung",
-    "with_lengths",
-]
+from .skeleton import Skeleton
 
 _SHORTEST = 0.02
 """Least length of a bone, in units of what its scale makes of its length in the source."""
@@ -61,18 +46,16 @@ class PlacedJoints:
         How each bone is turned against the source, from its ends and its normal.
     """
 
-    heads: NDArray[np.float64]
-    tails: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    rotations: NDArray[np.float64]
+    heads: Floats
+    tails: Floats
+    normals: Floats
+    rotations: Floats
 
     def __repr__(self) -> str:
         return f"<PlacedJoints: {len(self.heads)} bones>"
 
 
-def place_joints(
-    rig: FittedRig, source: TriangleMesh, normals: NDArray[np.float64], frames: NDArray[np.float64] | None = None
-) -> PlacedJoints:
+def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: Floats | None = None) -> PlacedJoints:
     """Place all bones of a fitted rig in the target.
 
     A joint between two bones goes to the mean of where both take it.  Bones that move no vertex follow the bone whose
@@ -130,7 +113,7 @@ def place_joints(
     return PlacedJoints(heads, tails, across, rotations)
 
 
-def standing(rig: FittedRig, source: TriangleMesh, frames: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+def standing(rig: FittedRig, source: TriangleMesh, frames: Floats | None = None) -> Floats:
     """Find how the whole body is turned, whatever its limbs do.
 
     Parameters
@@ -155,9 +138,7 @@ def standing(rig: FittedRig, source: TriangleMesh, frames: NDArray[np.float64] |
     return frames[cosines.argmax()] if cosines.max() > np.cos(_NEAR_FRAME) else middle
 
 
-def _aimed(
-    skeleton: Skeleton, heads: NDArray[np.float64], turns: NDArray[np.float64], masses: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _aimed(skeleton: Skeleton, heads: Floats, turns: Floats, masses: Floats) -> Floats:
     """Turn bones (b, 3, 3) so that they point to the joints of those that hang on them, as they did, however they end.
 
     Where a bone ends alone says nothing: importers set that, often a hair's breadth from its head and across the limb.
@@ -175,14 +156,14 @@ def _aimed(
     return aimed
 
 
-def _means(points: NDArray[np.float64], groups: NDArray[np.int64], count: int) -> NDArray[np.float64]:
+def _means(points: Floats, groups: Ints, count: int) -> Floats:
     """Mean of the points (n, 3) in each group, (count, 3)."""
     sums = np.zeros((count, 3))
     np.add.at(sums, groups, points)
     return sums / np.bincount(groups, minlength=count)[:, None]
 
 
-def _median_shares(rotations: NDArray[np.float64], masses: NDArray[np.float64]) -> NDArray[np.float64]:
+def _median_shares(rotations: Floats, masses: Floats) -> Floats:
     """Share one among the bones, (b,), so that the blended rotation is their median by mass: limbs tilt no body."""
     shares = masses / masses.sum()
     for _ in range(_MEDIAN_ROUNDS):
@@ -193,7 +174,7 @@ def _median_shares(rotations: NDArray[np.float64], masses: NDArray[np.float64]) 
     return shares
 
 
-def root_direction(rig: FittedRig, source: TriangleMesh, root: int) -> NDArray[np.float64]:
+def root_direction(rig: FittedRig, source: TriangleMesh, root: int) -> Floats:
     """Find the way from the middle of the source's body to a root outside of it, of length one; zero if inside."""
     middle = source.vertex_areas @ source.vertices / source.area
     away = rig.skeleton.heads[root] - middle
@@ -201,9 +182,7 @@ def root_direction(rig: FittedRig, source: TriangleMesh, root: int) -> NDArray[n
     return unit_vectors(away[None])[0] if outside else np.zeros(3)
 
 
-def _rooted(
-    rig: FittedRig, source: TriangleMesh, upright: NDArray[np.float64], bone: int, anchor: int
-) -> NDArray[np.float64]:
+def _rooted(rig: FittedRig, source: TriangleMesh, upright: Floats, bone: int, anchor: int) -> Floats:
     """Place the head of a root: as far beyond its anchor as before, measured by how far the body reaches that way.
 
     So a root on the ground stands on the ground, however the legs are bent.
@@ -219,7 +198,7 @@ def _rooted(
     return moved + upright @ (rig.scales[anchor] * away + growth * (away @ direction) * direction)
 
 
-def _carried(rig: FittedRig, bone: int, point: NDArray[np.float64]) -> NDArray[np.float64]:
+def _carried(rig: FittedRig, bone: int, point: Floats) -> Floats:
     """Move a point with a bone: on the bone as its vertices move, and from there on without shear."""
     start = nearest_on_bones(rig.skeleton, point)[bone]
     moved = rig.linear[bone] @ start + rig.translations[bone]
@@ -227,12 +206,8 @@ def _carried(rig: FittedRig, bone: int, point: NDArray[np.float64]) -> NDArray[n
 
 
 def with_lengths(
-    skeleton: Skeleton,
-    heads: NDArray[np.float64],
-    tails: NDArray[np.float64],
-    rigid: NDArray[np.float64],
-    places: NDArray[np.int64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    skeleton: Skeleton, heads: Floats, tails: Floats, rigid: Floats, places: Ints
+) -> tuple[Floats, Floats]:
     """Give bones that became too short the vectors `rigid` from head to tail; what was connected to them follows."""
     heads, tails = heads.copy(), tails.copy()
     head_places, tail_places = np.split(places, 2)
@@ -251,15 +226,13 @@ def with_lengths(
     return heads, tails
 
 
-def swung(
-    rotations: NDArray[np.float64], before: NDArray[np.float64], after: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def swung(rotations: Floats, before: Floats, after: Floats) -> Floats:
     """Turn rotations (b, 3, 3) by the least angle so that they take vectors (b, 3) to the direction of others."""
     start = unit_vectors(np.einsum("bij,bj->bi", rotations, before))
     return least_turns(start, unit_vectors(after)) @ rotations
 
 
-def least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+def least_turns(start: Floats, end: Floats) -> Floats:
     """Find the rotations by the least angle from unit vectors (b, 3) to others, (b, 3, 3)."""
     # Two reflections: first the start to its negative, then that to the end; the other way round near half a turn.
     cosine = (start * end).sum(axis=1)
@@ -273,7 +246,7 @@ def least_turns(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray
     return second @ first
 
 
-def across_axes(vectors: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+def across_axes(vectors: Floats, axes: Floats) -> Floats:
     """Take what of the vectors (b, 3) lies across the axes, to length one; any direction across if nothing does."""
     axes = unit_vectors(axes)
     flat = vectors - (vectors * axes).sum(axis=1, keepdims=True) * axes

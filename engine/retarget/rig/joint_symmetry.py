@@ -3,20 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...mesh.closest_points import ClosestPoints
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .skeleton import Skeleton
-
-__all__ = ["mirrored_joints"]
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats, Ints
+from .skeleton import Skeleton
 
 _SAME = 1e-3
 """How far mirrored joints may be from each other in the source, in units of the rig's extent."""
@@ -35,13 +28,11 @@ the target was made in: that one is meant then."""
 _AS_GOOD = 1.5
 """How many times as far the mirrored target may be from itself by that plane."""
 
-Joints = tuple["NDArray[np.float64]", "NDArray[np.float64]", "NDArray[np.float64]"]
+Joints = tuple["Floats", "Floats", "Floats"]
 """Heads, tails and normals of bones, (b, 3) each."""
 
 
-def mirrored_joints(
-    skeleton: Skeleton, target: TriangleMesh, placed: Joints, space: NDArray[np.float64] | None = None
-) -> Joints:
+def mirrored_joints(skeleton: Skeleton, target: TriangleMesh, placed: Joints, space: Floats | None = None) -> Joints:
     """Make bones symmetric that were so, if the body is symmetric as well.
 
     Parameters
@@ -80,7 +71,7 @@ def mirrored_joints(
     return heads, tails, across / np.linalg.norm(across, axis=1, keepdims=True)
 
 
-def _partners(skeleton: Skeleton) -> NDArray[np.int64] | None:
+def _partners(skeleton: Skeleton) -> Ints | None:
     """Find the mirror image of each bone, (b,), itself in the middle; None if the rig is not symmetric."""
     ends = np.concatenate([skeleton.heads, skeleton.tails], axis=1)  # (b, 6)
     joints = ends.reshape(-1, 3) - ends.reshape(-1, 3).mean(axis=0)  # a plane of symmetry goes through their middle
@@ -94,12 +85,8 @@ def _partners(skeleton: Skeleton) -> NDArray[np.int64] | None:
 
 
 def _plane(
-    heads: NDArray[np.float64],
-    tails: NDArray[np.float64],
-    partners: NDArray[np.int64],
-    target: TriangleMesh,
-    space: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    heads: Floats, tails: Floats, partners: Ints, target: TriangleMesh, space: Floats
+) -> tuple[Floats, Floats] | None:
     """Find a point and the normal (3,) of the plane in which the target is symmetric; None if it is not."""
     between = np.concatenate([heads - heads[partners], tails - tails[partners]])
     signs = np.sign(between @ between[np.square(between).sum(axis=1).argmax()])
@@ -112,7 +99,7 @@ def _plane(
     points, search = target.vertices[rows], ClosestPoints(target)
     extent = float(np.linalg.norm(np.ptp(target.vertices, axis=0)))
 
-    def missed(place: NDArray[np.float64], normal: NDArray[np.float64]) -> float:
+    def missed(place: Floats, normal: Floats) -> float:
         mirrored = points - 2 * np.outer((points - place) @ normal, normal)
         return float(np.sqrt(search.nearest(mirrored).squared_distances).mean()) / extent
 

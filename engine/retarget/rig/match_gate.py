@@ -4,21 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
-from ...mesh.closest_points import FoundPoints
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.closest_points import ClosestPoints
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["Homes"]
+from ...mesh.closest_points import ClosestPoints, FoundPoints
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats
 
 _REACH = 0.15
 """How far from its home a match may be, in units of the root of the body's area: about as far as a hand is long."""
@@ -44,8 +37,8 @@ class Homes:
         How far from its home a match may be.
     """
 
-    body: NDArray[np.float64]
-    target: NDArray[np.float64]
+    body: Floats
+    target: Floats
     reach: float
 
     @classmethod
@@ -61,21 +54,16 @@ class Homes:
             homes = average @ homes
         return cls(body.vertices, homes, _REACH * float(np.sqrt(body.area)))
 
-    def on_body(self, search: ClosestPoints, found: FoundPoints, points: NDArray[np.float64]) -> FoundPoints:
+    def on_body(self, search: ClosestPoints, found: FoundPoints, points: Floats) -> FoundPoints:
         """Seek anew along the body what was found far from home for the target's vertices at points (m, 3)."""
         return self._near(search, found, points, self.body, self.target)
 
-    def on_target(self, search: ClosestPoints, found: FoundPoints, points: NDArray[np.float64]) -> FoundPoints:
+    def on_target(self, search: ClosestPoints, found: FoundPoints, points: Floats) -> FoundPoints:
         """Seek anew along the target what was found far from home for the body's vertices at points (n, 3)."""
         return self._near(search, found, points, self.target, self.body)
 
     def _near(
-        self,
-        search: ClosestPoints,
-        found: FoundPoints,
-        points: NDArray[np.float64],
-        there: NDArray[np.float64],
-        homes: NDArray[np.float64],
+        self, search: ClosestPoints, found: FoundPoints, points: Floats, there: Floats, homes: Floats
     ) -> FoundPoints:
         """Seek anew what was found farther from its home (k, 3) than allowed, from the vertex nearest to that."""
         places = np.einsum("kc,kcd->kd", found.barycentric, there[search.triangles[found.triangles]])

@@ -4,24 +4,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array, vstack
 
+from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
 from ...registration.elastic import ElasticSurface
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...geometry.laplacian import LaplaceBeltrami
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .match_gate import Homes
-
-__all__ = ["PosedRegistration"]
+from ...runtime.arrays import Floats
+from .match_gate import Homes
 
 _SLIDING = 0.01
 """How much a point's distance along the target's surface from where it was counts, against that across."""
@@ -47,10 +41,10 @@ _TOLERANCE = 1e-4
 class _Target:
     """What is known of the target, around the origin in units of the root of its area."""
 
-    points: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    shares: NDArray[np.float64]
-    centre: NDArray[np.float64]
+    points: Floats
+    normals: Floats
+    shares: Floats
+    centre: Floats
     scale: float
 
 
@@ -100,14 +94,8 @@ class PosedRegistration:
         self._own_shares = own / own.sum()
 
     def slid(
-        self,
-        positions: NDArray[np.float64],
-        posed: NDArray[np.float64],
-        matches: FoundPoints,
-        stiffness: float,
-        *,
-        seeking: NDArray[np.float64] | None = None,
-    ) -> NDArray[np.float64]:
+        self, positions: Floats, posed: Floats, matches: FoundPoints, stiffness: float, *, seeking: Floats | None = None
+    ) -> Floats:
         """Let the body slide once.
 
         Parameters
@@ -139,7 +127,7 @@ class PosedRegistration:
             now = system.solved(system.wanted + stiffness * elastic.pull(turned), now)
         return now * target.scale + target.centre
 
-    def _planes(self, now: NDArray[np.float64], matches: FoundPoints, seeking: NDArray[np.float64] | None) -> _Planes:
+    def _planes(self, now: Floats, matches: FoundPoints, seeking: Floats | None) -> _Planes:
         """Collect what both surfaces ask of one another."""
         target, count = self._target, len(now)
         corners = self._body.triangles[matches.triangles]
@@ -159,14 +147,14 @@ class PosedRegistration:
         second = _Planes(csr_array(eye_array(count)), places, seen, _BACK * self._own_shares * trust)
         return first.with_others(second)
 
-    def matched(self, positions: NDArray[np.float64]) -> FoundPoints:
+    def matched(self, positions: Floats) -> FoundPoints:
         """Match every vertex of the target, m, with the closest point of the body, which is at positions (n, 3)."""
         target = self._target
         search = self._search.moved(self._inside(positions))
         found = facing(search, target.points, target.normals, 1.0)
         return found if self._homes is None else self._homes.on_body(search, found, target.points)
 
-    def _inside(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _inside(self, positions: Floats) -> Floats:
         """Turn coordinates of the target into units of the root of its area, around its centre."""
         return (positions - self._target.centre) / self._target.scale
 
@@ -176,9 +164,9 @@ class _Planes:
     """Points of the body, rows of `evaluate` (k, n), and the planes (k, 3), (k, 3) that they are drawn to."""
 
     evaluate: csr_array
-    points: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    shares: NDArray[np.float64]
+    points: Floats
+    normals: Floats
+    shares: Floats
 
     def with_others(self, others: _Planes) -> _Planes:
         """Return all together."""
@@ -201,9 +189,9 @@ class _SlidingSystem:
         mean = diags_array(planes.shares * (1 / 3 + _SLIDING))
         near = elastic + self._transposed @ mean @ planes.evaluate
         self._factor = symmetric_factor(near)
-        self.wanted: NDArray[np.float64] = self._transposed @ self._pulled(planes.points)
+        self.wanted: Floats = self._transposed @ self._pulled(planes.points)
 
-    def solved(self, right: NDArray[np.float64], start: NDArray[np.float64]) -> NDArray[np.float64]:
+    def solved(self, right: Floats, start: Floats) -> Floats:
         """Solve by preconditioned conjugate gradients from a start (n, 3)."""
         now = start.copy()
         residual = right - self._times(now)
@@ -222,12 +210,12 @@ class _SlidingSystem:
             residual -= length * along
         return now
 
-    def _times(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _times(self, values: Floats) -> Floats:
         """Multiply by the matrix."""
-        product: NDArray[np.float64] = self._transposed @ self._pulled(self._evaluate @ values)
+        product: Floats = self._transposed @ self._pulled(self._evaluate @ values)
         return product + self._elastic @ values
 
-    def _pulled(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _pulled(self, points: Floats) -> Floats:
         """Pull of each match (m, 3): across the surface, and a little along it."""
         across = np.einsum("md,md->m", self._normals, points)[:, None] * self._normals
         return self._shares * (across + _SLIDING * points)

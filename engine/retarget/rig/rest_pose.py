@@ -4,22 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
 
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
+from .fitted_rig import FittedRig
 from .joint_carriers import carriers_of, moved_areas
 from .joint_placement import PlacedJoints, root_direction, standing
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .fitted_rig import FittedRig
-
-__all__ = ["RestPose", "at_rest", "bend_angles", "is_posed", "length_ratio", "rest_pose", "unposed"]
 
 _LARGE_PART = 0.01
 """A bone is judged by its angle if it moves more than this part of the body: that of a finger is mostly noise."""
@@ -46,15 +40,15 @@ class RestPose:
         How each bone turns.
     """
 
-    posed_heads: NDArray[np.float64]
-    heads: NDArray[np.float64]
-    turns: NDArray[np.float64]
+    posed_heads: Floats
+    heads: Floats
+    turns: Floats
 
     def __repr__(self) -> str:
         return f"<RestPose: {len(self.heads)} bones>"
 
 
-def bend_angles(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> NDArray[np.float64]:
+def bend_angles(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> Floats:
     """Find by what angle the large bones of a body are bent against those above, in addition to the source.
 
     Parameters
@@ -85,9 +79,7 @@ def is_posed(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> bool
     return bool(bend_angles(rig, source, placed).max(initial=0.0) > _POSED_ANGLE)
 
 
-def rest_pose(
-    rig: FittedRig, source: TriangleMesh, placed: PlacedJoints, frames: NDArray[np.float64] | None = None
-) -> RestPose:
+def rest_pose(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints, frames: Floats | None = None) -> RestPose:
     """Turn all bones of the target as they are turned in the source.
 
     The target stays where it is, and stands as high above its root as it was delivered.  Bones that move no vertex
@@ -129,7 +121,7 @@ def rest_pose(
     return RestPose(placed.heads, heads, turns)
 
 
-def _leaders(rig: FittedRig, above: NDArray[np.int64], masses: NDArray[np.float64]) -> NDArray[np.int64]:
+def _leaders(rig: FittedRig, above: Ints, masses: Floats) -> Ints:
     """Find for each bone the one that it goes with, (b,): the moving one above it, -1 for none.
 
     A foot that hangs on nothing, because inverse kinematics move it, goes with the bone of the body that moves most of
@@ -155,7 +147,7 @@ def _leaders(rig: FittedRig, above: NDArray[np.int64], masses: NDArray[np.float6
     return leaders
 
 
-def _after_leaders(leaders: NDArray[np.int64]) -> list[int]:
+def _after_leaders(leaders: Ints) -> list[int]:
     """Put all bones in an order in which each comes after its leader."""
     depths = np.zeros(len(leaders), np.int64)
     for bone in range(len(leaders)):
@@ -201,7 +193,7 @@ def length_ratio(rig: FittedRig, source: TriangleMesh, rest: RestPose) -> float:
     return after / before
 
 
-def unposed(vertices: NDArray[np.float64], weights: csr_array, rest: RestPose) -> NDArray[np.float64]:
+def unposed(vertices: Floats, weights: csr_array, rest: RestPose) -> Floats:
     """Bring vertices of the target to rest: the inverse of linear blend skinning, which posed them.
 
     Parameters

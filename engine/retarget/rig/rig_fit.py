@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
@@ -14,28 +13,22 @@ from ...geometry.laplacian import laplace_beltrami
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import SurfacePoints
+from ...mesh.triangle_mesh import TriangleMesh
+from ...repair.clean_surface import CleanSurface
 from ...repair.cleaning import clean
+from ...runtime.arrays import Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, run, within
 from ...shapes.enclosing_surface import joined_steps, separate_limbs
-from ...shapes.proxy import proxy_steps
+from ...shapes.proxy import Proxy, proxy_steps
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .digit_fit import with_digits
 from .fitted_rig import FittedRig
 from .match_gate import Homes
 from .posed_registration import PosedRegistration
+from .skeleton import Skeleton
 from .stunted_digits import stunted_digits, with_stiff_digits
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...repair.clean_surface import CleanSurface
-    from ...shapes.proxy import Proxy
-    from .skeleton import Skeleton
-
-__all__ = ["fit_rig", "fit_rig_steps"]
 
 _STIFFNESS = (8e-4, 8e-4, 4e-4, 4e-4, 1.5e-4, 1.5e-4, 8e-5, 8e-5, 8e-5)
 """How stiff the body is, round after round, against distances in units of the root of the target's area."""
@@ -139,15 +132,7 @@ def fit_rig_steps(
     posed = skinned(source.vertices, weights, bones.linear, bones.translations)
     registered = _spread(x, posed, positions, bones.posed)
     return FittedRig(
-        skeleton,
-        weights,
-        bones.linear,
-        bones.translations,
-        bones.rotations,
-        bones.scales,
-        posed,
-        registered,
-        *maps,
+        skeleton, weights, bones.linear, bones.translations, bones.rotations, bones.scales, posed, registered, *maps
     )
 
 
@@ -199,9 +184,7 @@ def _on_main(image: CleanSurface, surface_map: SurfaceMap, domain: CleanSurface)
     return search.walk(positions, starts)
 
 
-def _spread(
-    x: CleanSurface, posed: NDArray[np.float64], positions: NDArray[np.float64], posed_body: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _spread(x: CleanSurface, posed: Floats, positions: Floats, posed_body: Floats) -> Floats:
     """Positions of all vertices of the original mesh: of the main part (n, 3), posed (n, 3), and as posed elsewhere."""
     whole = posed.copy()
     main = np.flatnonzero(x.vertex_parts == 0)
@@ -234,11 +217,7 @@ class _Evidence:
     skeleton: Skeleton
 
     def bones(
-        self,
-        positions: NDArray[np.float64],
-        back: FoundPoints,
-        forward_shares: NDArray[np.float64],
-        back_shares: NDArray[np.float64],
+        self, positions: Floats, back: FoundPoints, forward_shares: Floats, back_shares: Floats
     ) -> BoneTransforms:
         """Fit the bones.
 
@@ -289,7 +268,7 @@ class _Slid:
     """What the sliding found: the bones, positions of the main part's vertices, and maps of the original meshes."""
 
     bones: BoneTransforms
-    positions: NDArray[np.float64]
+    positions: Floats
     maps: tuple[SurfaceMap, SurfaceMap]
 
 
@@ -355,11 +334,10 @@ def _proxy_weights(proxy: Proxy, weights: csr_array) -> csr_array:
         return weights
     gathered = _evaluation(proxy.points, proxy.mesh).T @ weights
     total = np.asarray(gathered.sum(axis=1)).ravel()
-    averaged: csr_array = csr_array(gathered.multiply(1 / np.where(total > 0, total, 1)[:, None]))
-    return averaged
+    return csr_array(gathered.multiply(1 / np.where(total > 0, total, 1)[:, None]))
 
 
-def _maps_steps(pair: _Pair, positions: NDArray[np.float64], homes: Homes) -> Steps[tuple[SurfaceMap, SurfaceMap]]:
+def _maps_steps(pair: _Pair, positions: Floats, homes: Homes) -> Steps[tuple[SurfaceMap, SurfaceMap]]:
     """Read the maps between the original meshes off the body that lies on the target at positions (n, 3)."""
     x, y = pair.x, pair.y
     size = float(np.sqrt(y.mesh.area))

@@ -5,16 +5,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["Skeleton"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +29,9 @@ class Skeleton:
         If the arrays do not fit together, a number is not finite, or bones are their own ancestors.
     """
 
-    parents: NDArray[np.int64]
-    heads: NDArray[np.float64]
-    tails: NDArray[np.float64]
+    parents: Ints
+    heads: Floats
+    tails: Floats
 
     def __post_init__(self) -> None:
         parents = np.asarray(self.parents, np.int64)
@@ -63,7 +58,7 @@ class Skeleton:
         return f"<Skeleton: {len(self.heads)} bones>"
 
     @cached_property
-    def order(self) -> NDArray[np.int64]:
+    def order(self) -> Ints:
         """All bones, parents before their children, (b,)."""
         found: list[int] = []
         layer = np.flatnonzero(self.parents < 0)
@@ -72,6 +67,6 @@ class Skeleton:
             layer = np.flatnonzero(np.isin(self.parents, layer))
         return np.array(found, np.int64)
 
-    def children(self, bone: int) -> NDArray[np.int64]:
+    def children(self, bone: int) -> Ints:
         """Bones that hang directly on a bone."""
         return np.flatnonzero(self.parents == bone)

@@ -4,29 +4,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, run
+from ...runtime.progress import Progress, Steps, run
 from .bend_directions import kept_bends
 from .joint_carriers import joint_places
 from .joint_placement import PlacedJoints, across_axes, swung, with_lengths
 from .joint_symmetry import mirrored_joints
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...runtime.progress import Steps
-    from .skeleton import Skeleton
-
-__all__ = ["carry_standing_rig", "carry_standing_rig_steps", "moved_into", "standing_share"]
+from .skeleton import Skeleton
 
 _POWER = 3
 """With what power of its distance from a joint a place of the surface counts less."""
@@ -66,9 +59,9 @@ def carry_standing_rig(
     target_to_source: SurfaceMap,
     *,
     skeleton: Skeleton,
-    normals: NDArray[np.float64],
-    frames: NDArray[np.float64] | None = None,
-    space: NDArray[np.float64] | None = None,
+    normals: Floats,
+    frames: Floats | None = None,
+    space: Floats | None = None,
 ) -> PlacedJoints:
     """Carry a rig that stands in a body; see `carry_standing_rig_steps`."""
     maps = source_to_target, target_to_source
@@ -86,9 +79,9 @@ def carry_standing_rig_steps(
     target_to_source: SurfaceMap,
     *,
     skeleton: Skeleton,
-    normals: NDArray[np.float64],
-    frames: NDArray[np.float64] | None = None,
-    space: NDArray[np.float64] | None = None,
+    normals: Floats,
+    frames: Floats | None = None,
+    space: Floats | None = None,
 ) -> Steps[PlacedJoints]:
     r"""Carry a rig that stands in a body, and moves nothing of it, into another body, in steps.
 
@@ -161,16 +154,14 @@ def carry_standing_rig_steps(
     return PlacedJoints(heads, tails, across, swung(turns, axes, tails - heads))
 
 
-def standing_share(skeleton: Skeleton, mesh: TriangleMesh, deforming: NDArray[np.bool_]) -> float:
+def standing_share(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools) -> float:
     """Tell what part of deforming bones (b,) lies inside of a body: near one if they stand in it, else near zero."""
     lengths = np.repeat(np.linalg.norm(skeleton.tails - skeleton.heads, axis=1)[deforming], len(_STEPS))
     inside = ~_outside(_on_bones(skeleton, deforming), mesh)
     return float(lengths @ inside / max(lengths.sum(), np.finfo(float).tiny))
 
 
-def moved_into(
-    skeleton: Skeleton, mesh: TriangleMesh, deforming: NDArray[np.bool_], up: NDArray[np.float64]
-) -> Skeleton:
+def moved_into(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools, up: Floats) -> Skeleton:
     """Move and scale a rig that stands elsewhere so that it lies in a body as well as it can without being posed.
 
     Parameters
@@ -208,20 +199,18 @@ def moved_into(
     return type(skeleton)(skeleton.parents, *(scale * ends + way for ends in (skeleton.heads, skeleton.tails)))
 
 
-def _on_bones(skeleton: Skeleton, chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _on_bones(skeleton: Skeleton, chosen: Bools) -> Floats:
     """Points on each of k bones, some after each other, (5 k, 3)."""
     axes = (skeleton.tails - skeleton.heads)[chosen]
     return (skeleton.heads[chosen, None] + _STEPS[:, None] * axes[:, None]).reshape(-1, 3)
 
 
-def _outside(points: NDArray[np.float64], mesh: TriangleMesh) -> NDArray[np.bool_]:
+def _outside(points: Floats, mesh: TriangleMesh) -> Bools:
     """Tell which points (k, 3) the surface nearest to them faces."""
     return _surface_beside(points, mesh, ClosestPoints(mesh))[1] > 0
 
 
-def _surface_beside(
-    points: NDArray[np.float64], mesh: TriangleMesh, search: ClosestPoints
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _surface_beside(points: Floats, mesh: TriangleMesh, search: ClosestPoints) -> tuple[Floats, Floats]:
     """Find the nearest points (k, 3) of the surface, and how far it faces the points, (k,): negative inside."""
     found = search.nearest(points)
     corners = mesh.triangles[found.triangles]
@@ -230,7 +219,7 @@ def _surface_beside(
     return nearest, ((points - nearest) * normals).sum(axis=1)
 
 
-def _roots_outside(skeleton: Skeleton, source: TriangleMesh) -> NDArray[np.int64]:
+def _roots_outside(skeleton: Skeleton, source: TriangleMesh) -> Ints:
     """Find the bones without a parent that begin outside of the body, such as a root on the ground."""
     roots = np.flatnonzero(skeleton.parents < 0)
     return roots[_outside(skeleton.heads[roots], source)]
@@ -240,19 +229,19 @@ def _roots_outside(skeleton: Skeleton, source: TriangleMesh) -> NDArray[np.int64
 class _Moved:
     """Where points went (k, 3), how what is around them is turned (k, 3, 3), and how it is scaled (k,)."""
 
-    points: NDArray[np.float64]
-    turns: NDArray[np.float64]
-    scales: NDArray[np.float64]
+    points: Floats
+    turns: Floats
+    scales: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class _Field:
     """Places of the source's surface (n, 3), its normals there, their images, and how much each counts."""
 
-    places: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    images: NDArray[np.float64]
-    areas: NDArray[np.float64]
+    places: Floats
+    normals: Floats
+    images: Floats
+    areas: Floats
 
     @classmethod
     def of(cls, source: TriangleMesh, target: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> _Field:
@@ -273,7 +262,7 @@ class _Field:
         images = np.concatenate([there.positions[forward], target.vertices[backward]])
         return cls(places[kept], normals[kept], images[kept], areas[kept])
 
-    def at(self, points: NDArray[np.float64]) -> _Moved:
+    def at(self, points: Floats) -> _Moved:
         """Move points (k, 3) with what is around them."""
         away = self.places - points[:, None]  # (k, n, 3)
         distances = np.linalg.norm(away, axis=2)
@@ -284,7 +273,7 @@ class _Field:
         weights = self.areas / np.maximum(distances, np.maximum(near, np.finfo(float).tiny)[:, None]) ** _POWER
         return self._similar(points, weights / weights.sum(axis=1, keepdims=True))
 
-    def upright(self, frames: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    def upright(self, frames: Floats | None) -> Floats:
         """Find how the whole body is turned: as one of the frames if that is near."""
         turn = self._similar(self.places[:1], (self.areas / self.areas.sum())[None]).turns[0]
         if frames is None or not len(frames):
@@ -292,7 +281,7 @@ class _Field:
         cosines = (np.einsum("kij,ij->k", frames, turn) - 1) / 2
         return frames[cosines.argmax()] if cosines.max() > np.cos(np.pi / 4) else turn
 
-    def _similar(self, points: NDArray[np.float64], weights: NDArray[np.float64]) -> _Moved:
+    def _similar(self, points: Floats, weights: Floats) -> _Moved:
         """Move points (k, 3) by the similarities that weights (k, n), which sum to one, make best."""
         here, there = weights @ self.places, weights @ self.images
         products = np.einsum("nd,ne->nde", self.images, self.places).reshape(-1, 9)
@@ -303,6 +292,6 @@ class _Field:
         return _Moved(there + scales[:, None] * np.einsum("kij,kj->ki", turns, points - here), turns, scales)
 
 
-def _some(count: int) -> NDArray[np.int64]:
+def _some(count: int) -> Ints:
     """Choose some of so many vertices, evenly by their numbers."""
     return np.arange(count) if count <= _MOST else np.linspace(0, count - 1, _MOST).astype(np.int64)

@@ -3,22 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array
 
-from .digit_groups import digit_groups
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.closest_points import FoundPoints
-    from ...mesh.triangle_mesh import TriangleMesh
-    from .digit_groups import DigitGroup
-    from .skeleton import Skeleton
-
-__all__ = ["stunted_digits", "with_stiff_digits"]
+from ...mesh.closest_points import FoundPoints
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Floats
+from .digit_groups import DigitGroup, digit_groups
+from .skeleton import Skeleton
 
 _LEAST_COVERED = 0.6
 """Least area that digits of the target have, against that of the palm, both as parts of what the body's have: whole
@@ -55,7 +47,7 @@ def stunted_digits(
     return [group for group in digit_groups(skeleton, mass) if _bare(group, covered, mass)]
 
 
-def _bare(group: DigitGroup, covered: NDArray[np.float64], mass: NDArray[np.float64]) -> bool:
+def _bare(group: DigitGroup, covered: Floats, mass: Floats) -> bool:
     """Say whether too little of a hand's digits is covered, against how much of its palm is."""
     palm, digits = group.bones[0], group.bones[1:]
     return bool(covered[digits].sum() * mass[palm] < _LEAST_COVERED * covered[palm] * mass[digits].sum())

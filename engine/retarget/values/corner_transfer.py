@@ -138,12 +138,7 @@ def carry_normals(
     return np.where(result.any(axis=1, keepdims=True), result, target.vertex_normals[vertices])
 
 
-def turned_normals(
-    normals: Floats,
-    corner_vertices: Ints,
-    mesh: TriangleMesh,
-    positions: Floats,
-) -> Floats:
+def turned_normals(normals: Floats, corner_vertices: Ints, mesh: TriangleMesh, positions: Floats) -> Floats:
     """Turn normals at the corners of faces as a deformation turns the surface.
 
     As in `carry_normals`, what is kept is how they deviate from the smooth normals.  At seams that the mesh was cut

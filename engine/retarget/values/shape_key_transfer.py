@@ -3,28 +3,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.sparse import csc_array
 from scipy.sparse.csgraph import connected_components
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_map import SurfaceMap
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
-from ...runtime.progress import Progress
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ...runtime.progress import Steps
-    from .deformation_gradients import LocalFrames
-
-__all__ = ["Scaling", "carry_offsets_steps"]
+from ...runtime.progress import Progress, Steps
+from .deformation_gradients import LocalFrames
 
 Scaling = Literal["auto", "none", "overall", "local"]
 """How lengths of offsets change: as the whole surface has grown if the two are of clearly different sizes, and as the
@@ -50,7 +45,7 @@ def carry_offsets_steps(
     *,
     scaling: Scaling = "auto",
     threshold: float = 0.001,
-) -> Steps[NDArray[np.float64]]:
+) -> Steps[Floats]:
     """Carry offsets at the vertices of the source to those of the target.
 
     At each vertex of the source an offset is turned as the surface is there, so that a smile follows a turned head.
@@ -108,9 +103,7 @@ def carry_offsets_steps(
     return carried
 
 
-def _check(
-    offsets: NDArray[np.float64], frames: LocalFrames, target: TriangleMesh, target_to_source: SurfaceMap
-) -> None:
+def _check(offsets: Floats, frames: LocalFrames, target: TriangleMesh, target_to_source: SurfaceMap) -> None:
     """Make sure that all belong together."""
     count = target_to_source.image_vertex_count
     if offsets.ndim != 3 or offsets.shape[1:] != (count, 3):
@@ -127,7 +120,7 @@ def _check(
         raise MatchError("A shape key of the source moves a vertex by what is not a finite number. Repair that key.")
 
 
-def _factors(frames: LocalFrames, scaling: Scaling) -> NDArray[np.float64]:
+def _factors(frames: LocalFrames, scaling: Scaling) -> Floats:
     """By what to multiply the offset of each vertex, (n_x,)."""
     if scaling == "local":
         return frames.scales
@@ -144,7 +137,7 @@ class _Filling:
     Parts of the surface of which nothing is known are left as they are.
     """
 
-    def __init__(self, mesh: TriangleMesh, known: NDArray[np.bool_]) -> None:
+    def __init__(self, mesh: TriangleMesh, known: Bools) -> None:
         self._unknown = np.zeros(0, np.int64)
         if known.all():
             return
@@ -164,7 +157,7 @@ class _Filling:
             inner.setdiag(inner.diagonal() + self._held)
             self._factor = symmetric_factor(inner)
 
-    def __call__(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, values: Floats) -> Floats:
         """Fill values (n, d)."""
         if not len(self._unknown):
             return values

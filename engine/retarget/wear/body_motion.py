@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
@@ -13,15 +12,10 @@ from scipy.spatial.distance import pdist
 
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
+from ...runtime.arrays import Floats, Ints
 from ..values.deformation_gradients import surface_frames
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["BodyMotion", "Motion"]
 
 _TURN_RADIUS = 0.02
 """Over what distance rotations of the skin are averaged, in sqrt(area): about the breadth of a finger."""
@@ -82,9 +76,9 @@ class Motion:
         For each point (k) what part of it each vertex of the body carries; rows sum to one.
     """
 
-    positions: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
+    positions: Floats
+    rotations: Floats
+    scales: Floats
     places: csr_array
 
 
@@ -93,16 +87,16 @@ class _Places:
     """Places on the skin (p, ...), so far apart; which vertices each stands for is a matrix (p, n) of shares."""
 
     spacing: float
-    positions: NDArray[np.float64]
-    images: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    areas: NDArray[np.float64]
-    bones: NDArray[np.float64]
+    positions: Floats
+    images: Floats
+    rotations: Floats
+    scales: Floats
+    normals: Floats
+    areas: Floats
+    bones: Floats
     shares: csr_array
 
-    def averaged(self, number: NDArray[np.int64]) -> _Places:
+    def averaged(self, number: Ints) -> _Places:
         """Put places together that have the same number (p,)."""
         count = int(number.max()) + 1
         # A least area, so that places of needles only have a mean as well.
@@ -142,7 +136,7 @@ class BodyMotion:
         How much each of some bones moves each vertex.
     """
 
-    def __init__(self, body: TriangleMesh, images: NDArray[np.float64], bones: csr_array | None = None) -> None:
+    def __init__(self, body: TriangleMesh, images: Floats, bones: csr_array | None = None) -> None:
         turning = surface_frames(body, images, radius=_TURN_RADIUS)
         growing = surface_frames(body, images, radius=_SCALE_RADIUS)
         self.body, self.images = body, images
@@ -173,7 +167,7 @@ class BodyMotion:
         """How many times as long lengths become on the whole."""
         return float(np.average(self._levels[0].scales, weights=self._levels[0].areas))
 
-    def growth_around(self, points: NDArray[np.float64]) -> float:
+    def growth_around(self, points: Floats) -> float:
         """Find how many times as far apart the skin around some points comes to be.
 
         The median over pairs of places counts: unlike areas and edges it knows nothing of folds that the skin has on
@@ -200,7 +194,7 @@ class BodyMotion:
         middle = np.searchsorted(np.cumsum(weights[order]), weights.sum() / 2)
         return float(ratios[order][min(int(middle), len(order) - 1)])
 
-    def move(self, points: NDArray[np.float64], distances: NDArray[np.float64], bones: csr_array | None) -> Motion:
+    def move(self, points: Floats, distances: Floats, bones: csr_array | None) -> Motion:
         """Move points along.
 
         Parameters
@@ -222,7 +216,7 @@ class BodyMotion:
         spacings = np.array([level.spacing for level in self._levels])
         levels = (np.searchsorted(spacings, width / 2, side="right") - 1).clip(min=0)
         result = Motion(np.empty((k, 3)), np.empty((k, 3, 3)), np.empty(k), csr_array((k, self.body.vertex_count)))
-        rows: list[NDArray[np.int64]] = []
+        rows: list[Ints] = []
         parts: list[csr_array] = []
         for number in np.unique(levels):
             chosen = np.flatnonzero(levels == number)
@@ -237,14 +231,7 @@ class BodyMotion:
         return replace(result, places=csr_array(csr_array(vstack(parts))[order]))
 
     def _move(
-        self,
-        result: Motion,
-        part: NDArray[np.int64],
-        points: NDArray[np.float64],
-        width: NDArray[np.float64],
-        *,
-        bones: NDArray[np.float64] | None,
-        number: int,
+        self, result: Motion, part: Ints, points: Floats, width: Floats, *, bones: Floats | None, number: int
     ) -> csr_array:
         """Move some points; return the shares of the vertices."""
         level, tree = self._levels[number], self._trees[number]

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -13,11 +12,7 @@ from scipy.sparse import csr_array
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["Clearance", "Surface", "surface_samples"]
+from ...runtime.arrays import Bools, Floats, Ints
 
 _MOST_PARTS = 6
 """Into how many parts the side of a triangle is divided at most, so that nothing pokes through it unseen."""
@@ -44,11 +39,11 @@ class Clearance:
         False where the nearest point lies on the rim of a hole, so that there is no inside.
     """
 
-    distances: NDArray[np.float64]
-    feet: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    vertices: NDArray[np.int64]
-    known: NDArray[np.bool_]
+    distances: Floats
+    feet: Floats
+    normals: Floats
+    vertices: Ints
+    known: Bools
 
 
 class Surface:
@@ -74,24 +69,24 @@ class Surface:
         self.search = search or ClosestPoints(mesh)
 
     @cached_property
-    def rim(self) -> NDArray[np.bool_]:
+    def rim(self) -> Bools:
         """Which vertices lie on the rim of a hole, (n,)."""
         rim = np.zeros(self.mesh.vertex_count, bool)
         rim[self.mesh.boundary_edges] = True
         return rim
 
     @cached_property
-    def normals(self) -> NDArray[np.float64]:
+    def normals(self) -> Floats:
         """Unit normals of the vertices, weighted by angles, (n, 3)."""
         return _angle_normals(self.mesh)
 
-    def moved(self, vertices: NDArray[np.float64]) -> Surface:
+    def moved(self, vertices: Floats) -> Surface:
         """Return the surface with its vertices elsewhere, (n, 3); what depends on the triangles alone is shared."""
         other = Surface(TriangleMesh(vertices, self.mesh.triangles), self.search.moved(vertices))
         other.rim = self.rim
         return other
 
-    def clearance(self, points: NDArray[np.float64], starts: NDArray[np.int64] | None = None) -> Clearance:
+    def clearance(self, points: Floats, starts: Ints | None = None) -> Clearance:
         """Measure how far points (k, 3) are from the surface.
 
         Parameters
@@ -142,7 +137,7 @@ def surface_samples(mesh: TriangleMesh, spacing: float) -> csr_array:
     return samples
 
 
-def _angle_normals(mesh: TriangleMesh) -> NDArray[np.float64]:
+def _angle_normals(mesh: TriangleMesh) -> Floats:
     """Find the normals of the vertices, weighted by the angles of the triangles, (n, 3)."""
     sums = np.zeros((mesh.vertex_count, 3))
     corners = [mesh.vertices[corner] for corner in mesh.triangles.T]

@@ -3,29 +3,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
+from ...runtime.arrays import Floats
 from ...runtime.errors import RigError
+from ..motion.bone_pairing import BonePairing
 from ..motion.paired_weights import paired_weights
+from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ..motion.bone_pairing import BonePairing
-    from ..rig.skeleton import Skeleton
-
-__all__ = ["handed_weights"]
 
 
 def handed_weights(
     own: csr_array,
     below: csr_array,
     on_skin: csr_array,
-    positions: NDArray[np.float64],
+    positions: Floats,
     *,
     pairing: BonePairing,
     bones: tuple[Skeleton, Skeleton],

@@ -3,28 +3,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import RigError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from .worn_item import FittedItem
-
-__all__ = ["bones_of_items", "moved_with_items"]
+from .worn_item import FittedItem
 
 _NEIGHBOURS = 32
 """Vertices of items that take a joint along."""
 
 
-def bones_of_items(parents: NDArray[np.int64], on_body: NDArray[np.bool_], on_items: NDArray[np.bool_]) -> list[int]:
+def bones_of_items(parents: Ints, on_body: Bools, on_items: Bools) -> list[int]:
     """Find the bones that items have for themselves, parents first.
 
     Parameters
@@ -51,9 +44,7 @@ def bones_of_items(parents: NDArray[np.int64], on_body: NDArray[np.bool_], on_it
     return sorted(items - body, key=lambda bone: (len(above[bone]), bone))
 
 
-def moved_with_items(
-    points: NDArray[np.float64], items: Sequence[tuple[NDArray[np.float64], FittedItem]]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def moved_with_items(points: Floats, items: Sequence[tuple[Floats, FittedItem]]) -> tuple[Floats, Floats]:
     """Move joints with the items around them.
 
     Joints that were in one place stay in one.

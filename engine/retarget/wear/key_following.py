@@ -3,29 +3,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
-from ...runtime.progress import Progress, within
+from ...runtime.progress import Progress, Steps, within
 from .wearing import wear_steps
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
-
-    from ...runtime.progress import Steps
-    from .worn_item import WornItem
-
-__all__ = ["follow_keys_steps"]
+from .worn_item import WornItem
 
 _STILL = 0.001
 """Part of the root of the body's area that a key has to move an item by somewhere for the item to follow: about 1.4 mm
@@ -37,12 +29,8 @@ _NOTHING = 1e-5
 
 @can_go_beside
 def follow_keys_steps(
-    body: TriangleMesh,
-    offsets: NDArray[np.float64],
-    items: Sequence[WornItem],
-    *,
-    bones: csr_array | None = None,
-) -> Steps[list[NDArray[np.float64]]]:
+    body: TriangleMesh, offsets: Floats, items: Sequence[WornItem], *, bones: csr_array | None = None
+) -> Steps[list[Floats]]:
     """Find what a body's shape keys do to what it wears.
 
     A body with a key turned on is another body, of the same mesh, to which the items are fitted as `wear_steps` does:
@@ -104,6 +92,6 @@ def follow_keys_steps(
     return found
 
 
-def _left_alone(item: WornItem, still: NDArray[np.bool_]) -> WornItem:
+def _left_alone(item: WornItem, still: Bools) -> WornItem:
     """Let some vertices (n,) not be pushed: where nothing moves below them, nothing new can poke through."""
     return replace(item, left=still if item.left is None else item.left | still)

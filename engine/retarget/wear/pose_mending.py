@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
@@ -12,20 +12,12 @@ from scipy.sparse import csr_array, diags_array
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
-from ...runtime.progress import Progress, within
+from ...runtime.progress import Progress, Steps, within
+from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 from .contact import Surface
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...runtime.progress import Steps
-    from ..rig.skeleton import Skeleton
-
-__all__ = ["MendedWeights", "WeightedItem", "mend_weights_steps"]
 
 _ANGLE = np.radians(50.0)
 """How far each joint is bent, about two axes and both ways."""
@@ -72,8 +64,8 @@ class WeightedItem:
         How much each bone moves each vertex; rows that are empty are left so.
     """
 
-    positions: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    positions: Floats
+    triangles: Ints
     weights: csr_array
 
     def __repr__(self) -> str:
@@ -93,7 +85,7 @@ class MendedWeights:
     """
 
     weights: csr_array
-    changed: NDArray[np.bool_]
+    changed: Bools
 
     def __repr__(self) -> str:
         return f"<MendedWeights: {int(self.changed.sum())} of {len(self.changed)} vertices changed>"
@@ -101,11 +93,7 @@ class MendedWeights:
 
 @can_go_beside
 def mend_weights_steps(
-    items: Sequence[WeightedItem],
-    *,
-    body: TriangleMesh,
-    skin_weights: csr_array,
-    skeleton: Skeleton,
+    items: Sequence[WeightedItem], *, body: TriangleMesh, skin_weights: csr_array, skeleton: Skeleton
 ) -> Steps[list[MendedWeights]]:
     """Bend each joint and mend the weights of items where the skin pokes through.
 
@@ -164,10 +152,10 @@ class _Tried:
     item: WeightedItem
     parts: WeldedParts
     of_skin: csr_array
-    starts: NDArray[np.int64]
-    lying: NDArray[np.bool_]
+    starts: Ints
+    lying: Bools
 
-    def mixed(self, share: NDArray[np.float64]) -> csr_array:
+    def mixed(self, share: Floats) -> csr_array:
         """Weights that are by such a part of each vertex (n,) the skin's."""
         if not share.any():
             return self.item.weights
@@ -203,9 +191,7 @@ def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
     return _Tried(item, parts, of_skin, starts, lying)
 
 
-def _deepest_steps(
-    posed: _PosedBody, ways: Sequence[tuple[_Tried, NDArray[np.bool_], list[csr_array]]]
-) -> Steps[list[NDArray[np.float64]]]:
+def _deepest_steps(posed: _PosedBody, ways: Sequence[tuple[_Tried, Bools, list[csr_array]]]) -> Steps[list[Floats]]:
     """Find how deep some vertices (n,) of items get into the skin at most, by each of w weights: (w, n) for each item.
 
     Those that never do, are not looked at, or that no joint bends have zero.
@@ -237,11 +223,11 @@ def _deepest_steps(
     return deepest
 
 
-def _column_sums(weights: csr_array) -> NDArray[np.float64]:
+def _column_sums(weights: csr_array) -> Floats:
     return np.asarray(weights.sum(axis=0)).ravel()
 
 
-def _subtrees(parents: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _subtrees(parents: Ints) -> Bools:
     """Tell for each bone which bones hang on it, itself as well, (b, b)."""
     count = len(parents)
     hanging = np.eye(count, dtype=bool)
@@ -253,7 +239,7 @@ def _subtrees(parents: NDArray[np.int64]) -> NDArray[np.bool_]:
     return hanging
 
 
-def _bends(along: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def _bends(along: Floats) -> list[Floats]:
     """Rotations about two axes across a bone, both ways."""
     along = along / max(float(np.linalg.norm(along)), 1e-300)
     first = np.cross(along, np.eye(3)[int(np.abs(along).argmin())])
@@ -263,16 +249,13 @@ def _bends(along: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     return [np.eye(3) + np.sin(_ANGLE) * skew + (1 - np.cos(_ANGLE)) * skew @ skew for skew in skews]
 
 
-def _bent(
-    points: NDArray[np.float64], share: NDArray[np.float64], head: NDArray[np.float64], rotation: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _bent(points: Floats, share: Floats, head: Floats, rotation: Floats) -> Floats:
     """Points (k, 3), so much of each (k,) turned about the head of a bone."""
     turned = (points - head) @ rotation.T + head
-    moved: NDArray[np.float64] = points + share[:, None] * (turned - points)
-    return moved
+    return points + share[:, None] * (turned - points)
 
 
-def _spread(parts: WeldedParts, values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _spread(parts: WeldedParts, values: Floats) -> Floats:
     """Let values (n,) fade out over rings of neighbors; vertices that a seam parts have one."""
     tails, heads = parts.edges.T
     result = np.zeros(parts.welded_count)

@@ -3,24 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
 
+from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from .contact import Surface
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...geometry.laplacian import LaplaceBeltrami
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["Layer", "Pushed", "layer_of", "pushed_out"]
 
 _ROUNDS = 8
 """How often is looked anew where something pokes through."""
@@ -80,9 +73,9 @@ class Layer:
     """
 
     surface: Surface
-    wanted: NDArray[np.float64]
-    starts: NDArray[np.int64]
-    outside: NDArray[np.bool_]
+    wanted: Floats
+    starts: Ints
+    outside: Bools
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +90,7 @@ class Pushed:
         What part of its samples is still below what it lies on.
     """
 
-    positions: NDArray[np.float64]
+    positions: Floats
     through: float
 
 
@@ -105,10 +98,10 @@ def layer_of(
     surface_before: Surface,
     surface: Surface,
     samples: csr_array,
-    before: NDArray[np.float64],
+    before: Floats,
     *,
-    places: NDArray[np.int64] | None,
-    scales: NDArray[np.float64],
+    places: Ints | None,
+    scales: Floats,
     unit: float,
     least: float,
     margin: float,
@@ -145,12 +138,12 @@ def layer_of(
 
 def pushed_out(
     mesh: TriangleMesh,
-    positions: NDArray[np.float64],
+    positions: Floats,
     laplace: LaplaceBeltrami,
     samples: csr_array,
     *,
     layers: Sequence[Layer],
-    fixed: NDArray[np.bool_],
+    fixed: Bools,
     unit: float,
 ) -> Pushed:
     """Push an item out of what is below it.
@@ -206,18 +199,18 @@ def pushed_out(
 def _needed(
     item: Surface,
     samples: csr_array,
-    sample_mass: NDArray[np.float64],
+    sample_mass: Floats,
     layers: Sequence[Layer],
     *,
-    free: NDArray[np.bool_],
+    free: Bools,
     unit: float,
     all_places: bool,
-) -> tuple[csr_array | None, NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[csr_array | None, Floats, Floats]:
     """Places of the item that have to move: shares of the vertices (k, n), the moves (k, 3), and weights (k,)."""
     points = samples @ item.mesh.vertices
     rows: list[csr_array] = []
-    moves: list[NDArray[np.float64]] = []
-    weights: list[NDArray[np.float64]] = []
+    moves: list[Floats] = []
+    weights: list[Floats] = []
     movable = np.asarray(samples @ free.astype(float)).ravel() > 0.5
     for layer in layers:
         lying = np.flatnonzero(np.isfinite(layer.wanted) & movable)
@@ -238,7 +231,7 @@ def _needed(
     return csr_array(vstack(rows)), np.concatenate(moves), np.concatenate(weights)
 
 
-def _inside(layer: Layer, points: NDArray[np.float64], numbers: NDArray[np.int64]) -> NDArray[np.float64]:
+def _inside(layer: Layer, points: Floats, numbers: Ints) -> Floats:
     """Find how far points (k, 3), samples of such numbers (k,), have to move out of the surface below, (k, 3).
 
     First counts the limb that each lay on, then any other, if between the two there is room.
@@ -248,15 +241,10 @@ def _inside(layer: Layer, points: NDArray[np.float64], numbers: NDArray[np.int64
     lacks = [np.where(found.known, (wanted - found.distances).clip(min=0), 0.0) for found in (own, every)]
     left = own.distances + lacks[1] * np.einsum("ki,ki->k", own.normals, every.normals)
     other = (lacks[1] > lacks[0]) & (left > 0)
-    moves: NDArray[np.float64] = np.where(
-        other[:, None], lacks[1][:, None] * every.normals, lacks[0][:, None] * own.normals
-    )
-    return moves
+    return np.where(other[:, None], lacks[1][:, None] * every.normals, lacks[0][:, None] * own.normals)
 
 
-def _poking(
-    item: Surface, layer: Layer, free: NDArray[np.bool_], unit: float
-) -> tuple[csr_array, NDArray[np.float64]] | None:
+def _poking(item: Surface, layer: Layer, free: Bools, unit: float) -> tuple[csr_array, Floats] | None:
     """Find places of the surface below that are above the item, and the moves of the item over them."""
     surface, reach = layer.surface, _POKING * unit
     mesh, positions = item.mesh, item.mesh.vertices
@@ -295,7 +283,7 @@ def _poking(
     return rows, (margin - height[under])[:, None] * normals[near[under]]
 
 
-def _directly(rows: csr_array, moves: NDArray[np.float64]) -> NDArray[np.float64]:
+def _directly(rows: csr_array, moves: Floats) -> Floats:
     """Move every vertex as far as any place near it has to: the mean of the moves, as long as the longest."""
     shares = csr_array(rows.T)
     total = np.asarray(shares.sum(axis=1)).ravel()

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -12,11 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["placed_rigidly", "rigid_pieces"]
+from ...runtime.arrays import Bools, Floats, Ints
 
 _TINY, _SMALL = 0.02, 0.12
 """Size of a loose part, in units of the root of the body's area, up to which it is rigid whatever its shape, and up to
@@ -38,9 +32,7 @@ _NAMED_TOGETHER = 0.05
 _LEAST_VERTICES = 3
 
 
-def rigid_pieces(
-    item: TriangleMesh, unit: float, named: NDArray[np.bool_] | None = None, *, search: bool = True
-) -> NDArray[np.int64]:
+def rigid_pieces(item: TriangleMesh, unit: float, named: Bools | None = None, *, search: bool = True) -> Ints:
     """Find the rigid pieces of an item.
 
     Parameters
@@ -72,9 +64,7 @@ def rigid_pieces(
     return labels
 
 
-def placed_rigidly(
-    before: NDArray[np.float64], after: NDArray[np.float64], scale: float | None = None
-) -> NDArray[np.float64]:
+def placed_rigidly(before: Floats, after: Floats, scale: float | None = None) -> Floats:
     """Move points by the similarity that takes them nearest to where they should go.
 
     Parameters
@@ -96,11 +86,10 @@ def placed_rigidly(
     squares = float(np.square(x).sum())
     if scale is None:
         scale = float(values @ sign) / squares if squares > 0 else 1.0
-    moved: NDArray[np.float64] = scale * x @ ((left * sign) @ right).T + end
-    return moved
+    return scale * x @ ((left * sign) @ right).T + end
 
 
-def _solid_parts(parts: WeldedParts, unit: float) -> NDArray[np.bool_]:
+def _solid_parts(parts: WeldedParts, unit: float) -> Bools:
     """Tell which parts are small and solid, (p,)."""
     closed = parts.closed
     labels = parts.labels[closed.triangles[:, 0]]
@@ -111,17 +100,10 @@ def _solid_parts(parts: WeldedParts, unit: float) -> NDArray[np.bool_]:
     solid = left <= _SOLID * areas
     vertices = np.bincount(parts.labels, minlength=count)
     fits = (parts.sizes <= _TINY * unit) | ((parts.sizes <= _SMALL * unit) & solid)
-    rigid: NDArray[np.bool_] = fits & (vertices >= _LEAST_VERTICES) & (areas > 0)
-    return rigid
+    return fits & (vertices >= _LEAST_VERTICES) & (areas > 0)
 
 
-def _groups(
-    item: TriangleMesh,
-    chosen: NDArray[np.bool_],
-    gap: float,
-    largest: float,
-    parts: WeldedParts | None = None,
-) -> NDArray[np.int64]:
+def _groups(item: TriangleMesh, chosen: Bools, gap: float, largest: float, parts: WeldedParts | None = None) -> Ints:
     """Give the chosen vertices numbers of pieces, (n,): parts that nearly touch are one, if that is not too large."""
     n = item.vertex_count
     inside = chosen[item.edges].all(axis=1)
@@ -147,9 +129,7 @@ def _groups(
     return numbers
 
 
-def _touching(
-    item: TriangleMesh, chosen: NDArray[np.bool_], labels: NDArray[np.int64], gap: float
-) -> NDArray[np.int64]:
+def _touching(item: TriangleMesh, chosen: Bools, labels: Ints, gap: float) -> Ints:
     """Find the pairs of parts (p, 2), of the chosen vertices, that are nearer than a gap, by their labels (n,)."""
     inside = item.triangles[chosen[item.triangles].all(axis=1)]
     of_triangles, of_vertices = labels[inside[:, 0]], np.flatnonzero(chosen)

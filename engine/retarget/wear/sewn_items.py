@@ -4,18 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from ...mesh.connectivity.welded_parts import WeldedParts
-
-if TYPE_CHECKING:
-    from ...runtime.arrays import Ints
-    from .worn_item import FittedItem, WornItem
-
-__all__ = ["cut_open", "sewn"]
+from ...runtime.arrays import Ints
+from .worn_item import FittedItem, WornItem
 
 
 def sewn(item: WornItem) -> tuple[WornItem, Ints | None]:

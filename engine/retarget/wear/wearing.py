@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
@@ -12,28 +12,19 @@ from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
+from ...runtime.arrays import Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
-from ...runtime.progress import Progress
-from .body_motion import BodyMotion
+from ...runtime.progress import Progress, Steps
+from .body_motion import BodyMotion, Motion
 from .contact import Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
 from .rigid_pieces import placed_rigidly, rigid_pieces
 from .sewn_items import cut_open, sewn
 from .worn_item import FittedItem, WornItem
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from ...mesh.surface_map import SurfaceMap
-    from ...runtime.progress import Steps
-    from .body_motion import Motion
-
-__all__ = ["wear_steps"]
 
 _HOLD = 0.010
 """Over what length, in sqrt(area) of the body, an item at the skin smooths out how the skin under it moves."""
@@ -69,10 +60,10 @@ class _Work:
 
     item: WornItem
     motion: Motion
-    distances: NDArray[np.float64]
-    pieces: NDArray[np.int64]
-    positions: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
-    pushed: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    distances: Floats
+    pieces: Ints
+    positions: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    pushed: Floats = field(default_factory=lambda: np.empty(0))
     through: float = 0.0
 
 
@@ -81,7 +72,7 @@ def wear_steps(
     source: TriangleMesh,
     target: TriangleMesh,
     source_to_target: SurfaceMap,
-    images: NDArray[np.float64],
+    images: Floats,
     items: Sequence[WornItem],
     *,
     bones: csr_array | None = None,
@@ -224,7 +215,7 @@ def _push(
     work: _Work,
     below: Sequence[_Work],
     skins: tuple[Surface, Surface],
-    places: NDArray[np.int64],
+    places: Ints,
     *,
     units: tuple[float, float],
     spacing: float,
@@ -272,7 +263,7 @@ def _push(
     work.pushed = np.where(moved > _NOTHING * new_unit, moved, 0.0)
 
 
-def _near(points: NDArray[np.float64], others: NDArray[np.float64], unit: float) -> bool:
+def _near(points: Floats, others: Floats, unit: float) -> bool:
     """Tell whether two items touch or nearly so."""
     reach = 0.03 * unit
     return bool(
@@ -280,7 +271,7 @@ def _near(points: NDArray[np.float64], others: NDArray[np.float64], unit: float)
     )
 
 
-def _with_pieces(work: _Work, positions: NDArray[np.float64], layers: Sequence[Layer]) -> NDArray[np.float64]:
+def _with_pieces(work: _Work, positions: Floats, layers: Sequence[Layer]) -> Floats:
     """Move rigid pieces with the cloth around them, and out of what is below."""
     mesh = work.item.mesh
     moved = positions.copy()

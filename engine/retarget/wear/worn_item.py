@@ -4,16 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-    from scipy.sparse import csr_array
+from scipy.sparse import csr_array
 
-    from ...mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["FittedItem", "WornItem"]
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,11 +41,11 @@ class WornItem:
     mesh: TriangleMesh
     bones: csr_array | None = None
     fit: str = "AUTO"
-    rigid: NDArray[np.bool_] | None = None
+    rigid: Bools | None = None
     find_rigid: bool = True
-    pieces: NDArray[np.int64] | None = None
-    tightness: NDArray[np.float64] | None = None
-    left: NDArray[np.bool_] | None = None
+    pieces: Ints | None = None
+    tightness: Floats | None = None
+    left: Bools | None = None
     margin: float = 0.0
 
     def __repr__(self) -> str:
@@ -83,15 +78,15 @@ class FittedItem:
         What part of the item is still below what it should lie on, 0 to 1.
     """
 
-    positions: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    scales: NDArray[np.float64]
+    positions: Floats
+    rotations: Floats
+    scales: Floats
     places: csr_array
-    pieces: NDArray[np.int64]
-    clearance_before: NDArray[np.float64]
-    clearance: NDArray[np.float64]
-    pushed: NDArray[np.float64]
-    confidence: NDArray[np.float64]
+    pieces: Ints
+    clearance_before: Floats
+    clearance: Floats
+    pushed: Floats
+    confidence: Floats
     through: float = 0.0
 
     def __repr__(self) -> str:

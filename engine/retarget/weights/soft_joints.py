@@ -3,22 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_map import SurfaceMap
 from .skin_weights import row_differences
 from .weight_filling import filled
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.connectivity.welded_parts import WeldedParts
-    from ...mesh.surface_map import SurfaceMap
-
-__all__ = ["with_soft_joints"]
 
 _JUMP = 1.0
 """Two neighbours are moved by different plates if their weights differ by more, of the 2 that are possible: half of

@@ -3,22 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ...geometry.laplacian import laplace_beltrami
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import RigError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ...mesh.triangle_mesh import TriangleMesh
-    from ..rig.skeleton import Skeleton
-
-__all__ = ["standing_weights"]
+from ..rig.skeleton import Skeleton
 
 _AGAINST = 5.0
 """How many times as far a bone counts that the surface faces away from, such as an arm beside the trunk."""
@@ -30,7 +23,7 @@ _LEAST_WEIGHT = 1e-3
 """Weights below this are dropped."""
 
 
-def standing_weights(mesh: TriangleMesh, skeleton: Skeleton, deforming: NDArray[np.bool_]) -> csr_array:
+def standing_weights(mesh: TriangleMesh, skeleton: Skeleton, deforming: Bools) -> csr_array:
     r"""Find out what each of some bones moves that stand in a body.
 
     Parameters
@@ -82,7 +75,7 @@ def standing_weights(mesh: TriangleMesh, skeleton: Skeleton, deforming: NDArray[
     return csr_array((kept.data, bones[kept.indices], kept.indptr), shape=(mesh.vertex_count, len(skeleton)))
 
 
-def _distances(mesh: TriangleMesh, skeleton: Skeleton, bones: NDArray[np.int64]) -> NDArray[np.float64]:
+def _distances(mesh: TriangleMesh, skeleton: Skeleton, bones: Ints) -> Floats:
     """Distances of vertices from bones, (n, k); more where the surface faces away from the bone."""
     result = np.empty((mesh.vertex_count, len(bones)))
     for column, bone in enumerate(bones):
