@@ -49,6 +49,9 @@ def test_scripts(scene, tmp_path, capsys):
 
 
 def test_retargeting(scene):
+    metarig = scene.data.objects["Hero Rig"].copy()  # a rig that stands in the source without moving it
+    metarig.name = "metarig"
+    scene.context.collection.objects.link(metarig)
     (block,) = scripts("retargeting")
     exec(block, {})  # noqa: S102 - the page's own
     assert "Wrap to Scan" in scene.data.objects["Hero"].data.shape_keys.key_blocks

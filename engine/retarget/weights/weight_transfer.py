@@ -97,7 +97,8 @@ def carry_weights_steps(
     telling : (g,) array of bool, optional
         The columns that tell whether neighbours move together: those of bones; all if not given.
     fill : bool
-        Whether vertices that the map tears away from their neighbours take the weights around them.
+        Whether vertices that the map tears away from their neighbours take the weights around them, and those between
+        plates of the source pass over gradually.
     fill_alone : bool
         Whether vertices that have no partner on the source take the weights around them, too.
     rigid : bool
@@ -124,7 +125,8 @@ def carry_weights_steps(
     source_parts = WeldedParts.of(source)
     if rigid:
         result = with_rigid_parts(result, parts, weights, source_parts, target_to_source, free=marks < 0)
-    result = with_soft_joints(result, parts, source_parts, target_to_source)
+    if fill:
+        result = with_soft_joints(result, parts, source_parts, target_to_source)
     result = with_single_bones(result, parts, marks > 0, telling)
     if fill:
         yield Progress(0.2, "Looking for torn vertices")
