@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from operator import itemgetter
 
+import numpy as np
+
 from ..mesh.closest_points import FoundPoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
@@ -147,10 +149,11 @@ def registered_pair_steps(
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
     yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
-    if landmarks is None and candidates[0].likeness < selection.least:
+    alike = np.inf if landmarks is not None else max(candidate.likeness for candidate in candidates)
+    if alike < selection.least:
         raise MatchError("The surfaces are not enough alike to be matched.")
     # Where no map is looked for, the one that is given is followed as it is; and where none can be right, the best one.
-    hopeful = landmarks is not None or candidates[0].likeness >= EVEN - RISE
+    hopeful = alike >= EVEN - RISE
     proposers = PROPOSERS if search and hopeful else ()
     contest = Contest(follow, landmarks, selection)
     for number, propose in enumerate(proposers):
