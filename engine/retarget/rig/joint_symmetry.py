@@ -28,7 +28,7 @@ the target was made in: that one is meant then."""
 _AS_GOOD = 1.5
 """How many times as far the mirrored target may be from itself by that plane."""
 
-Joints = tuple["Floats", "Floats", "Floats"]
+Joints = tuple[Floats, Floats, Floats]
 """Heads, tails and normals of bones, (b, 3) each."""
 
 
@@ -100,6 +100,7 @@ def _plane(
     extent = float(np.linalg.norm(np.ptp(target.vertices, axis=0)))
 
     def missed(place: Floats, normal: Floats) -> float:
+        """Tell how far the mirrored target is from itself on the mean, in units of its extent."""
         mirrored = points - 2 * np.outer((points - place) @ normal, normal)
         return float(np.sqrt(search.nearest(mirrored).squared_distances).mean()) / extent
 
