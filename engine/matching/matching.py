@@ -185,18 +185,21 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
 def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
-    If some of the part has no partner then, or the piece is less like it than one body is like itself in another pose,
-    or like another whole body if the overlap is clear, all of the whole surface is tried as well.  So it is if most of
-    that is shared: a body whose faces are missing here and there is no part.
+    That begins with the map of the overlap if that is clear; else a map is looked for anew.  If some of the part has no
+    partner then, or the piece is less like it than one body is like itself in another pose, or like another whole body
+    if the overlap is clear, all of the whole surface is tried as well.  So it is if most of that is shared: a body
+    whose faces are missing here and there is no part.
     """
     known = overlap.result
     whole, shown = (x, known.source_to_target) if of_source else (y, known.target_to_source)
     if shown is None:
         return known
     piece = shown.has_partner[whole.vertices]
-    steps = piece_matched_steps(known, x, y, task, piece, of_source=of_source)
+    clear = overlap.credibility >= CLEAR
+    begun = replace(task, begun=known.source_to_target if clear else None)
+    steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source)
     result = yield from within(steps, 0.0, _CLOSER)
-    enough = MUCH_ALIKE if overlap.credibility >= CLEAR else ALL_ALIKE
+    enough = MUCH_ALIKE if clear else ALL_ALIKE
     is_clear = shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
     if is_clear and min(overlap.shares) < _SMALL_PART:
         return result

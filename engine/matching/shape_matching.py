@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment
+from scipy.spatial import cKDTree
 
 from ..dense.dense_hypotheses import USUAL, LandmarkStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
@@ -20,6 +21,7 @@ from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..hierarchical.sparse_match import Answer, at_samples, moved, solve_steps
 from ..hierarchical.sparse_result import CoarseMatch
+from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
@@ -68,12 +70,15 @@ class MatchTask:
         Takes the time of each stage.
     least : float
         Likeness of the surfaces below which a dense match is of no use.
+    begun : SurfaceMap, optional
+        A map of the source to the target that a dense match begins with; then no other is looked for.
     """
 
     settings: MatchSettings
     landmarks: ArrayLike | None
     clock: Clock = field(default_factory=Clock)
     least: float = -np.inf
+    begun: SurfaceMap | None = None
 
 
 def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
@@ -120,7 +125,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     if settings.dense:
         finer = yield from within(finer_shapes_steps(*limited, EIGENPAIRS), sampled, sampled)
     steps = solve_steps(pair, clock.lap)
-    if settings.dense and known is None and eigenpairs == EIGENPAIRS:
+    if settings.dense and known is None and eigenpairs == EIGENPAIRS and task.begun is None:
         # What the dense map needs first can be looked for beside the sparse answers.
         search = RoughSearch(map_domains(*finer), (1,))
         answers, searched = yield from within(search.beside_steps(steps), sampled, sparse_end)
@@ -163,8 +168,12 @@ def _dense_steps(
         places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
         rows = finer[0].sample_rows[: len(places)], finer[1].sample_rows[places]
         starts.append(LandmarkStart(*rows, "hierarchy"))
+    if task.begun is not None:
+        starts = [_begun_start(x, y, finer, task.begun)]
     selection, clock = replace(USUAL, least=task.least), task.clock
-    registering = registered_pair_steps(*finer, starts, landmarks=landmarks, searched=searched, selection=selection)
+    registering = registered_pair_steps(
+        *finer, starts, search=task.begun is None, landmarks=landmarks, searched=searched, selection=selection
+    )
     registered = yield from within(registering, 0.0, 0.75)
     clock.lap("registration")
     dense = yield from within(dense_match_steps(registered), 0.75, 0.9)
@@ -190,6 +199,14 @@ def _dense_steps(
         others.append((turned_name(number), moved(direct, turned)))
     clock.lap("agreement")
     return direct, others, dense
+
+
+def _begun_start(x: Shape, y: Shape, finer: tuple[Shape, Shape], begun: SurfaceMap) -> LandmarkStart:
+    """Begin with where a map takes the samples that have a partner."""
+    own = x.vertices[x.samples]
+    shown = np.flatnonzero(begun.has_partner[own])
+    nearest = cKDTree(y.original.vertices[y.vertices[y.samples]]).query(begun.positions[own[shown]])[1]
+    return LandmarkStart(finer[0].sample_rows[shown], finer[1].sample_rows[nearest], "overlap")
 
 
 def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple[Answer, Answer | None]]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -61,6 +61,10 @@ class OrientedPatches:
     def between(self) -> Floats:
         """Lengths of the paths between the points, (s, s)."""
         return self.paths[:, self.vertices]
+
+    def first(self, count: int) -> OrientedPatches:
+        """Return the patches of the first points, which are spread over the surface as well."""
+        return OrientedPatches(*(getattr(self, each.name)[:count] for each in fields(self)))
 
 
 def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:

@@ -14,8 +14,9 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.parallel_map import shared_steps
 from ...runtime.progress import Progress, Steps, within
+from .oriented_patches import OrientedPatches, oriented_patches
 from .overlap_score import shared_area
-from .overlap_search import CoarsePair, ScoredFit, overlap_fits_steps, scored_fit
+from .overlap_search import PATCHES, CoarsePair, ScoredFit, overlap_fits_steps, scored_fit
 from .part_registration import FINE, TURNED, Fit, Landmarks, placed, register_parts
 from .part_surface import PartSurface
 
@@ -110,10 +111,9 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
         PartSurface(TriangleMesh((mesh.vertices - centre) / length, mesh.triangles))
         for mesh, centre, length in zip((source, target), centres, lengths, strict=True)
     )
-    first = yield from within(surfaces[0].proxy_steps(_COARSE), 0.0, 0.02)
-    second = yield from within(surfaces[1].proxy_steps(_COARSE), 0.02, 0.04)
-    pair = CoarsePair((surfaces[0], surfaces[1]), (first, second))
-    ways = yield from within(shared_steps(_one_way_steps, pair, (False, True)), 0.04, 0.8)
+    first, second = yield from within(shared_steps(_described_steps, None, surfaces), 0.0, 0.08)
+    pair = CoarsePair((surfaces[0], surfaces[1]), (first[0], second[0]), (first[1], second[1]))
+    ways = yield from within(shared_steps(_one_way_steps, pair, (False, True)), 0.08, 0.8)
     found = yield from within(_mutual_steps(pair, (ways[0], ways[1])), 0.8, 0.86)
     if not found:
         return None
@@ -134,6 +134,14 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
         agreement,
         area,
     )
+
+
+def _described_steps(_: None, surface: PartSurface) -> Steps[tuple[PartSurface, OrientedPatches]]:
+    """Make a coarse surface, and describe the surroundings of points."""
+    coarse = yield from within(surface.proxy_steps(_COARSE), 0.0, 0.3)
+    patches = oriented_patches(surface, PATCHES)
+    yield Progress(1.0, _LABEL)
+    return coarse, patches
 
 
 def _one_way_steps(pair: CoarsePair, back: bool) -> Steps[list[ScoredFit]]:  # noqa: FBT001 -- an item of `shared_steps`

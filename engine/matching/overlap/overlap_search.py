@@ -12,17 +12,19 @@ from scipy.spatial import cKDTree
 from ...runtime.arrays import Floats
 from ...runtime.progress import Progress, Steps, within
 from .consistent_sets import PLANS, ConsistentSet, consistent_sets
-from .oriented_patches import oriented_patches
+from .oriented_patches import OrientedPatches
 from .overlap_score import overlap_score
 from .part_registration import FAST, REST, Fit, Landmarks, Round, placed, register_parts
 from .part_surface import PartSurface
 from .patch_candidates import compatibilities, patch_candidates
 
-_PATCHES = 160, 300
+_LAID, PATCHES = 160, 300
 """Patches of the surface that is laid onto the other, and of that one."""
 
-_TRIED_ROUNDS, _FOLLOWED = 3, 20
-"""Rounds that all registrations go through, and how many of these are followed to the end."""
+_HEATS = (1, 25), (4, 12), (len(FAST), 12)
+"""After how many rounds registrations are compared, and how many of these go on.  Where a right way was among the
+starts, for 36 sides of pairs of PARTIALSMAL, one was among the best eleven after the first round, and nine after the
+fourth."""
 
 _REGROWN, _POLISHED, _KEPT = 6, 5, 8
 """How many of the best fits are grown again, are registered once more, and are returned."""
@@ -50,14 +52,17 @@ class CoarsePair:
     ----------
     surfaces, coarse : pair of PartSurface
         In full resolution, and coarse.
+    patches : pair of OrientedPatches
+        `PATCHES` of either.
     """
 
     surfaces: tuple[PartSurface, PartSurface]
     coarse: tuple[PartSurface, PartSurface]
+    patches: tuple[OrientedPatches, OrientedPatches]
 
     def turned(self) -> CoarsePair:
         """Return the pair the other way round."""
-        return CoarsePair(self.surfaces[::-1], self.coarse[::-1])
+        return CoarsePair(self.surfaces[::-1], self.coarse[::-1], self.patches[::-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,16 +78,16 @@ def overlap_fits_steps(pair: CoarsePair) -> Steps[list[ScoredFit]]:
     source, target = pair.coarse
     yield Progress(0.0, _LABEL)
     starts = yield from within(_starts_steps(pair), 0.0, 0.3)
-    begun = []
-    for number, start in enumerate(starts):
-        begun.append(_followed(source, target, start, FAST[:_TRIED_ROUNDS]))
-        yield Progress(0.3 + 0.4 * (number + 1) / len(starts), _LABEL)
-    fits = []
-    chosen = sorted(range(len(starts)), key=lambda number: -begun[number].score)[:_FOLLOWED]
-    for number, one in enumerate(chosen):
-        start = replace(starts[one], positions=begun[one].fit.positions)
-        fits.append(_followed(source, target, start, FAST[_TRIED_ROUNDS:], _TRIED_ROUNDS))
-        yield Progress(0.7 + 0.15 * (number + 1) / len(chosen), _LABEL)
+    fits: list[ScoredFit] = []
+    done, begin = 0, 0.3
+    for rounds, most in _HEATS:
+        fits = []
+        for number, start in enumerate(starts):
+            fits.append(_followed(source, target, start, FAST[done:rounds], done))
+            yield Progress(begin + 0.55 / len(_HEATS) * (number + 1) / len(starts), _LABEL)
+        order = sorted(range(len(starts)), key=lambda number: -fits[number].score)[:most]
+        starts = [replace(starts[one], positions=fits[one].fit.positions) for one in order]
+        done, begin = rounds, begin + 0.55 / len(_HEATS)
     best = _distinct(fits, _REGROWN)
     for number, each in enumerate(list(best)):
         best.append(_regrown(source, target, each))
@@ -113,7 +118,7 @@ class _Start:
 
 
 def _followed(
-    source: PartSurface, target: PartSurface, start: _Start, rounds: tuple[Round, ...], done: int = 0
+    source: PartSurface, target: PartSurface, start: _Start, rounds: tuple[Round, ...], done: int
 ) -> ScoredFit:
     """Register coarse surfaces from a start."""
     marks, from_marks = start.marks, start.from_marks
@@ -125,8 +130,7 @@ def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
     """Place the first coarse surface by sets of patches that go together."""
     here, there = pair.surfaces
     coarse = pair.coarse[0]
-    patches = oriented_patches(here, _PATCHES[0]), oriented_patches(there, _PATCHES[1])
-    yield Progress(0.2, _LABEL)
+    patches = pair.patches[0].first(_LAID), pair.patches[1]
     candidates = patch_candidates(*patches)
     together = compatibilities(candidates, pair.surfaces, patches)
     yield Progress(0.5, _LABEL)
