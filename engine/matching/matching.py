@@ -179,7 +179,8 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
         if overlap is None:
             raise
         return overlap.result
-    return _better(result, overlap)
+    best = _better(result, overlap)
+    return overlap.doubted(best, x, y) if overlap is not None and best is result and all(cut) else best
 
 
 def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:

@@ -17,7 +17,7 @@ from ...runtime.progress import Progress, Steps, within
 from .oriented_patches import OrientedPatches, oriented_patches
 from .overlap_score import shared_area
 from .overlap_search import PATCHES, CoarsePair, ScoredFit, overlap_fits_steps, scored_fit
-from .part_registration import FINE, TURNED, Fit, Landmarks, placed, register_parts
+from .part_registration import FINE, REST, TURNED, Fit, Landmarks, placed, register_parts
 from .part_surface import PartSurface
 
 _COARSE = 800
@@ -71,6 +71,8 @@ class Overlap:
         Area of what has a partner by both registrations, as a part of that by either.
     area : float
         Area of what is shared, as a part of that of the larger surface.
+    search : OverlapSearch
+        What it was found on.
     """
 
     positions: tuple[Floats, Floats]
@@ -80,6 +82,45 @@ class Overlap:
     margin: float
     agreement: float
     area: float
+    search: OverlapSearch
+
+
+@dataclass(frozen=True, eq=False)
+class OverlapSearch:
+    """Two surfaces in one unit of length, around their middles.
+
+    Attributes
+    ----------
+    pair : CoarsePair
+        The surfaces.
+    lengths : pair of float
+        The unit, in that of either mesh.
+    centres : pair of arrays of float, (3,)
+        The middles, in the coordinates of either mesh.
+    """
+
+    pair: CoarsePair
+    lengths: tuple[float, float]
+    centres: tuple[Floats, Floats]
+
+    def given(self, positions: Floats, there: int) -> Floats:
+        """Return positions (n, 3) on one of the surfaces in the coordinates of its mesh."""
+        return positions * self.lengths[there] + self.centres[there]
+
+    def score(self, positions: tuple[Floats, Floats]) -> float:
+        """Score maps as overlaps are scored, by registrations from where they lead; see `overlap_score`.
+
+        Parameters
+        ----------
+        positions : pair of arrays of float, (n, 3) and (n', 3)
+            Where the vertices of each surface lie on the other, in the coordinates of that one's mesh.
+        """
+        scores = []
+        for here, pair in enumerate((self.pair, self.pair.turned())):
+            coarse, other = pair.coarse
+            places = (positions[here][coarse.ids] - self.centres[1 - here]) / self.lengths[1 - here]
+            scores.append(scored_fit(coarse, other, register_parts(coarse, other, places, REST)).score)
+        return sum(scores) / 2
 
 
 def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0) -> Steps[Overlap | None]:
@@ -124,15 +165,17 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
     if not (members[0].any() and members[1].any()):
         return None
     area = (shared_area(*pair.coarse, best.fits[0]) + shared_area(*pair.turned().coarse, best.fits[1])) / 2
-    positions, images = zip(*((fit.positions, fit.there.images) for fit in fits), strict=True)
+    search = OverlapSearch(pair, lengths, centres)
+    images = fits[0].there.images, fits[1].there.images
     return Overlap(
-        (positions[0] * lengths[1] + centres[1], positions[1] * lengths[0] + centres[0]),
+        (search.given(fits[0].positions, 1), search.given(fits[1].positions, 0)),
         images,
         members,
         best.score,
         float(margin),
         agreement,
         area,
+        search,
     )
 
 

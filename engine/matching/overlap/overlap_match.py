@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import expit
@@ -23,7 +23,7 @@ from ...runtime.progress import Progress, Steps, within
 from ...shapes.shape import Shape
 from ..result import MatchResult
 from ..shape_matching import MatchTask
-from .overlap_maps import Overlap, overlap_steps
+from .overlap_maps import Overlap, OverlapSearch, overlap_steps
 
 CLEAR = 0.5
 """Credibility from which on an overlap is more likely right than not."""
@@ -61,12 +61,33 @@ class OverlapMatch:
         How far it can be trusted as a whole, 0 to 1.
     shares : pair of float
         Part of the area of the main part of the source, and of the target, that is shared.
+    search : OverlapSearch
+        What it was found on.
     """
 
     result: MatchResult
     is_likely: bool
     credibility: float
     shares: tuple[float, float]
+    search: OverlapSearch
+
+    def doubted(self, other: MatchResult, x: Shape, y: Shape) -> MatchResult:
+        """Trust a match of all of the surfaces less, the less it would be worth as an overlap.
+
+        All of two surfaces that were cut off somewhere seldom corresponds.  A wrong map that says so leads across where
+        one of them was cut, and strains them.
+        """
+        there, back, quality = other.source_to_target, other.target_to_source, other.quality
+        if there is None or back is None or quality is None:
+            return other
+        trust = float(expit(self.search.score((there.positions[x.vertices], back.positions[y.vertices]))))
+        sentence = quality.sentence if trust >= CLEAR else overlap_sentence(self.shares, credible=False)
+        return replace(
+            other,
+            source_to_target=replace(there, confidence=trust * there.confidence),
+            target_to_source=replace(back, confidence=trust * back.confidence),
+            quality=replace(quality, confidence=trust * quality.confidence, sentence=sentence),
+        )
 
 
 def credibility(overlap: Overlap) -> float:
@@ -109,7 +130,7 @@ def overlap_match_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[OverlapMat
     task.clock.lap("lift")
     yield Progress(0.98, _LABEL)
     result = _result((x, y), overlap, task, (forward, backward), quality)
-    return OverlapMatch(result, overlap.score > 0, likely, shared.shares)
+    return OverlapMatch(result, overlap.score > 0, likely, shared.shares, overlap.search)
 
 
 def _found_steps(x: Shape, y: Shape) -> Steps[Overlap | None]:

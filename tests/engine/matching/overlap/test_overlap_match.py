@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Two bodies of each of which something was cut off: what they share, and what is said where that is unclear."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from engine import MatchSettings, TriangleMesh, match
 from engine.matching.overlap.overlap_maps import Overlap, overlap_steps
-from engine.matching.overlap.overlap_match import CLEAR, credibility
+from engine.matching.overlap.overlap_match import CLEAR, credibility, overlap_match_steps
+from engine.matching.shape_matching import MatchTask
+from engine.mesh.surface_points import SurfacePoints
 from engine.runtime.progress import run
+from engine.shapes.shape import Shape
 from tests.shapes import compacted, creature
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -80,7 +86,7 @@ def test_points_lie_on_what_is_shared(result):
 def overlap(**changes):
     nothing = (np.empty(0), np.empty(0))
     clear = {"score": 4.0, "margin": 5.0, "agreement": 0.95, "area": 0.5}
-    return Overlap(nothing, nothing, nothing, **(clear | changes))
+    return Overlap(nothing, nothing, nothing, **(clear | changes), search=None)
 
 
 @pytest.mark.parametrize("doubtful", [{"score": -0.1}, {"margin": 0.3}, {"agreement": 0.3}, {"area": 0.04}])
@@ -96,3 +102,44 @@ def test_it_does_not_matter_which_surface_is_which(front, back):
     assert there.margin == pytest.approx(here.margin, abs=1e-6)
     for own, other in zip(here.members, there.members[::-1], strict=True):
         assert (own == other).mean() > 0.995
+
+
+@pytest.fixture(scope="module")
+def known(front, back):
+    x, y = Shape(front[0]), Shape(back[0])
+    return x, y, run(overlap_match_steps(x, y, MatchTask(QUICK, None)))
+
+
+def claiming(result, confidence):
+    """A match that says so much of itself."""
+    return replace(result, quality=replace(result.quality, confidence=confidence))
+
+
+def turned_round(found, mesh):
+    """Where a map leads after half a turn of the surface that it leads to."""
+    middle = mesh.vertices.mean(axis=0)
+    opposite = middle + (found.positions - middle) * [-1, -1, 1]
+    nearest = cKDTree(mesh.vertices).query(opposite)[1]
+    return replace(found, points=SurfacePoints.at_vertices(mesh, nearest))
+
+
+def test_a_right_map_of_all_is_hardly_doubted(known):
+    x, y, overlap = known
+    doubted = overlap.doubted(claiming(overlap.result, 0.9), x, y)
+    assert 0.8 < doubted.quality.confidence < 0.9
+    assert doubted.quality.sentence == overlap.result.quality.sentence
+
+
+def test_a_wrong_map_of_all_is_doubted_and_that_is_said(known):
+    x, y, overlap = known
+    result = claiming(overlap.result, 0.9)
+    wrong = replace(
+        result,
+        source_to_target=turned_round(result.source_to_target, y.original),
+        target_to_source=turned_round(result.target_to_source, x.original),
+    )
+    doubted = overlap.doubted(wrong, x, y)
+    assert doubted.quality.confidence < CLEAR
+    assert "not clear what the shapes share" in doubted.quality.sentence
+    assert doubted.source_to_target.confidence.max() < CLEAR
+    assert (doubted.source_to_target.positions == wrong.source_to_target.positions).all()
