@@ -169,6 +169,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
         if all(cut):
             return overlap.result
         return (yield from within(_part_steps(overlap, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))
+    task = task if overlap is None else _begun(task, overlap)
     try:
         if all(cut):
             # Neither shows all of the other: no piece of one is to be looked for.
@@ -196,21 +197,26 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     if shown is None:
         return known
     piece = shown.has_partner[whole.vertices]
-    clear = overlap.credibility >= CLEAR
-    begun = replace(task, begun=known.source_to_target if clear else None)
+    begun = _begun(task, overlap)
     steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source)
     result = yield from within(steps, 0.0, _CLOSER)
-    enough = MUCH_ALIKE if clear else ALL_ALIKE
+    enough = MUCH_ALIKE if overlap.credibility >= CLEAR else ALL_ALIKE
     is_clear = shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
     if is_clear and min(overlap.shares) < _SMALL_PART:
         return result
     # All of both wins if that is more credible, so it is given up as soon as it cannot be.
-    least = part_credibility(result, of_source=of_source) - RISE if is_clear else task.least
+    if is_clear:
+        task = replace(begun, least=part_credibility(result, of_source=of_source) - RISE)
     try:
-        other = yield from within(_whole_steps(x, y, replace(task, least=least), _FIRST_AFTER), _CLOSER, 1.0)
+        other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
     except MatchError:
         return result
     return other if is_better_part(other, result, CREDIBLE, of_source=of_source) else result
+
+
+def _begun(task: MatchTask, overlap: OverlapMatch) -> MatchTask:
+    """Begin with the map of an overlap if that is clear: then no other is looked for."""
+    return replace(task, begun=overlap.result.source_to_target) if overlap.credibility >= CLEAR else task
 
 
 def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:

@@ -134,16 +134,18 @@ def overlap_match_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[OverlapMat
 
 
 def _found_steps(x: Shape, y: Shape) -> Steps[Overlap | None]:
-    """Find what two surfaces share: in the units they are given in, if that can be, or in the most credible ones."""
+    """Find what two surfaces share: in the units they are given in, if that can be, or in the first credible ones."""
     ratio = x.scale / y.scale
     scales = [1.0] if 1 / _SIZES < ratio < _SIZES else [ratio * scale for scale in _SCALES]
-    found = []
+    best = None
     for number, scale in enumerate(scales):
         begin, end = ((number + i) / len(scales) for i in (0, 1))
         overlap = yield from within(overlap_steps(x.mesh, y.mesh, scale), begin, end)
-        if overlap is not None:
-            found.append(overlap)
-    return max(found, key=credibility, default=None)
+        if overlap is not None and (best is None or credibility(overlap) > credibility(best)):
+            best = overlap
+        if best is not None and credibility(best) >= CLEAR:
+            break
+    return best
 
 
 @dataclass(frozen=True, eq=False)
