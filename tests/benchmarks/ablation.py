@@ -88,18 +88,6 @@ def agreeing_already(own):
     return lambda follow, fit: own(replace(follow, settling=Settling(disagree=())), fit)
 
 
-def by_overlap(_own):
-    """Cut out of a whole surface what an overlap says."""
-    overlap_match = import_module("engine.matching.overlap.overlap_match")
-    region = import_module("engine.matching.overlap_region")
-
-    def steps(whole, part, _first):
-        overlap = yield from overlap_match._found_steps(whole, part)
-        return [] if overlap is None else [region.CoveredPart(overlap.members[0], -overlap.score)]
-
-    return steps
-
-
 R, D, P = "engine.dense.registered_hypotheses", "engine.dense.dense_registration", "engine.registration.prolongation"
 Q = "engine.dense.proposers"
 MECHANISMS = {
@@ -125,7 +113,6 @@ MECHANISMS = {
     ],
     "joined pieces": [("engine.matching.matching.matched_with_pieces_steps", lambda _: pieces_apart)],
     "parts": [("engine.matching.matching.part_matched_steps", lambda _: lambda result, *_given: returned(result))],
-    "covered parts": [("engine.matching.partial_match.covered_parts_steps", by_overlap)],
     "spikes pulled in": [("engine.repair.cleaning._pull_in_spikes", lambda _: nothing)],
     "pinched gaps": [
         ("engine.repair.cleaning.pinched_gaps", lambda _: lambda *_given: (np.empty((0, 3), np.int64),) * 2)
