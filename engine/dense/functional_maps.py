@@ -8,12 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
+from scipy.linalg import qr, solve_triangular
 
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, run
-from ..runtime.small_products import product
 
 _INDEPENDENT = 0.3
 """Part of a function at the samples that those before it must leave unexplained; less is aliasing."""
@@ -74,35 +73,18 @@ class SampledBasis:
     def __init__(self, functions: Floats) -> None:
         self.functions = functions
         # The factors of the first columns are the first columns of the factors: one decomposition serves every size.
-        # Not by a library's QR: its threads make it a hundred times slower where other programs use the cores.
-        triangular = _leading_cholesky(product(functions.T, functions))
-        self.size = min(len(triangular), len(functions))
+        triangular = qr(functions, mode="r", check_finite=False)[0]
+        unexplained = np.abs(triangular.diagonal())
+        lengths = np.linalg.norm(functions[:, : len(unexplained)], axis=0)
+        dependent = np.flatnonzero(unexplained <= _INDEPENDENT * lengths)
+        self.size = int(dependent[0]) if len(dependent) else len(unexplained)
         triangular = triangular[: self.size, : self.size]
         self._inverse = solve_triangular(triangular, np.eye(self.size), check_finite=False)
-        self._orthogonal = product(functions[:, : self.size], self._inverse)
+        self._orthogonal = functions[:, : self.size] @ self._inverse
 
     def coefficients(self, values: Floats, size: int) -> Floats:
         """Fit functions given at the samples, (p, d), by the first basis functions: coefficients (size, d)."""
-        return product(self._inverse[:size, :size], product(self._orthogonal[:, :size].T, values))
-
-
-def _leading_cholesky(gram: Floats) -> Floats:
-    """Factor the leading part of a Gram matrix, up to the first function that those before it nearly explain.
-
-    Returns the upper triangular factor of that part, whose squared diagonal is what is left unexplained of each.
-    """
-    count = len(gram)
-    factor = np.zeros_like(gram)
-    for column in range(count):
-        above = factor[:column, column]
-        unexplained = gram[column, column] - float(np.einsum("i,i->", above, above))
-        if not unexplained > _INDEPENDENT**2 * gram[column, column]:
-            return factor[:column, :column]
-        root = float(np.sqrt(unexplained))
-        factor[column, column] = root
-        rest = slice(column + 1, count)
-        factor[column, rest] = (gram[column, rest] - np.einsum("i,ij->j", above, factor[:column, rest])) / root
-    return factor
+        return self._inverse[:size, :size] @ (self._orthogonal[:, :size].T @ values)
 
 
 def spectral_sizes(first: int, last: int, count: int) -> list[int]:
@@ -189,10 +171,10 @@ def points_from_functions_steps(maps: FunctionalMaps, functions_x: Floats, funct
     """Find point maps that agree best with functional maps, in short steps; see `points_from_functions`."""
     size = len(maps.onto_x)
     here, there = functions_x[:, :size], functions_y[:, :size]
-    squares_x = _squared_lengths(here) + _squared_lengths(product(here, maps.onto_x))
-    squares_y = _squared_lengths(there) + _squared_lengths(product(there, maps.onto_y))
+    squares_x = _squared_lengths(here) + _squared_lengths(here @ maps.onto_x)
+    squares_y = _squared_lengths(there) + _squared_lengths(there @ maps.onto_y)
     # Both products of the energy have the same right factor: one of half the width is enough.
-    return (yield from _nearest_steps(2.0 * product(here, maps.onto_x + maps.onto_y.T), there, squares_x, squares_y))
+    return (yield from _nearest_steps(2.0 * (here @ (maps.onto_x + maps.onto_y.T)), there, squares_x, squares_y))
 
 
 def nearest_both_ways(rows_x: Floats, rows_y: Floats) -> PointMaps:

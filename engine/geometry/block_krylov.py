@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 
 from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps, within
-from .schur_elimination import ShiftedFactor, elimination_order
+from .shifted_factor import ShiftedFactor
 
 _DENSE = 300
 """Rows up to which the matrix is simply solved as a dense one."""
@@ -129,7 +129,7 @@ def lowest_eigenpairs_steps(matrix: csr_array, null: Floats, count: int, guess: 
         vectors[:, 0] = null
         vectors[:, 1:] -= np.outer(null, null @ vectors[:, 1:])
         return EigenPairs(np.append(0, values[1:].clip(0)), vectors, complete=True)
-    order = elimination_order(matrix)
+    order: Ints | None = None
     yield Progress(0.02, _LABEL)
     block = 8 if wanted < 150 else 16
     guess *= wanted / count

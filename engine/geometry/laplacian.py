@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.csgraph import connected_components
 
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints
@@ -49,21 +48,6 @@ class LaplaceBeltrami:
     def area(self) -> float:
         """Area of the surface."""
         return float(self.mass.sum())
-
-    @cached_property
-    def components(self) -> list[Ints]:
-        """The vertices of each part of the surface that hangs together, the largest by area first.
-
-        Vertices without a triangle are in none.
-        """
-        # Ones, as a weight may be zero: the diagonal of a square joins nothing that its sides do not join, but costs
-        # nothing either.
-        w = self.stiffness
-        graph = csr_array((np.ones(len(w.data), bool), w.indices, w.indptr), shape=w.shape)
-        labels = connected_components(graph, directed=False)[1]
-        order = np.argsort(labels, kind="stable")
-        parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1)
-        return sorted((part for part in parts if self.mass[part[0]] > 0), key=lambda part: -self.mass[part].sum())
 
     @classmethod
     def from_lengths(cls, triangles: Ints, lengths: Floats, vertex_count: int) -> LaplaceBeltrami:

@@ -15,7 +15,7 @@ Descriptors              `descriptors`: histograms of distances and their compar
 Samples of both shapes   `sampled_pair`: farthest point samples, their distances and descriptors
 Section 4, coarse step   `exact`: branch and bound with dual bounds (the module `branch_and_bound` is the way in);
                          `sparse_hypotheses`: the true and the reflected answer of symmetric shapes
-Section 4, relaxed step  `relaxation`, solved by `quasi_newton`, projected to integers
+Section 4, relaxed step  `relaxation`, solved by a quasi-Newton method, projected to integers
 Section 4, hierarchy     `hierarchy`: levels of samples and neighbourhoods, until convergence
 All of section 4         `sparse_match`: from the settings (`settings`) to a matching (`sparse_result`)
 Figure 4, comparisons    `compared`: flat quadratic matching, GMDS, descent of the stress

@@ -41,10 +41,6 @@ class DiffusionMetric:
     ----------
     time : float
         The time, in units of area.
-    truncation : float
-        About which part of the mean of :math:`d_t^2` is missing because the number of eigenpairs is finite, if those
-        beyond the last follow Weyl's law.  Below 0.01 for hundred pairs and times of 0.004 and more; where it is not
-        small, compute more pairs or take a longer time.
 
     Raises
     ------
@@ -54,7 +50,7 @@ class DiffusionMetric:
     Notes
     -----
     Distances are Euclidean ones between the points :math:`\sqrt{A} e^{-\lambda_i t} \phi_i(x)`, and computed by matrix
-    products: rounding is about 1e-8 of the largest.  Vertices without a triangle are infinitely far from all others.
+    products: rounding is about 1e-8 of the largest.
 
     References
     ----------
@@ -65,11 +61,8 @@ class DiffusionMetric:
         self.time = _checked_time(automatic_time(spectrum) if time is None else time)
         values = spectrum.values * spectrum.area
         weights = np.exp(-2 * values * self.time)
-        beyond = weights[-1] / (8 * np.pi * self.time)
-        self.truncation = float(beyond / (beyond + weights[spectrum.zero_count :].sum()))
         self._points = spectrum.functions * (np.sqrt(weights * spectrum.area))
         self._squares = np.einsum("ni,ni->n", self._points, self._points)
-        self._loose = spectrum.mass == 0
 
     def distances(self, sources: ArrayLike) -> Floats:
         """Compute the distances from each source to every vertex.
@@ -103,8 +96,6 @@ class DiffusionMetric:
         rows += self._squares[sources, None]
         np.maximum(rows, 0, out=rows)
         np.sqrt(rows, out=rows)
-        rows[:, self._loose] = np.inf
-        rows[self._loose[sources]] = np.inf
         rows[np.arange(len(sources)), sources] = 0
         return rows
 

@@ -9,13 +9,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
+from scipy.optimize import linear_sum_assignment, minimize
 from scipy.sparse import csr_array
 
 from ..runtime.arrays import Floats, Ints, marked
-from ..runtime.small_products import product
 from .problem import MatchingProblem
-from .quasi_newton import minimize_lbfgs
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +69,14 @@ class RelaxedMatching:
         rows = self._mixing
         rows.data[:] = mixture.ravel()
         mass: NDArray[Any] = np.bincount(column.ravel(), mixture.ravel(), len(used))
-        cross = np.take_along_axis(product(self.problem.source_distances, rows @ self._target), column, axis=1)
+        cross = np.take_along_axis(self.problem.source_distances @ (rows @ self._target), column, axis=1)
         row_sums = mixture.sum(axis=1)
-        interaction = product(source_squared, row_sums)[:, None] - 2 * cross + product(target_squared, mass)[column]
+        interaction = (source_squared @ row_sums)[:, None] - 2 * cross + (target_squared @ mass)[column]
         value = np.vdot(self._linear, mixture) + weight * np.vdot(interaction, mixture)
         return float(value), self._linear + 2 * weight * interaction
 
     def solve(self, max_iterations: int = 60) -> Floats:
-        """Minimise from the uniform mixture, by L-BFGS.
+        """Minimise from the uniform mixture, by a quasi-Newton method, L-BFGS.
 
         Rows are kept stochastic by a softmax.  The start is uniform on purpose: one that already leans to the present
         match is drawn to it and ends in a worse minimum.
@@ -103,8 +101,9 @@ class RelaxedMatching:
             return value, (mixture * gradient).ravel()
 
         # The mixture is projected to integers next; more digits were not seen to give better matchings.
-        logits, _ = minimize_lbfgs(objective, np.zeros(self.candidates.size), max_iterations, tolerance=1e-5)
-        return softmax(logits.reshape(shape))
+        ends = {"maxiter": max_iterations, "ftol": 1e-5, "gtol": 0.0}
+        found = minimize(objective, np.zeros(self.candidates.size), jac=True, method="L-BFGS-B", options=ends)
+        return softmax(found.x.reshape(shape))
 
 
 def project(mixture: Floats, candidates: Ints) -> Ints:
@@ -163,7 +162,7 @@ def descend(problem: MatchingProblem, assignment: Ints, max_sweeps: int = 50) ->
         for i in range(len(current)):
             # The square expanded, so that a point costs one matrix-vector product; the point's distance to itself is
             # zero wherever it goes, so it is taken out.
-            misfit = squares - np.square(to_matched[:, i]) - 2 * product(to_matched, source[i]) + source[i] @ source[i]
+            misfit = squares - np.square(to_matched[:, i]) - 2 * (to_matched @ source[i]) + source[i] @ source[i]
             cost = linear[i] + 2 * problem.quadratic_weight * misfit
             here = cost[current[i]]
             cost[~free] = np.inf

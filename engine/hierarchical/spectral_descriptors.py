@@ -46,7 +46,7 @@ def heat_kernel_signatures(spectrum: Spectrum, times: ArrayLike | None = None, *
     Returns
     -------
     (n, d) array of float
-        One row per vertex, without a unit; zero at vertices without a triangle.
+        One row per vertex, without a unit.
 
     Raises
     ------
@@ -95,8 +95,7 @@ def wave_kernel_signatures(spectrum: Spectrum, energies: ArrayLike | None = None
     Returns
     -------
     (n, d) array of float
-        One row per vertex, without a unit; the mean of each column over the surface is one.  Zero at vertices without
-        a triangle.
+        One row per vertex, without a unit; the mean of each column over the surface is one.
 
     Raises
     ------

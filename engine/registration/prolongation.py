@@ -11,7 +11,7 @@ from ..mesh.connectivity.adjacency import vertex_adjacency
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, group_sums
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
 from ..shapes.proxy import Proxy
@@ -250,7 +250,7 @@ def _motion(proxy: Proxy, registered: Floats, average: csr_array) -> Floats:
         axis=1,
     )
     ends = np.concatenate([a, b])
-    sums = np.stack([np.bincount(ends, np.tile(column, 2), k) for column in products.T], axis=1)
+    sums = group_sums(ends, np.tile(products, (2, 1)), k)
     for _ in range(_ROTATION_ROUNDS):
         sums = average @ sums
     u, _, vt = np.linalg.svd(sums[:, :9].reshape(k, 3, 3))

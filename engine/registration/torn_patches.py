@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, eye_array
-from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse import csr_array, eye_array
+from scipy.sparse.csgraph import dijkstra
 
-from ..mesh.connectivity.adjacency import vertex_adjacency
+from ..mesh.connectivity.adjacency import edge_graph, vertex_adjacency
+from ..mesh.connectivity.components import joined_components
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 from .untangling import follow_neighbours
@@ -79,18 +80,15 @@ def with_patches_mended(mesh: TriangleMesh, images: Ints, target: TriangleMesh, 
     lengths = mesh.edge_lengths[doubtful] * np.sqrt(target.area / mesh.area)
     apart = _least_distances(target, images[tail[doubtful]], images[head[doubtful]])
     kept[doubtful] = apart < _STRETCHED * lengths
-    n = mesh.vertex_count
-    graph = coo_array((np.ones(int(kept.sum())), (tail[kept], head[kept])), shape=(n, n))
-    _, parts = connected_components(graph, directed=False)
+    parts = joined_components(mesh.vertex_count, tail[kept], head[kept])
     areas = np.bincount(parts, mesh.vertex_areas)
     return follow_neighbours(mesh, images, areas[parts] < _PATCH * mesh.area)
 
 
 def _least_distances(mesh: TriangleMesh, first: Ints, second: Ints) -> Floats:
     """How far pairs (q,) of vertices are apart along edges at least, (q,): as far as their distances from others."""
-    n, (a, b) = mesh.vertex_count, mesh.edges.T
-    graph = coo_array((mesh.edge_lengths, (a, b)), shape=(n, n)).tocsr()
-    least, nearest = np.zeros(len(first)), np.full(n, np.inf)
+    graph = edge_graph(mesh)
+    least, nearest = np.zeros(len(first)), np.full(mesh.vertex_count, np.inf)
     source = int(first[0])
     for _ in range(_SOURCES):
         row = dijkstra(graph, directed=False, indices=source)

@@ -16,7 +16,7 @@ from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.elastic import ElasticSurface
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, group_means
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps
@@ -217,7 +217,7 @@ def _united(mesh: TriangleMesh, positions: Floats) -> Floats:
     _, place = np.unique(np.round(mesh.vertices / (_COINCIDENT * size)), axis=0, return_inverse=True)
     place = place.ravel()
     counts = np.bincount(place)
-    middle = np.stack([np.bincount(place, axis) for axis in positions.T], axis=1) / counts[:, None]
+    middle = group_means(place, positions, len(counts))
     away = np.zeros(len(counts))
     np.maximum.at(away, place, np.linalg.norm(positions - middle[place], axis=1))
     one, other = mesh.edges.T
@@ -254,8 +254,7 @@ def _start(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, wa
     reach = np.zeros(labels.max() + 1)
     np.maximum.at(reach, labels[free], distances)
     loose = ~with_hold[labels[free]]
-    sums = np.stack([np.bincount(labels, axis) for axis in source.vertices.T], axis=1)
-    centres = sums / np.bincount(labels)[:, None]
+    centres = group_means(labels, source.vertices, len(reach))
     at = np.where(loose[:, None], centres[labels[free]], source.vertices[free])
     fitted = surroundings.similarities(at, np.where(loose, reach[labels[free]], distances))
     start = wanted.copy()

@@ -30,6 +30,11 @@ def group_sums(groups: Ints, values: Floats, count: int) -> Floats:
     return np.stack([np.bincount(groups, column, count) for column in values.T], axis=1)
 
 
+def group_means(groups: Ints, values: Floats, count: int) -> Floats:
+    """Mean of the rows of values (k, d) of each group, none of them empty: (count, d); see `group_sums`."""
+    return group_sums(groups, values, count) / np.bincount(groups, minlength=count)[:, None]
+
+
 def ranges(starts: Ints, counts: Ints) -> Ints:
     """List so many numbers, (k,), from each of some starts (k,) on, one range after the other."""
     before = np.cumsum(counts) - counts

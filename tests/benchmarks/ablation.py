@@ -8,7 +8,8 @@ switched off is off; so seconds are longer than a user's.
     python -m tests.benchmarks.ablation --data FOLDER
     python -m tests.benchmarks.ablation --data FOLDER --kinds near,pieces --mechanisms "rigid maps,limb sides"
 
-FOLDER holds the shapes with known truth that all benchmarks use, see `known_shapes`; long bodies are made here.
+FOLDER holds the shapes with known truth that all benchmarks use, see `known_shapes`; worms, fish and balls
+are made here.
 """
 
 import argparse
@@ -21,15 +22,18 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from engine import HierMatchError, TriangleMesh, match, use_processes
 from engine.dense.registered_hypotheses import Settling
 from tests.benchmarks.clothed import clothed, garments
 from tests.benchmarks.known_shapes import LOST, KnownShape, KnownShapes
-from tests.benchmarks.modular import as_it_is, ends_of, put_together
+from tests.benchmarks.modular import as_it_is, closed_up, ends_of, put_together
 from tests.benchmarks.partial_pairs import cut_off
+from tests.benchmarks.smooth_bodies import pair_of_bodies
+from tests.bodies import fish
 from tests.messes import partly_turned, without_faces
-from tests.shapes import capsule_surface
+from tests.shapes import capsule_surface, permuted, rotation
 
 WRONG = 0.03
 """Share of places that are brought to another part of the body from which on a pair counts as wrong."""
@@ -37,7 +41,7 @@ WRONG = 0.03
 WHOLE = {
     "near": ("cat0:cat1", "dog0:dog5", "michael1:michael19"),
     "persons": ("tr_reg_002:tr_reg_017", "tr_reg_000:tr_reg_004", "tr_reg_023:tr_reg_008"),
-    "unlike": ("8_gorilla_01:8_man_01", "8_man_03:8_gorilla_03"),
+    "unlike": ("8_gorilla_01:8_man_01", "8_man_03:8_gorilla_03", "8_gorilla_02:8_man_03", "8_man_02:8_gorilla_01"),
 }
 """Kind -> pairs by name, which are matched as they are."""
 
@@ -174,16 +178,19 @@ def _whole(shapes, kind):
 
 
 def _made(shapes, kind):
-    if kind == "long":
-        yield from _long_bodies()
+    if kind in MADE:
+        yield from MADE[kind]()
         return
     for number, name in enumerate(OTHERS):
         bodies = tuple(shapes.read(one) for one in name.split(":"))
         random = np.random.default_rng(number)
         first, second = (as_it_is(body.mesh) for body in bodies)
         if kind == "parts":
-            part = cut_off(bodies[1].mesh, 0.6, number)
-            second = SimpleNamespace(mesh=part.mesh, whole=part.vertices)
+            second = _part(bodies[1].mesh, 0.6, number)
+        elif kind == "busts":
+            second = _part(bodies[1].mesh, 0.5, number, closed=True)
+        elif kind == "both cut":
+            first, second = _part(bodies[0].mesh, 0.8, number + 10), _part(bodies[1].mesh, 0.65, number)
         elif kind == "pieces":
             second = put_together(bodies[1], *ends_of(bodies[1], random), "capped")
         elif kind == "clothed":
@@ -194,35 +201,83 @@ def _made(shapes, kind):
             )
         elif kind == "messy":
             vertices, triangles = without_faces(bodies[1].mesh.vertices, bodies[1].mesh.triangles, 0.01, seed=number)
-            vertices, triangles = partly_turned(vertices, triangles, seed=number)
-            second = SimpleNamespace(mesh=TriangleMesh(vertices, triangles), whole=np.arange(len(vertices)))
+            second = _changed(*partly_turned(vertices, triangles, seed=number))
+        elif kind == "spikes":
+            mesh = bodies[1].mesh
+            tips = random.choice(mesh.vertex_count, 12, replace=False)
+            vertices = mesh.vertices.copy()
+            vertices[tips] += random.uniform(0.2, 0.6, (12, 1)) * np.sqrt(mesh.area) * mesh.vertex_normals[tips]
+            second = _changed(vertices, mesh.triangles)
         else:
             message = f"There is no kind {kind}."
             raise ValueError(message)
         yield Case(kind, name, bodies, (first.mesh, second.mesh), (first.whole, second.whole))
 
 
-def _long_bodies():
+def _part(mesh, share, seed, *, closed=False):
+    """What a plane leaves of a mesh."""
+    part = cut_off(mesh, share, seed)
+    if not closed:
+        return SimpleNamespace(mesh=part.mesh, whole=part.vertices)
+    vertices, triangles = closed_up(part.mesh.vertices, part.mesh.triangles)
+    added = np.full(len(vertices) - len(part.vertices), -1)
+    return SimpleNamespace(mesh=TriangleMesh(vertices, triangles), whole=np.append(part.vertices, added))
+
+
+def _changed(vertices, triangles):
+    """A mesh with the vertices of the whole body."""
+    return SimpleNamespace(mesh=TriangleMesh(vertices, triangles), whole=np.arange(len(vertices)))
+
+
+def _worms():
     """A worm with a thin tail, a dent and a fin, straight, and meshed anew and bent."""
     capsules = [((0, 0, 0), (2.6, 0, 0), 0.16, 0.05), ((0.1, 0, 0.05), (0.1, 0.0, 0.3), 0.05, 0.03)]
     box = [[-0.4, -0.4, -0.4], [2.9, 0.4, 0.5]]
-    meshes, rests = [], []
-    for turn, bend in ((0.0, 0.0), (0.4, 0.9)):
-        rest, triangles = capsule_surface(capsules, box, 22, turn)
-        vertices = rest.copy()
-        angle = bend * rest[:, 0]
-        if bend:
-            vertices[:, 0] = (np.sin(angle) * (1 / bend - rest[:, 1])).ravel()
-            vertices[:, 1] = 1 / bend - np.cos(angle) * (1 / bend - rest[:, 1])
-        meshes.append(TriangleMesh(vertices, triangles))
-        rests.append(rest)
-    nearest = np.linalg.norm(rests[0][:, None] - rests[1], axis=2).argmin(axis=1)
+    first, second = (capsule_surface(capsules, box, 22, turn) for turn in (0.0, 0.4))
+    bent = bent_along(second[0], 0.9, np.array([0.0, 1.0, 0.0]))
+    yield made_case("long", "worm:bent worm", first, (bent, second[1]), (first[0], second[0]))
+
+
+def _fish():
+    """A fish with a fin and a fluke that is nearly the same from below: bent sideways, upwards, and both ways."""
+    for number, (bend, up) in enumerate(((0.5, 0.0), (0.5, 1.0), (-0.7, 0.6), (0.8, -0.8))):
+        first, second = fish(18), permuted(*fish(21), number)[:2]
+        towards = np.array([0.0, 1.0, up]) / np.hypot(1.0, up)
+        bent = bent_along(second[0], bend, towards) @ rotation([1, 2, 3], 2.0 * number + 1).T
+        yield made_case("fish", f"fish:bent {bend} {up}", first, (bent, second[1]), (first[0], second[0]))
+
+
+def _balls():
+    """Bodies without limbs, and what is left of them after a cap has been cut off."""
+    for seed, missing in ((3, 0.0), (4, 0.08), (5, 0.2), (6, 0.2)):
+        meshes, rests = pair_of_bodies(seed, 300, missing, 0.02)
+        name = f"ball:without {missing}"
+        yield made_case("balls", name, *((m.vertices, m.triangles) for m in meshes), rests)
+
+
+def bent_along(points, bend, towards):
+    """Bend what lies along the x axis to an arc, by so many radians per unit of length."""
+    across = points @ towards
+    radius, angle = 1 / bend - across, bend * points[:, 0]
+    turned = np.stack([np.sin(angle) * radius, 1 / bend - np.cos(angle) * radius], axis=1)
+    others = points - points[:, :1] * [1, 0, 0] - across[:, None] * towards
+    return others + turned[:, :1] * [1, 0, 0] + turned[:, 1:] * towards
+
+
+def made_case(kind, name, first, second, rests):
+    """Two made bodies, the places of which are named by where they lie at rest."""
+    meshes = TriangleMesh(*first), TriangleMesh(*second)
+    nearest = cKDTree(rests[1]).query(rests[0])[1]
     places = np.arange(len(rests[0]))
-    bodies = (
-        KnownShape("worm", "made", meshes[0], places, places),
-        KnownShape("bent worm", "made", meshes[1], nearest, nearest),
+    bodies = tuple(
+        KnownShape(one, "made", mesh, where, where)
+        for one, mesh, where in zip(name.split(":"), meshes, (places, nearest), strict=True)
     )
-    yield Case("long", "worm:bent worm", bodies, tuple(meshes), tuple(np.arange(m.vertex_count) for m in meshes))
+    return Case(kind, name, bodies, meshes, tuple(np.arange(mesh.vertex_count) for mesh in meshes))
+
+
+MADE = {"long": _worms, "fish": _fish, "balls": _balls}
+"""Kind -> what makes its pairs, without any data."""
 
 
 def measured(case):
@@ -254,7 +309,7 @@ def measured(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True, help="folder with the shapes")
-    every = ("near", "persons", "unlike", "parts", "pieces", "clothed", "long", "messy")
+    every = ("near", "persons", "unlike", "parts", "busts", "both cut", "pieces", "clothed", "messy", "spikes", *MADE)
     parser.add_argument("--kinds", default=",".join(every), help="kinds of pairs (default %(default)s)")
     parser.add_argument("--mechanisms", default=",".join(MECHANISMS), help="what to switch off (default: all in turn)")
     parser.add_argument("--most", type=int, default=99, help="pairs of each kind at most")

@@ -63,8 +63,8 @@ def random_body(random):
     return body
 
 
-def measure(number, vertices, missing, bent):
-    """Match a body with what is left of it: mean error, confidence, and time."""
+def pair_of_bodies(number, vertices, missing, bent):
+    """A body and what is left of it: both meshes, and where on the first body their vertices are, (n, 3) each."""
     random = np.random.default_rng(number)
     body, bend = random_body(random), bent * random.standard_normal((3, 3, 3))
     (sphere, triangles), (other, faces) = (random_sphere(vertices, random) for _ in range(2))
@@ -72,7 +72,12 @@ def measure(number, vertices, missing, bent):
     other, faces = compacted(other, faces[heights <= np.quantile(heights, 1 - missing)])
     places = body(other)
     turned = (places + np.einsum("cij,ni,nj->nc", bend, places, places)) @ random_rotation(random).T
-    source, target = TriangleMesh(body(sphere), triangles), TriangleMesh(turned, faces)
+    return (TriangleMesh(body(sphere), triangles), TriangleMesh(turned, faces)), (body(sphere), places)
+
+
+def measure(number, vertices, missing, bent):
+    """Match a body with what is left of it: mean error, confidence, and time."""
+    (source, target), (_, places) = pair_of_bodies(number, vertices, missing, bent)
     start = time.perf_counter()
     result = match(source, target, MatchSettings(dense=True))
     seconds = time.perf_counter() - start

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...repair.clean_surface import CleanSurface
 from ...runtime.arrays import Floats, Ints
@@ -109,8 +108,8 @@ def _sheets(surface: CleanSurface) -> list[_Sheet]:
     used, corners = np.unique(mesh.triangles[triangles], return_inverse=True)
     corners = corners.reshape(-1, 3)
     tails, heads = corners.ravel(), corners[:, [1, 2, 0]].ravel()
-    graph = coo_array((np.ones(len(tails), np.int8), (tails, heads)), shape=(len(used), len(used)))
-    count, labels = connected_components(graph, directed=False)
+    labels = joined_components(len(used), tails, heads)
+    count = int(labels.max()) + 1
     if count > _MOST_SHEETS:
         return []
     owners = np.zeros(count, np.int64)

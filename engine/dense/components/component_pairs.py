@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
-from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from ...mesh.connectivity.adjacency import edge_graph
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from .similarity_field import Surroundings
@@ -126,8 +126,7 @@ class _Extents:
 
 def _length(part: TriangleMesh) -> float:
     """Length along edges from one end of a part to the other, in the root of its area: it stays where a part bends."""
-    n, (tails, heads) = part.vertex_count, part.edges.T
-    graph = coo_array((part.edge_lengths, (tails, heads)), shape=(n, n)).tocsr()
+    graph = edge_graph(part)
     end, length = 0, 0.0
     for _ in range(2):
         distances = dijkstra(graph, directed=False, indices=end)

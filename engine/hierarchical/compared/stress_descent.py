@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,7 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints, ranges
 from ...runtime.progress import Progress, Steps
 from ...shapes.surface_distances import PointDistances, symmetric_roots
-from .vertex_stress import LocalStress, PairStress
+from .vertex_stress import LocalStress
 
 _TRIANGLES = 6  # around a point in which it is minimised: as many as a regular vertex has
 _BLOCK = 500_000  # distances from a point to a triangle that are handled at once
@@ -26,9 +26,9 @@ _NO_LENGTH = 1e-9  # of the mean edge
 class Stress:
     r"""Distortion of points that may lie anywhere on Y.
 
-    .. math:: s(y) = \sum_i f_i(y_i) + \lambda \sum_{i, j} |d_Y(y_i, y_j) - d_{ij}|^p
+    .. math:: s(y) = \sum_i f_i(y_i) + \sum_{i, j} (d_Y(y_i, y_j) - d_{ij})^2
 
-    The second sum runs over ordered pairs; with p = 2 this is the distortion of `MatchingProblem`.
+    The second sum runs over ordered pairs, as in the distortion of `MatchingProblem`.
 
     Parameters
     ----------
@@ -36,13 +36,10 @@ class Stress:
         Distances d_ij of the points on X, symmetric with a zero diagonal.
     linear : (k, n) array of float, optional
         f at the vertices of Y, linear in between; nothing by default.
-    pair : PairStress
-        lambda and p.
     """
 
     wanted: Floats
     linear: Floats | None = None
-    pair: PairStress = field(default_factory=PairStress)
 
     def of_places(self, places: SurfacePoints, owner: Ints) -> Floats:
         """Evaluate the linear term at places (q,), each for the point of its number (q,)."""
@@ -158,7 +155,7 @@ class _Places:
     @cached_property
     def pairs(self) -> Floats:
         """What each pair of places contributes to the stress, (q, q)."""
-        return self.stress.pair.cost(self.distances - self.stress.wanted[np.ix_(self.owner, self.owner)])
+        return np.square(self.distances - self.stress.wanted[np.ix_(self.owner, self.owner)])
 
     @cached_property
     def value(self) -> float:
@@ -244,7 +241,6 @@ def _proposals(
         part = slice(ends[first], ends[min(first + per_block, len(points))])
         kept = part.start + _most_promising(now, owner[part], corners[part], squares, vertices)
         local = LocalStress(
-            now.stress.pair,
             owner[kept],
             now.stress.wanted[:, owner[kept]],
             squares[:, corners[kept].T].transpose(1, 0, 2) + now.asymmetry[:, owner[kept]],
@@ -280,7 +276,7 @@ def _most_promising(now: _Places, owner: Ints, corners: Ints, squares: Floats, v
     keys, inverse = np.unique(owner[:, None] * len(vertices) + corners, return_inverse=True)
     point, vertex = np.divmod(keys, len(vertices))
     roots = np.sqrt(np.maximum(squares[:, vertex] + now.asymmetry[:, point], 0))
-    cost = now.stress.pair.cost(roots - now.stress.wanted[:, point])
+    cost = np.square(roots - now.stress.wanted[:, point])
     cost[point, np.arange(len(point))] = 0
     at_corners = now.stress.at_vertices(vertices[vertex], point) + 2 * cost.sum(axis=0)
     rank = at_corners[inverse.reshape(corners.shape)].sum(axis=1)

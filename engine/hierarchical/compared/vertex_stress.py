@@ -12,55 +12,17 @@ from ...shapes.surface_distances import squared_offsets
 
 _NEWTON_STEPS = 3
 _RIDGE = 1e-9  # of the curvature, added in all directions so that a flat direction can be divided by
-_LARGEST = 100.0  # difference in units; the product of two of its powers must not be too large for a number
 _TINY = 1e-30  # against division by zero, where everything is zero
 _ENTRIES = ((0, 0), (0, 1), (1, 1))
 _NEAREST = 1e-3  # distances below this part of a triangle's side have no direction to move along
 
 
-@dataclass(frozen=True)
-class PairStress:
-    """What a difference r of two distances costs: weight |r / unit|^exponent.
-
-    Attributes
-    ----------
-    weight : float
-        lambda, not negative.
-    exponent : float
-        At least 2.
-    unit : float
-        Positive; for exponents above 2 about the largest difference, as those beyond a hundred units cost no more.
-    """
-
-    weight: float = 1.0
-    exponent: float = 2.0
-    unit: float = 1.0
-
-    def cost(self, residuals: Floats) -> Floats:
-        """Evaluate differences of any shape."""
-        if self.exponent == 2:
-            return self.weight * np.square(residuals / self.unit)
-        return self.weight * self._limited(residuals) ** self.exponent
-
-    def curvature(self, residuals: Floats) -> Floats:
-        """Second derivative by the difference; the first is this times the difference over (exponent - 1)."""
-        scale = self.weight * self.exponent * (self.exponent - 1) / self.unit**2
-        if self.exponent == 2:
-            return np.full(residuals.shape, scale)
-        return scale * self._limited(residuals) ** (self.exponent - 2)
-
-    def _limited(self, residuals: Floats) -> Floats:
-        return np.minimum(np.abs(residuals) / self.unit, _LARGEST)
-
-
 @dataclass(frozen=True, eq=False)
 class LocalStress:
-    """Stress of places in triangles, each for one of k points while the others rest.
+    """Stress of places in triangles, each for one of k points while the others rest; each pair counts twice.
 
     Parameters
     ----------
-    pair : PairStress
-        What the pairs cost.  Each pair counts twice, as in the whole stress.
     owner : (q,) array of int
         For each triangle, the point that may go there.
     wanted : (k, q) array of float
@@ -73,7 +35,6 @@ class LocalStress:
         Linear term of that point at the corners.
     """
 
-    pair: PairStress
     owner: Ints
     wanted: Floats
     squares: Floats
@@ -90,7 +51,7 @@ class LocalStress:
 
     def value(self, barycentric: Floats, difference: Floats) -> Floats:
         """Stress (q,) at coordinates (q, 3) with these differences of distances (k, q)."""
-        return (self.linear * barycentric).sum(axis=1) + 2 * self.pair.cost(difference).sum(axis=0)
+        return (self.linear * barycentric).sum(axis=1) + 2 * np.square(difference).sum(axis=0)
 
     def derivatives(self, barycentric: Floats, distances: Floats, difference: Floats) -> tuple[Floats, Floats]:
         """Gradient (2, q) by the last two coordinates, and Hessian (3, q: 11, 12, 22) with linearised distances."""
@@ -105,11 +66,9 @@ class LocalStress:
         )
         along /= 2 * distances
         along[:, self.owner, np.arange(len(self.owner))] = 0
-        curvature = self.pair.curvature(difference)
-        slope = curvature * difference / (self.pair.exponent - 1)
-        gradient = 2 * np.einsum("jq,cjq->cq", slope, along)
+        gradient = 4 * np.einsum("jq,cjq->cq", difference, along)
         gradient += self.linear.T[1:] - self.linear.T[0]
-        hessian = 2 * np.stack([np.einsum("jq,jq,jq->q", curvature, along[a], along[b]) for a, b in _ENTRIES])
+        hessian = 4 * np.stack([np.einsum("jq,jq->q", along[a], along[b]) for a, b in _ENTRIES])
         return gradient, hessian
 
     def minimise(self) -> tuple[Floats, Floats]:

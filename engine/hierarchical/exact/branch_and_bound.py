@@ -5,24 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ...runtime.arrays import Bools, Ints
+from ...runtime.arrays import Ints
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps, told, within
 from ..problem import MatchingProblem
 from .dual_ascent import PairModel, dual_ascent_steps, pair_model
 from .enumeration import Enumeration
 from .exclusion import Exclusion
-from .gilmore_lawler import gilmore_lawler_steps
 from .incumbent import Incumbent
 from .local_search import beam_search
-
-Method = Literal["auto", "dual ascent", "gilmore-lawler"]
-"""How a search bounds its nodes."""
 
 _LARGEST = 5000  # pairs of a point and a candidate; their square in float64 is 200 MB
 _BEAM = 60
@@ -64,7 +59,6 @@ def branch_and_bound_steps(
     node_limit: int = 1_000_000,
     exclusions: Sequence[Exclusion] = (),
     initial: Sequence[Ints] = (),
-    method: Method = "auto",
 ) -> Steps[BoundedMatching | None]:
     """Minimise the distortion exactly.
 
@@ -80,9 +74,6 @@ def branch_and_bound_steps(
         Matchings to keep away from.
     initial : sequence of (n,) array of int
         Matchings to start from; those that are not feasible are left out.
-    method : {"auto", "dual ascent", "gilmore-lawler"}
-        Which bound the search uses; all find the same optimum.  "auto" takes dual ascent, but Gilmore-Lawler below the
-        root where there are as many points as candidates.
 
     Yields
     ------
@@ -117,7 +108,7 @@ def branch_and_bound_steps(
     for assignment in [*feasible, *initial]:
         incumbent.offer(np.asarray(assignment, dtype=np.int64), improve=True)
     search = _Search(incumbent, node_limit)
-    lower_bound = yield from search.steps(method)
+    lower_bound = yield from search.steps()
     if incumbent.assignment is None:
         return None
     proven = lower_bound >= incumbent.limit
@@ -234,31 +225,17 @@ class _Search:
         self.node_limit = node_limit
         self.nodes = 0
 
-    def steps(self, method: Method) -> Steps[float]:
+    def steps(self) -> Steps[float]:
         """Search; return a lower bound, which is not below the incumbent's limit if that is proven."""
         problem, incumbent = self.incumbent.problem, self.incumbent
-        if method == "gilmore-lawler":
-            return (yield from self._gilmore_lawler(np.isfinite(problem.linear)))
         model = pair_model(problem, incumbent.exclusions)
         model = yield from self._bounded(model, _ROOT_SWEEPS, np.inf, 1e-3)
         for rank, assignment in enumerate(beam_search(model, _BEAM)):
             incumbent.offer(assignment, improve=rank < _IMPROVED)
-        root = _Node(model.constant, np.full(problem.size[0], -1), model)
-        if method == "auto" and problem.size[0] == problem.size[1]:
-            if root.bound >= incumbent.limit or not model.eliminate(incumbent.limit):
-                return np.inf
-            return max(root.bound, (yield from self._gilmore_lawler(model.alive)))
-        return (yield from self._dual_ascent(root))
-
-    def _gilmore_lawler(self, allowed: Bools) -> Steps[float]:
-        bound, self.nodes = yield from gilmore_lawler_steps(self.incumbent, allowed, self.node_limit)
-        return bound
-
-    def _dual_ascent(self, root: _Node) -> Steps[float]:
-        stack = [root]
+        stack = [_Node(model.constant, np.full(problem.size[0], -1), model)]
         while stack:
             node = stack.pop()
-            if node.bound >= self.incumbent.limit:
+            if node.bound >= incumbent.limit:
                 continue
             open_bound = yield from self._explore(node, stack)
             if self._exhausted:

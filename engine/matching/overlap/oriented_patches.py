@@ -8,8 +8,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
-from .part_surface import PartSurface, summed_rows
+from ...runtime.arrays import Floats, Ints, group_sums
+from .part_surface import PartSurface
 
 _TINY = float(np.finfo(float).tiny)
 
@@ -91,7 +91,7 @@ def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:
         near = np.flatnonzero(lengths < _RADII[-1])
         offsets = (places[near] - surface.vertices[vertex]) @ axes.T
         cells, seen = _seen(offsets, normals[near] @ axes.T, lengths[near])
-        sums = summed_rows(cells, areas[near, None] * seen, RINGS * TURNS).reshape(RINGS, TURNS, 4)
+        sums = group_sums(cells, areas[near, None] * seen, RINGS * TURNS).reshape(RINGS, TURNS, 4)
         amounts = np.bincount(cells, areas[near], RINGS * TURNS).astype(np.float64).reshape(RINGS, TURNS)
         sums, amounts = _blurred(sums), _blurred(amounts)
         values[number] = sums / np.maximum(amounts, _LEAST / 100)[..., None]

@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
 from ...geometry.symmetric_factor import symmetric_factor
-from ...runtime.arrays import Bools, Floats, Ints
-from .part_surface import PartSurface, summed_rows
+from ...runtime.arrays import Bools, Floats, Ints, group_sums
+from .part_surface import PartSurface
 
 _LEAST_FACING = 0.05
 """Least part of its area with which a point counts whose normal disagrees with that of its match."""
@@ -185,7 +185,7 @@ def placed(surface: PartSurface, marks: Landmarks, rotations: Floats, paths: Flo
     elastic, count = surface.elastic, surface.count
     held = np.bincount(marks.vertices, amounts, count)
     factor = symmetric_factor(elastic.stiffness + diags_array(held + _TETHER))
-    right = summed_rows(marks.vertices, amounts[:, None] * marks.places, count)
+    right = group_sums(marks.vertices, amounts[:, None] * marks.places, count)
     positions = factor.solve(elastic.pull(turned) + right)
     for _ in range(_PLACINGS):
         positions = factor.solve(elastic.pull(elastic.rotations(positions, _SPREAD_RADIUS)) + right)
@@ -231,11 +231,11 @@ def register_parts(
             own, theirs = own * reached, theirs * reached[back.images]
         held = own + np.bincount(back.images, theirs, count) + _TETHER
         right = own[:, None] * target.vertices[there.images]
-        right += summed_rows(back.images, theirs[:, None] * target.vertices, count)
+        right += group_sums(back.images, theirs[:, None] * target.vertices, count)
         if marks is not None and number < _HELD_ROUNDS:
             amounts = stage.weight * marks.weights
             held += np.bincount(marks.vertices, amounts, count)
-            right += summed_rows(marks.vertices, amounts[:, None] * marks.places, count)
+            right += group_sums(marks.vertices, amounts[:, None] * marks.places, count)
         factor = symmetric_factor(elastic.stiffness + diags_array(held))
         for _ in range(_SOLVES):
             positions = factor.solve(elastic.pull(elastic.rotations(positions, _ROTATION_RADIUS)) + right)

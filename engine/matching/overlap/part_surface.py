@@ -6,14 +6,16 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import SuperLU
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.sampling import farthest_point_sampling
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.connectivity.adjacency import edge_graph
+from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import heat_curvatures
 from ...registration.elastic import ElasticSurface
@@ -100,9 +102,7 @@ class PartSurface:
     @cached_property
     def graph(self) -> csr_array:
         """Lengths of the edges, in both directions, (n, n)."""
-        first, second = self.mesh.edges.T
-        ends = np.concatenate([first, second]), np.concatenate([second, first])
-        return csr_array((np.tile(self.mesh.edge_lengths, 2), ends), shape=(self.count,) * 2)
+        return edge_graph(self.mesh)
 
     @cached_property
     def border(self) -> Bools:
@@ -110,8 +110,7 @@ class PartSurface:
         edges = self.mesh.boundary_edges
         cut = np.zeros(self.count, bool)
         if len(edges):
-            graph = coo_array((np.ones(len(edges)), edges.T), shape=(self.count,) * 2)
-            loops = connected_components(graph, directed=False)[1][edges[:, 0]]
+            loops = joined_components(self.count, *edges.T)[edges[:, 0]]
             lengths = np.linalg.norm(self.vertices[edges[:, 0]] - self.vertices[edges[:, 1]], axis=1)
             cut[edges[np.bincount(loops, lengths)[loops] > _PINHOLE * np.sqrt(self.area)]] = True
         return cut
@@ -150,12 +149,6 @@ class PartSurface:
     def largest_piece(self, chosen: Bools) -> Bools:
         """Keep of the chosen vertices (n,) those of the connected piece with the largest area."""
         edges = self.mesh.edges[chosen[self.mesh.edges].all(axis=1)]
-        graph = coo_array((np.ones(len(edges)), edges.T), shape=(self.count,) * 2)
-        pieces = connected_components(graph, directed=False)[1]
+        pieces = joined_components(self.count, *edges.T)
         areas = np.bincount(pieces, self.mass * chosen)
         return chosen & (pieces == areas.argmax())
-
-
-def summed_rows(numbers: Ints, rows: Floats, count: int) -> Floats:
-    """Sum the rows (k, d) of each number, (count, d)."""
-    return np.stack([np.bincount(numbers, column, count) for column in rows.T], axis=1)

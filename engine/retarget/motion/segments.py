@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
+from ...mesh.connectivity.components import joined_components
 from ...runtime.arrays import Bools, Ints
 from ..rig.skeleton import Skeleton
 from .posed_motion import Motion
@@ -46,8 +45,7 @@ class Segments:
         if not len(sources):
             return cls((), (), (), np.zeros(0, np.int64), np.zeros(0, bool))
         size = len(source_bones) + len(bones)
-        links = csr_array((np.ones(len(sources)), (sources, len(source_bones) + targets)), shape=(size, size))
-        _, labels = connected_components(links, directed=False)
+        labels = joined_components(size, sources, len(source_bones) + targets)
         _, part_of_row = np.unique(labels[sources], return_inverse=True)
         rows = tuple(np.flatnonzero(part_of_row == part) for part in range(part_of_row.max() + 1))
         members = [

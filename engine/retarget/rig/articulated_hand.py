@@ -13,7 +13,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, group_sums
 from .digit_groups import DigitGroup
 from .skeleton import Skeleton
 
@@ -229,9 +229,7 @@ class HandSolver:
         # Both surfaces count alike, however many points stand for them.
         trust /= np.where(np.arange(len(own)) < len(hand.points), len(hand.points), len(hand.places))
         per_point = np.bincount(own, trust, len(hand.points))
-        drawn = np.stack(
-            [np.bincount(own, trust * column, len(hand.points)) for column in hand.places[other].T], axis=1
-        )
+        drawn = group_sums(own, trust[:, None] * hand.places[other], len(hand.points))
         pull = (_STIFF + (_LOOSE - _STIFF) * done) * self._moments
         pulls = np.zeros((count, 4))
         pulls[:, :3] = pull[:, None]

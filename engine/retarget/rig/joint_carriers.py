@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import RigError
@@ -136,8 +135,7 @@ def joint_places(skeleton: Skeleton) -> Ints:
     pairs = cKDTree(joints).query_pairs(_SAME_PLACE * extent, output_type="ndarray")
     # The two ends of a very short bone are not one place.
     pairs = pairs[pairs[:, 1] - pairs[:, 0] != len(skeleton)]
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(joints), len(joints)))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    return joined_components(len(joints), *pairs.T)
 
 
 def _moving_above(skeleton: Skeleton, moving: Bools) -> Ints:

@@ -10,7 +10,7 @@ import numpy as np
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, group_means
 from ...runtime.errors import RigError
 from .fitted_rig import FittedRig
 from .joint_carriers import carriers_of, moved_areas, nearest_on_bones, sums_below
@@ -89,7 +89,7 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
     carriers = carriers_of(rig, source)
     count = len(carriers.of_places)
     joints = np.concatenate([skeleton.heads, skeleton.tails])
-    points = _means(joints, carriers.places, count)  # (k, 3)
+    points = group_means(carriers.places, joints, count)  # (k, 3)
     placed = np.zeros((count, 3))
     for place, bone in np.argwhere(carriers.of_places > 0):
         placed[place] += carriers.of_places[place, bone] * _carried(rig, bone, points[place])
@@ -154,13 +154,6 @@ def _aimed(skeleton: Skeleton, heads: Floats, turns: Floats, masses: Floats) -> 
     aimed = turns.copy()
     aimed[far] = swung(turns[far], before[far], after[far])
     return aimed
-
-
-def _means(points: Floats, groups: Ints, count: int) -> Floats:
-    """Mean of the points (n, 3) in each group, (count, 3)."""
-    sums = np.zeros((count, 3))
-    np.add.at(sums, groups, points)
-    return sums / np.bincount(groups, minlength=count)[:, None]
 
 
 def _median_shares(rotations: Floats, masses: Floats) -> Floats:

@@ -11,7 +11,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, group_means
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, run
@@ -128,7 +128,7 @@ def carry_standing_rig_steps(
     places = joint_places(skeleton)
     joints = np.concatenate([skeleton.heads, skeleton.tails])
     counts = np.bincount(places)
-    points = np.stack([np.bincount(places, column) for column in joints.T], axis=1) / counts[:, None]
+    points = group_means(places, joints, len(counts))
     middles = (skeleton.heads + skeleton.tails) / 2
     wanted = np.concatenate([points, middles])
     found = []

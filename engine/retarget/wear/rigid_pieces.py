@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, group_sums
 
 _TINY, _SMALL = 0.02, 0.12
 """Size of a loose part, in units of the root of the body's area, up to which it is rigid whatever its shape, and up to
@@ -96,7 +95,7 @@ def _solid_parts(parts: WeldedParts, unit: float) -> Bools:
     count = parts.part_count
     areas = np.bincount(labels, closed.triangle_areas, count)
     vectors = closed.triangle_normals * closed.triangle_areas[:, None]
-    left = np.linalg.norm(np.stack([np.bincount(labels, axis, count) for axis in vectors.T], axis=1), axis=1)
+    left = np.linalg.norm(group_sums(labels, vectors, count), axis=1)
     solid = left <= _SOLID * areas
     vertices = np.bincount(parts.labels, minlength=count)
     fits = (parts.sizes <= _TINY * unit) | ((parts.sizes <= _SMALL * unit) & solid)
@@ -109,16 +108,11 @@ def _groups(item: TriangleMesh, chosen: Bools, gap: float, largest: float, parts
     inside = chosen[item.edges].all(axis=1)
     tails, heads = item.edges[inside].T
     welded = np.arange(n) if parts is None else np.unique(parts.welded, return_index=True)[1][parts.welded]
-    joined = coo_array(
-        (np.ones(len(tails) + n, bool), (np.append(tails, np.arange(n)), np.append(heads, welded))), shape=(n, n)
-    )
-    labels = connected_components(joined, directed=False)[1]
+    labels = joined_components(n, np.append(tails, np.arange(n)), np.append(heads, welded))
     vertices = np.flatnonzero(chosen)
     pairs = _touching(item, chosen, labels, gap)
     count = int(labels.max()) + 1
-    groups = connected_components(
-        coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count)), directed=False
-    )[1][labels]
+    groups = joined_components(count, *pairs.T)[labels]
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(low, groups[vertices], item.vertices[vertices])
     np.maximum.at(high, groups[vertices], item.vertices[vertices])

@@ -46,7 +46,7 @@ def test_what_always_holds(shape):
     assert values[0] > -1e-12 * values[-1]
     assert (operator.mass > 0).all()
     assert operator.area == pytest.approx(mesh.area, rel=1e-5)
-    assert (values < 1e-10 * values[-1]).sum() == mesh.component_count == len(operator.components)
+    assert (values < 1e-10 * values[-1]).sum() == mesh.component_count
 
 
 @pytest.mark.parametrize("shape", [plane(15, jitter=0.4), irregular(*plane(12), rounds=3)], ids=["jittered", "needles"])
@@ -123,8 +123,6 @@ def test_a_mess_gives_a_sound_operator():
     np.testing.assert_array_equal(stiffness[~used], 0)
     values = np.linalg.eigvalsh(stiffness)
     assert values[0] > -1e-9 * values[-1]
-    assert [len(part) for part in operator.components] == [66, 3]
-    assert sorted(np.concatenate(operator.components)) == np.flatnonzero(used).tolist()
 
 
 def test_vertices_of_triangles_without_area_have_some_mass():

@@ -115,29 +115,6 @@ def test_the_automatic_time(spectrum):
     assert np.isfinite(automatic_time(two))
 
 
-def test_truncation_says_what_is_missing():
-    mesh = TriangleMesh(*creature(0.0, 12)[:2])
-    many, few = eigenpairs(mesh, 400), eigenpairs(mesh, 36)
-    sources = np.random.default_rng(0).choice(mesh.vertex_count, 200, p=mesh.vertex_areas / mesh.area)
-    for time in (0.003, 0.01, 0.03):
-        whole, part = (
-            ((DiffusionMetric(s, time).distances(sources) ** 2) @ mesh.vertex_areas).sum() for s in (many, few)
-        )
-        missing = 1 - part / whole
-        assert DiffusionMetric(few, time).truncation == pytest.approx(missing, rel=0.3, abs=1e-5)
-
-
-def test_loose_vertices_are_infinitely_far():
-    vertices, triangles = icosphere(5)
-    spectrum = eigenpairs(TriangleMesh(np.concatenate([vertices, [[9, 9, 9]]]), triangles), 20)
-    loose = len(vertices)
-    rows = diffusion_distances(spectrum, [0, loose])
-    assert rows[0, loose] == np.inf
-    assert rows[1, loose] == 0
-    assert np.isinf(rows[1, :loose]).all()
-    assert np.isfinite(rows[0, :loose]).all()
-
-
 @pytest.mark.parametrize("time", [0, -1, np.nan, np.inf])
 def test_bad_times(spectrum, time):
     with pytest.raises(HierMatchError, match="time of diffusion"):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from engine.runtime.arrays import group_sums, marked, numbered, ranges
+from engine.runtime.arrays import group_means, group_sums, marked, numbered, ranges
 
 
 def test_places_are_marked_whatever_the_shape_of_their_array():
@@ -20,6 +20,11 @@ def test_rows_are_summed_by_group():
     values = np.array([[1.0, 2], [3, 4], [5, 6]])
     np.testing.assert_array_equal(group_sums(np.array([2, 0, 2]), values, 4), [[3, 4], [0, 0], [6, 8], [0, 0]])
     assert group_sums(np.empty(0, np.int64), np.empty((0, 3)), 2).shape == (2, 3)
+
+
+def test_rows_are_averaged_by_group():
+    values = np.array([[1.0, 2], [3, 4], [5, 6]])
+    np.testing.assert_array_equal(group_means(np.array([1, 0, 1]), values, 2), [[3, 4], [3, 4]])
 
 
 def test_ranges_follow_one_another():

@@ -50,7 +50,6 @@ def test_the_result_is_consistent_in_itself(result, bodies):
     np.testing.assert_array_equal(result.source_points.nearest_vertices, source.samples[:40])
     difference = differences(result, bodies)
     assert result.quadratic == pytest.approx(np.square(difference).sum())
-    assert result.largest == pytest.approx(np.abs(difference).max())
     np.testing.assert_allclose(result.distances - source.sample_distances[:40, :40], difference)
     assert [level.points for level in result.levels] == [10, 20, 40]
     assert result.levels[-1].stress == pytest.approx(result.quadratic)
@@ -76,21 +75,12 @@ def test_from_a_true_start_the_points_come_close_to_the_truth(bodies):
     assert found.quadratic < 0.7 * at_vertices
 
 
-def test_the_largest_difference_is_smaller_in_the_largest_norm(result, bodies):
-    found = run(gmds_steps(*bodies[:2], 40, norm="Linf"))
-    assert found.norm == "Linf"
-    assert found.largest < 0.95 * result.largest
-    assert found.largest == pytest.approx(np.abs(differences(found, bodies)).max())
-
-
-@pytest.mark.parametrize("norm", ["L2", "Linf"])
-def test_a_shape_matches_itself_without_stress(bodies, norm):
+def test_a_shape_matches_itself_without_stress(bodies):
     target = bodies[1]
     run(target.sample_steps(30))
     start = SurfacePoints.at_vertices(target.mesh, target.samples[:10])
-    found = run(gmds_steps(target, target, 30, start=start, norm=norm))
+    found = run(gmds_steps(target, target, 30, start=start))
     assert found.quadratic < 1e-3
-    assert found.largest < 0.01
     np.testing.assert_allclose(found.target_points.positions, found.source_points.positions, atol=0.02 * target.scale)
 
 
@@ -132,7 +122,7 @@ def test_another_metric_can_be_given():
     wanted = np.linalg.norm(places[:, None] - places, axis=2)
     metric = EmbeddedDistances(target.mesh, target.mesh.vertices)
     found = run(gmds_steps(source, target, 16, wanted=wanted, distances=metric))
-    assert found.largest < 0.03
+    assert found.quadratic < 16**2 * 0.01**2
     u, _, v = np.linalg.svd(places.T @ found.target_points.positions)
     assert np.linalg.norm(places @ u @ v - found.target_points.positions, axis=1).max() < 0.03
 
@@ -154,19 +144,12 @@ def test_only_the_largest_part_is_used_and_results_lie_on_the_whole():
 
 
 def test_what_does_not_fit_is_refused(bodies):
-    source, target = bodies[:2]
     with pytest.raises(MatchError, match="subdivide"):
-        run(gmds_steps(source, Shape(TriangleMesh(*icosphere(1))), 40))
-    for levels in ([10, 20], [], [20, 10, 40], [10, 10, 40], [0, 40]):
-        with pytest.raises(MatchError, match="ascend"):
-            run(gmds_steps(source, target, 40, levels=levels))
-    with pytest.raises(MatchError, match="ascend"):
-        run(gmds_steps(source, target, 40, levels=[5, 40], start=true_start(bodies, 10)))
-    assert [level.points for level in run(gmds_steps(source, target, 12, levels=[6, 12])).levels] == [6, 12]
+        run(gmds_steps(bodies[0], Shape(TriangleMesh(*icosphere(1))), 40))
 
 
 def test_it_reports_growing_progress(bodies):
-    steps = gmds_steps(*bodies[:2], 20, norm="Linf")
+    steps = gmds_steps(*bodies[:2], 20)
     fractions = [progress.fraction for progress in steps]
     assert len(fractions) > 10
     assert fractions == sorted(fractions)

@@ -20,8 +20,6 @@ from engine.runtime.errors import MatchError
 from engine.runtime.progress import Progress, run
 from tests.problems import all_costs, branch_and_bound, brute_force, random_problem, relabelled, shape_problem
 
-METHODS = ["dual ascent", "gilmore-lawler"]
-
 
 def replaced(problem, **arrays):
     """Return the problem with some of its arrays replaced."""
@@ -49,8 +47,7 @@ def test_it_finds_what_trying_everything_finds(seed, size, weight, forbidden, ki
     problem = random_problem(seed, *size, weight=weight, forbidden=forbidden, kind=kind)
     optimum = brute_force(problem)
     if np.isfinite(optimum):
-        for method in ("auto", *METHODS):
-            assert_is_optimum(branch_and_bound(problem, method=method), problem, optimum)
+        assert_is_optimum(branch_and_bound(problem), problem, optimum)
     else:
         with pytest.raises(MatchError, match="forbidden"):
             branch_and_bound(problem)
@@ -61,17 +58,16 @@ def test_it_finds_what_trying_everything_finds(seed, size, weight, forbidden, ki
     size=st.sampled_from([(1, 2), (3, 3), (4, 6), (6, 6), (5, 7)]),
     counts=st.lists(st.integers(0, 7), min_size=1, max_size=2),
     kind=st.sampled_from(["table", "plane", "ties"]),
-    method=st.sampled_from(METHODS),
 )
 @settings(max_examples=150, deadline=None)
-def test_it_finds_the_best_that_keeps_to_the_exclusions(seed, size, counts, kind, method):
+def test_it_finds_the_best_that_keeps_to_the_exclusions(seed, size, counts, kind):
     problem = random_problem(seed, *size, forbidden=0.1 * (seed % 2), kind=kind)
     rng = np.random.default_rng(seed)
     exclusions = [Exclusion(rng.random(size) < rng.random(), count) for count in counts]
     if not np.isfinite(brute_force(problem)):
         return
     optimum = brute_force(problem, exclusions)
-    found = branch_and_bound(problem, exclusions=exclusions, method=method)
+    found = branch_and_bound(problem, exclusions=exclusions)
     if np.isfinite(optimum):
         assert_is_optimum(found, problem, optimum)
         assert all(exclusion.allows(found.assignment) for exclusion in exclusions)
@@ -82,17 +78,16 @@ def test_it_finds_the_best_that_keeps_to_the_exclusions(seed, size, counts, kind
 @pytest.mark.parametrize(
     ("n", "m", "seed", "noise"), [(20, 20, 0, 0.1), (20, 20, 2, 0.2), (12, 24, 0, 0.1), (12, 24, 3, 0.15)]
 )
-def test_the_optimum_does_not_depend_on_the_start_nor_on_the_bound(n, m, seed, noise):
+def test_the_optimum_does_not_depend_on_the_start(n, m, seed, noise):
     # Charging a pair twice over-prunes and still passes tests by brute force; a good start then finds another optimum.
     problem = shape_problem(seed, n, m, noise=noise)
-    best = branch_and_bound(problem, method="dual ascent")
+    best = branch_and_bound(problem)
     assert best.proven
     _, worst = linear_sum_assignment(-problem.linear)
-    for method in METHODS:
-        for initial in ([], [worst], [best.assignment]):
-            found = branch_and_bound(problem, initial=initial, method=method)
-            assert found.proven
-            assert found.cost == pytest.approx(best.cost, rel=2 * TOLERANCE)
+    for initial in ([], [worst], [best.assignment]):
+        found = branch_and_bound(problem, initial=initial)
+        assert found.proven
+        assert found.cost == pytest.approx(best.cost, rel=2 * TOLERANCE)
 
 
 @pytest.fixture
@@ -109,43 +104,40 @@ def bad_start(monkeypatch):
 
 
 @pytest.mark.usefixtures("bad_start")
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("dive", [0, 10, 20_000])
-def test_the_tree_alone_finds_the_optimum(monkeypatch, method, dive):
+def test_the_tree_alone_finds_the_optimum(monkeypatch, dive):
     monkeypatch.setattr(module, "_DIVE", dive)
     for seed in range(30):
         size = ((6, 6), (5, 8), (6, 7))[seed % 3]
         problem = random_problem(seed, *size, kind=("table", "plane", "ties")[seed // 3 % 3])
         rng = np.random.default_rng(seed)
         exclusions = [Exclusion(rng.random(size) < 0.5, 4)] if seed % 2 else []
-        found = branch_and_bound(problem, exclusions=exclusions, method=method)
+        found = branch_and_bound(problem, exclusions=exclusions)
         assert_is_optimum(found, problem, brute_force(problem, exclusions))
 
 
 @pytest.mark.usefixtures("bad_start")
-@pytest.mark.parametrize("method", METHODS)
-def test_the_tree_alone_finds_the_optimum_of_a_larger_problem(method):
+def test_the_tree_alone_finds_the_optimum_of_a_larger_problem():
     problem = shape_problem(1, 20, 20, noise=0.15)
-    start = branch_and_bound(problem, node_limit=1, method=method)
-    found = branch_and_bound(problem, method=method)
+    start = branch_and_bound(problem, node_limit=1)
+    found = branch_and_bound(problem)
     assert found.proven
     assert found.cost < 0.9 * start.cost
     _, cheapest = linear_sum_assignment(problem.linear)
-    other = branch_and_bound(problem, initial=[cheapest], method=METHODS[METHODS.index(method) - 1])
+    other = branch_and_bound(problem, initial=[cheapest])
     assert other.cost == pytest.approx(found.cost, rel=2 * TOLERANCE)
 
 
 @pytest.mark.usefixtures("bad_start")
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("dive", [10, 20_000])
-def test_the_bound_is_valid_whenever_the_search_stops(monkeypatch, method, dive):
+def test_the_bound_is_valid_whenever_the_search_stops(monkeypatch, dive):
     monkeypatch.setattr(module, "_DIVE", dive)
     worse = 0
     for seed in range(6):
         problem = random_problem(seed, *((7, 7) if seed % 2 else (6, 8)))
         optimum = brute_force(problem)
         for node_limit in (1, 2, 5, 10, 20, 50, 100, 200, 400):
-            found = branch_and_bound(problem, node_limit=node_limit, method=method)
+            found = branch_and_bound(problem, node_limit=node_limit)
             assert found.cost == pytest.approx(problem.cost(found.assignment))
             assert found.cost >= optimum * (1 - 1e-9)
             assert found.lower_bound <= optimum * (1 + 1e-9)
@@ -154,14 +146,13 @@ def test_the_bound_is_valid_whenever_the_search_stops(monkeypatch, method, dive)
     assert worse > 5
 
 
-@pytest.mark.parametrize("method", ["auto", *METHODS])
 @pytest.mark.parametrize("node_limit", [1, 10, 100])
-def test_the_bound_of_a_larger_problem_is_valid_when_the_limit_stops_the_search(method, node_limit):
+def test_the_bound_of_a_larger_problem_is_valid_when_the_limit_stops_the_search(node_limit):
     for size in [(12, 16), (12, 12)]:
         problem = shape_problem(4, *size, noise=0.3)
         optimum = branch_and_bound(problem)
         assert optimum.proven
-        found = branch_and_bound(problem, node_limit=node_limit, method=method)
+        found = branch_and_bound(problem, node_limit=node_limit)
         assert found.lower_bound <= optimum.cost * (1 + 1e-9)
         assert found.cost >= optimum.cost * (1 - 1e-9)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.matching.overlap.part_surface import PartSurface, summed_rows
+from engine.matching.overlap.part_surface import PartSurface
 from tests.shapes import compacted, icosphere, permuted, plane, plane_with_hole
 
 
@@ -65,8 +65,3 @@ def test_it_can_be_sent_after_use():
     before = ball.smoothed(ball.normals, 0.01)
     sent = pickle.loads(pickle.dumps(ball))  # noqa: S301 -- its own
     np.testing.assert_array_equal(sent.smoothed(ball.normals, 0.01), before)
-
-
-def test_rows_are_summed_by_number():
-    sums = summed_rows(np.array([2, 0, 2]), np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]), 3)
-    assert sums.tolist() == [[3, 4], [0, 0], [6, 8]]

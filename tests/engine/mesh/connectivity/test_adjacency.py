@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.mesh.connectivity.adjacency import neighbour_means, vertex_adjacency
+from engine.mesh.connectivity.adjacency import edge_graph, neighbour_means, vertex_adjacency
 from tests.shapes import icosphere, permuted, plane
 
 
@@ -33,6 +33,14 @@ def test_the_matrix_joins_just_the_corners_of_triangles(mesh):
     for vertex, others in enumerate(neighbours(mesh)):
         expected[vertex, list(others)] = 1
     np.testing.assert_array_equal(matrix, expected)
+
+
+def test_edges_have_their_lengths_in_both_directions(mesh):
+    lengths = edge_graph(mesh).toarray()
+    np.testing.assert_array_equal(lengths > 0, vertex_adjacency(mesh).toarray() > 0)
+    np.testing.assert_array_equal(lengths, lengths.T)
+    first, second = mesh.edges.T
+    np.testing.assert_array_equal(lengths[first, second], mesh.edge_lengths)
 
 
 def test_an_edge_of_many_triangles_counts_once():

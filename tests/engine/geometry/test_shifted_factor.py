@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Factors of shifted matrices: solutions, counts of eigenvalues, and an order that keeps them sparse."""
+"""Factors of shifted matrices: solutions, and counts of eigenvalues."""
 
 import numpy as np
 import pytest
 from scipy.sparse import csr_array, diags_array
-from scipy.sparse.linalg import splu
 
 from engine import TriangleMesh
 from engine.geometry.laplacian import laplace_beltrami
-from engine.geometry.schur_elimination import ShiftedFactor, elimination_order, nested_dissection
+from engine.geometry.shifted_factor import ShiftedFactor
 from tests.shapes import cylinder, icosphere, irregular, plane, torus
 
 
@@ -21,17 +20,15 @@ def matrix_of(shape):
 SHAPES = {"sphere": icosphere(9), "torus": irregular(*torus(30, 14)), "plane": plane(30), "tube": cylinder(6, 120)}
 
 
-@pytest.mark.parametrize("dissected", [False, True], ids=["minimum degree", "nested dissection"])
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
-def test_solves_and_counts(shape, dissected):
+def test_solves_and_counts(shape):
     matrix = matrix_of(shape)
-    order = nested_dissection(matrix) if dissected else None
     values = np.linalg.eigvalsh(matrix.toarray())
     right = np.random.default_rng(0).standard_normal((matrix.shape[0], 3))
     gaps = np.flatnonzero(np.diff(values) > 1e-3 * values[1:]) + 1
     for below in (0, *gaps[[0, 3, 20]]):
         shift = (values[below - 1] + values[below]) / 2 if below else -0.1
-        factor = ShiftedFactor(matrix, shift, order)
+        factor = ShiftedFactor(matrix, shift)
         assert factor.negative_count == below
         assert factor.is_accurate()
         solution = factor.solve(right)
@@ -49,25 +46,6 @@ def test_the_order_serves_other_shifts():
     np.testing.assert_allclose(ShiftedFactor(matrix, 3.0, second.order).solve(right), first.solve(right), atol=1e-6)
 
 
-@pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
-def test_nested_dissection_is_an_order(shape):
-    order = nested_dissection(matrix_of(shape))
-    assert sorted(order) == list(range(len(shape[0])))
-
-
-def test_nested_dissection_keeps_factors_sparse():
-    fills = []
-    for size in (30, 60):
-        matrix = matrix_of(icosphere(size))
-        order = nested_dissection(matrix)
-        permuted = (matrix[order][:, order] + diags_array(np.ones(len(order)))).tocsc()
-        factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        fills.append(factor.nnz / len(order))
-    # n log n of fill: four times the vertices cost some more per vertex, not twice (a band would).
-    assert fills[1] < 1.45 * fills[0]
-    assert fills[0] < 120
-
-
 def test_a_shift_close_to_an_eigenvalue_is_noticed():
     matrix = matrix_of(icosphere(5))
     value = np.linalg.eigvalsh(matrix.toarray())[4]
@@ -76,7 +54,3 @@ def test_a_shift_close_to_an_eigenvalue_is_noticed():
     except RuntimeError:
         return
     assert not factor.is_accurate()
-
-
-def test_small_matrices_need_no_dissection():
-    assert elimination_order(matrix_of(icosphere(4))) is None
