@@ -22,6 +22,7 @@ _AFTER = {
     "spine": "chest",
     "chest": "upper_chest",
     "upper_chest": "neck",
+    "neck": "head",
     "shoulder": "upper_arm",
     "upper_arm": "lower_arm",
     "lower_arm": "hand",
@@ -69,7 +70,11 @@ def _joints(rig: bpy.types.Object) -> dict[str, tuple[Vector, Vector | None]]:
     )
     heads = {what: rig.matrix_world @ bones[number].head_local for what, number in found.items()}
     names = _module("transfers.motion.name_tables").NAME_TABLES["RIGIFY"]
-    return {names[what].removeprefix("DEF-"): (head, _end(what, heads)) for what, head in heads.items()}
+    joints = {names[what].removeprefix("DEF-"): (head, _end(what, heads)) for what, head in heads.items()}
+    if "neck" in heads:  # two bones of the metarig
+        middle = (heads["neck"] + heads["head"]) / 2
+        joints |= {"spine.004": (heads["neck"], middle), "spine.005": (middle, heads["head"])}
+    return joints
 
 
 def _end(what: str, heads: dict[str, Vector]) -> Vector | None:
