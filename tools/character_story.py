@@ -4,7 +4,7 @@
     make package-no-wheels
     BLENDER_USER_RESOURCES=EMPTY_FOLDER blender --factory-startup --enable-event-simulate \
         --window-geometry 0 0 1600 1000 --python tools/character_story.py -- \
-        [--motion] FOLDER build/package-no-wheels/hiermatch-VERSION.zip SOURCE.glb TARGET.glb [COMMAND ...]
+        [--motion | --my-rig] FOLDER build/package-no-wheels/hiermatch-VERSION.zip SOURCE.glb TARGET.glb [COMMAND ...]
 
 Any Blender from 4.3 on with NumPy and SciPy will do; the zip is installed as by hand.  Either character may have any
 number of meshes, both need a rig; a source without an action gets one that swings its arms and legs.  Everything is
@@ -27,6 +27,15 @@ there are, after the second picture,
     5-carried.jpg       what the panel says to the action
     6-action.jpg        both playing it, at four times
 
+With --my-rig a metarig of Rigify is put into the source, a person, by its joints, and fitted into the target;
+its control rig is generated, the target bound to it by automatic weights, and the action carried over to the controls.
+At last the bones of the source are renamed, and it must still move alike.  After the first picture there are
+
+    2-standing.jpg      the metarig stands in the source
+    3-fitted.jpg        and a copy in the target
+    4-generated.jpg     the target with its control rig
+    5-pairing.jpg to 8-action.jpg  as with --motion
+
 Blender cannot read its own pixels on some screens, virtual ones above all: see `screenshots.py` for COMMAND.
 """
 
@@ -44,7 +53,8 @@ from mathutils import Matrix, Quaternion, Vector
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from camera import Camera, seen
-from screen import choose_tab, large_view, look_at_selected, view
+from metarig import add_metarig, generate
+from screen import choose_tab, fold, large_view, look_at_selected, view
 from window_events import press, running, until
 
 if TYPE_CHECKING:
@@ -111,6 +121,20 @@ def tell_motion(story: Story, camera: Camera) -> Iterator[float | None]:
     yield from story.play(camera, carried=True)
 
 
+def tell_my_rig(story: Story, camera: Camera) -> Iterator[float | None]:
+    """Go through the steps for a rig of one's own."""
+    cast("Any", bpy.ops.preferences).addon_enable(module="rigify")
+    registration = _registration()
+    fold("hiermatch_my_rig", package=registration.__package__.rpartition(".")[0])
+    yield from story.bring(camera)
+    yield from story.fit_my_rig(camera)
+    _open_motion()
+    choose_tab()
+    yield from story.carry(camera, number=5)
+    yield from story.play(camera, carried=True, sheet=8)
+    yield from story.rename()
+
+
 class Story:
     """Two characters, and what is done with them.
 
@@ -162,8 +186,44 @@ class Story:
         (self._made,) = rigs
         check(self._made not in self._rigs, "The target is still moved by its own armature")
 
-    def carry(self, camera: Camera) -> Iterator[float | None]:
-        """Pair the bones, and carry the action over to the target's own rig."""
+    def fit_my_rig(self, camera: Camera) -> Iterator[float | None]:
+        """Put a metarig into the source, fit it into the target, and bind the target to its control rig."""
+        metarig, options = add_metarig(self._rigs[0]), cast("Any", bpy.context.scene).hiermatch_retarget
+        options.rig = metarig.name
+        _show_bones(metarig)
+        yield None
+        camera.take_with_panel("2-standing", self._all())
+        press(cast("Any", bpy.ops).hiermatch.fit_my_rig, rig=options.rig)
+        yield from self._finished("Fitting")
+        print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
+        fitted = [obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj not in (*self._rigs, metarig)]
+        check(len(fitted) == 1, f"{len(fitted)} armatures were fitted instead of one")
+        _show_bones(fitted[0])
+        yield None
+        camera.take_with_panel("3-fitted", self._all())
+        made = generate(fitted[0])
+        metarig.hide_set(state=True)
+        print(f"generated: {len(made.data.bones)} bones", flush=True)
+        _bind(self._meshes[1], made)
+        self._rigs[1].hide_set(state=True)
+        self._rigs[1] = made
+        state().target = made
+        yield None
+        camera.take_with_panel("4-generated", self._all())
+
+    def rename(self) -> Iterator[float | None]:
+        """Give the source's bones other names, and see that it still moves alike."""
+        before = _shape(self._meshes[0][0], shown=True)
+        press(cast("Any", bpy.ops).hiermatch.rename_bones, target=self._rigs[0].name, names="UNREAL")
+        yield None
+        names = set(cast("Any", self._rigs[0].data).bones.keys())
+        check({"upperarm_l", "calf_r", "head"} <= names, f"The bones are called {sorted(names)}")
+        scene = cast("Any", bpy.context.scene)
+        scene.frame_set(scene.frame_current)
+        check(_shape(self._meshes[0][0], shown=True) == before, "The source moves otherwise with other names")
+
+    def carry(self, camera: Camera, number: int = 3) -> Iterator[float | None]:
+        """Pair the bones, and carry the action over to the target's rig; the first picture has some number."""
         action = _action_of(self._rigs[0])
         check(action is not None, "The source has no action")
         _assign(self._rigs[0], action)
@@ -172,14 +232,14 @@ class Story:
         press(cast("Any", bpy.ops).hiermatch.pair_bones)
         progress = cast("Any", bpy.context.window_manager).hiermatch
         yield from until(lambda: progress.fraction > _FAR_ENOUGH or not running(), "The first third")
-        camera.take_with_panel("3-pairing", self._all())
+        camera.take_with_panel(f"{number}-pairing", self._all())
         yield from self._finished("Pairing")
-        camera.take_with_panel("4-paired", self._all())
+        camera.take_with_panel(f"{number + 1}-paired", self._all())
         print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
         check(len(cast("Any", bpy.context.scene).hiermatch_bone_pairs), "No bones were paired")
         press(cast("Any", bpy.ops).hiermatch.retarget_action)
         yield from self._finished("The motion")
-        camera.take_with_panel("5-carried", self._all())
+        camera.take_with_panel(f"{number + 2}-carried", self._all())
         print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
         self._made = self._rigs[1]
         rigs = {rig for obj in self._meshes[1] for rig in _moving(obj)}
@@ -217,7 +277,7 @@ class Story:
         check((scene.frame_start, scene.frame_end) == frames, "The frame range was not brought back")
         check(made.animation_data.action is None, "An action was left behind")
 
-    def play(self, camera: Camera, *, carried: bool = False) -> Iterator[float | None]:
+    def play(self, camera: Camera, *, carried: bool = False, sheet: int = 6) -> Iterator[float | None]:
         """Give both rigs one action of the source, if it was not carried over, and look at some moments of it."""
         scene = cast("Any", bpy.context.scene)
         action = _action_of(self._rigs[0])
@@ -234,7 +294,7 @@ class Story:
             shapes.add(_shape(self._meshes[1][0], shown=True))
         check(len(shapes) > 1, "The target does not move")
         half = (len(looks) + 1) // 2
-        camera.save("6-action", [looks[:half], looks[half:]])
+        camera.save(f"{sheet}-action", [looks[:half], looks[half:]])
 
     def _all(self) -> list[bpy.types.Object]:
         return [obj for meshes in self._meshes for obj in meshes]
@@ -285,13 +345,45 @@ class Story:
 
 def _open_motion() -> None:
     """Let the panel for motion be unfolded and all others folded when they are drawn for the first time."""
-    (registration,) = (module for name, module in sys.modules.items() if name.endswith("hiermatch_addon.registration"))
-    panels: list[Any] = [cls for cls in registration.CLASSES if issubclass(cls, bpy.types.Panel)]
+    panels: list[Any] = [cls for cls in _registration().CLASSES if issubclass(cls, bpy.types.Panel)]
     for panel in reversed(panels):
         bpy.utils.unregister_class(panel)
     for panel in panels:
         panel.bl_options = set() if panel.__name__ == "HIERMATCH_PT_motion" else {"DEFAULT_CLOSED"}
         bpy.utils.register_class(panel)
+
+
+def _registration() -> Any:  # noqa: ANN401 - a module
+    """Return the module of the installed extension that registers it."""
+    return next(module for name, module in sys.modules.items() if name.endswith("hiermatch_addon.registration"))
+
+
+def _show_bones(rig: bpy.types.Object) -> None:
+    """Draw the bones of one armature, over everything."""
+    view()["space_data"].overlay.show_bones = True
+    for obj in bpy.data.objects:
+        if obj.type == "ARMATURE":
+            cast("Any", obj).show_in_front = obj == rig
+            obj.hide_set(state=obj != rig)
+
+
+def _bind(meshes: list[bpy.types.Object], rig: bpy.types.Object) -> None:
+    """Let a rig move meshes in the place of their own, by automatic weights."""
+    with bpy.context.temp_override(**view()):
+        bpy.ops.object.select_all(action="DESELECT")
+        for mesh in meshes:
+            stands = mesh.matrix_world.copy()
+            mesh.parent = None
+            mesh.matrix_world = stands
+            mesh.vertex_groups.clear()
+            for modifier in [one for one in mesh.modifiers if one.type == "ARMATURE"]:
+                mesh.modifiers.remove(modifier)
+            mesh.select_set(state=True)
+        rig.select_set(state=True)
+        bpy.context.view_layer.objects.active = rig
+        bpy.ops.object.parent_set(type="ARMATURE_AUTO")
+        bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = None
 
 
 def _hangs_on(obj: bpy.types.Object, rig: bpy.types.Object) -> bool:
@@ -369,8 +461,9 @@ def _assign(rig: bpy.types.Object, action: Any) -> None:  # noqa: ANN401 - an ac
 
 def main(arguments: list[str]) -> None:
     """Install the zip, and let Blender's own timer do one step after the other."""
-    telling = tell_motion if "--motion" in arguments else tell
-    arguments = [argument for argument in arguments if argument != "--motion"]
+    ways = {"--motion": tell_motion, "--my-rig": tell_my_rig}
+    telling = next((way for flag, way in ways.items() if flag in arguments), tell)
+    arguments = [argument for argument in arguments if argument not in ways]
     if len(arguments) < 4:
         sys.exit("Name a folder for the pictures, the extension's zip, and the files of the source and the target.")
     folder, package, source, target = (Path(argument).resolve() for argument in arguments[:4])

@@ -66,10 +66,10 @@ def show_panels(*labels: str) -> None:
     view()["area"].tag_redraw()
 
 
-def fold(*opened: str) -> None:
-    """Draw the panels with these sections open, and all others closed."""
+def fold(*opened: str, package: str = PACKAGE) -> None:
+    """Draw the panels with these sections open, and all others closed; `package` is what the extension is called."""
     for name in _PANELS:
-        panels: Any = importlib.import_module(f"{PACKAGE}.hiermatch_addon.panels.{name}")
+        panels: Any = importlib.import_module(f"{package}.hiermatch_addon.panels.{name}")
         own = getattr(panels, "own_layout_of", panels.layout_of)
         panels.own_layout_of = own
         panels.layout_of = lambda owner, own=own: FoldedLayout(own(owner), opened)

@@ -112,6 +112,7 @@ def save_results(
     console: Console,
     *,
     clean: bool = False,
+    along: Sequence[bpy.types.Object] = (),
 ) -> None:
     """Write all files that are wanted of a pair that carries a match now, and describe the match.
 
@@ -125,7 +126,7 @@ def save_results(
         console.progress(1.0, f"Writing {parsed.map}")
         save_match(match, parsed.map.absolute())
         report.written.append(str(parsed.map.absolute()))
-    save_outputs(parsed, report, pair[1], console, clean=clean)
+    save_outputs(parsed, report, pair[1], console, clean=clean, along=along)
 
 
 def save_outputs(
@@ -136,6 +137,7 @@ def save_outputs(
     *,
     clean: bool,
     clips: Sequence[bpy.types.Action] = (),
+    along: Sequence[bpy.types.Object] = (),
 ) -> None:
     """Write the scene and the target into all files that are wanted; see `save_results` and `save`."""
     for path in sorted(parsed.output, key=lambda output: output.suffix.lower() != ".blend"):
@@ -144,7 +146,7 @@ def save_outputs(
             for part in parts_of(target):
                 for written in writing.prefixes(part) if part.type == "MESH" else ():
                     writing.clear(part, written)
-        save(path, target, clips)
+        save(path, target, clips, along)
         report.written.append(str(path.absolute()))
 
 

@@ -68,7 +68,7 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         known.update(bpy.data.actions)
         return MotionJob(bpy.context, pair[0], [pair[1]], motion_plan(scene, options, rigs[0]), how)
 
-    def finish(report: Report, pair: tuple[Side, Side], _carried: list[Carried]) -> None:
+    def finish(report: Report, pair: tuple[Side, Side], _carried: list[Carried], _prefix: str) -> None:
         scene, rigs = cast("bpy.types.Scene", bpy.context.scene), (rig_of(pair[0]), rig_of(pair[1]))
         if parsed.write_pairs is not None:
             save_pairs(scene, *rigs, parsed.write_pairs.absolute())

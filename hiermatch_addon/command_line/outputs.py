@@ -66,10 +66,15 @@ def output_argument(kinds: Sequence[str]) -> Callable[[str], Path]:
     return parse
 
 
-def save(path: Path, side: Side, clips: Sequence[bpy.types.Action] = ()) -> None:
+def save(
+    path: Path,
+    side: Side,
+    clips: Sequence[bpy.types.Action] = (),
+    along: Sequence[bpy.types.Object] = (),
+) -> None:
     """Write the whole scene into a .blend, or a side with its armatures and clothes into another kind of file.
 
-    There, `clips` of its armature go along, and what its armature plays otherwise.
+    There, `clips` of its armature go along, and what its armature plays otherwise; so do the objects that are `along`.
 
     Raises
     ------
@@ -82,7 +87,7 @@ def save(path: Path, side: Side, clips: Sequence[bpy.types.Action] = ()) -> None
             with beside(path) as temporary:
                 bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
         else:
-            _select(side)
+            _select(side, along)
             if clips:
                 add_tracks(rig_of(side), clips)
             _export(path, moving=bool(clips))
@@ -90,13 +95,13 @@ def save(path: Path, side: Side, clips: Sequence[bpy.types.Action] = ()) -> None
         raise ObjectError(f'"{path}" cannot be written: {said_by(error)}') from error
 
 
-def _select(side: Side) -> None:
-    """Select the objects of a side, the armatures that move them and what was fitted to them, and nothing else."""
+def _select(side: Side, along: Sequence[bpy.types.Object]) -> None:
+    """Select the objects of a side, the armatures that move them, what was fitted to them and what goes `along`."""
     layer, parts = view_layer_of(bpy.context), parts_of(side)
     movers = [obj.parent for obj in parts]
     movers += [getattr(modifier, "object", None) for obj in parts for modifier in obj.modifiers]
     fitted = list(dict.fromkeys(item for body in (side, *parts) for item in fitted_to(body)))
-    wanted = [*parts, *fitted, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
+    wanted = [*parts, *fitted, *along, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
     for other in layer.objects:
         other.select_set(other in wanted)
     layer.objects.active = parts[0]

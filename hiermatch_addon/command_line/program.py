@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...engine import HierMatchError
-from . import exchange, match, motion, retarget, symmetry, wear
+from . import exchange, match, motion, my_rig, retarget, symmetry, wear
 from .batches import batch
 from .command import EXIT_CODES, ExitCode, UsageError
 from .console import Console
@@ -32,7 +32,7 @@ def make_parser() -> Parser:
     """
     parser = Parser(prog="blender --command hiermatch", description=_DESCRIPTION, epilog=EXIT_CODES)
     commands = parser.add_subparsers(title="commands", dest="command", metavar="COMMAND", required=True)
-    for module in (match, retarget, motion, wear, symmetry, exchange, batch):
+    for module in (match, retarget, motion, my_rig, wear, symmetry, exchange, batch):
         module.add_commands(commands)
     parser.set_defaults(check=parser.parse_args)
     return parser

@@ -88,7 +88,7 @@ def run_transfers(
     operator: str,
     start: _Start,
     *,
-    finish: Callable[[Report, _Pair, list[Carried]], None] | None = None,
+    finish: Callable[[Report, _Pair, list[Carried], str], None] | None = None,
     choose: Callable[[Any, _Pair], _Pair] | None = None,
 ) -> ExitCode:
     """Carry something over and write all files that are wanted.
@@ -104,7 +104,7 @@ def run_transfers(
     start : callable
         Starts the job: of the operator's options, for source and target, by some way between them.
     finish : callable, optional
-        Writes the files in place of `save_results`, when all was carried over.
+        Writes the files in place of `save_results`, when all was carried over; its last argument is the match's prefix.
     choose : callable, optional
         Returns what of source and target is meant by the operator's options.
     """
@@ -134,12 +134,12 @@ def run_transfers(
         refresh(cast("bpy.types.Scene", context.scene))
         remember_transfer(context, source.name, carried)
         report.add_carried(carried)
+        prefix = options.prefix if outcome is None else matching.prefix
         if finish is not None:
             if outcome is not None:
                 report.add_match(outcome.stored)
-            finish(report, (source, target), carried)
+            finish(report, (source, target), carried, prefix)
             return
-        prefix = options.prefix if outcome is None else matching.prefix
         save_results(parsed, report, (source, target), prefix, console, clean=True)
 
     return run_reported(parsed, [parsed.source.path, parsed.target.path], console, work)

@@ -13,11 +13,11 @@ from .character import parts_of, take_place
 from .mesh_io import rest_matrix
 
 if TYPE_CHECKING:
-    from collections.abc import Container
+    from collections.abc import Container, Iterable
 
     from .character import Side
 
-__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "unbind"]
+__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "replaced_remarks", "unbind"]
 
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
@@ -159,6 +159,15 @@ def unbind(target: Side, armature: bpy.types.Object, kept: Container[bpy.types.O
             if other.visible_get():
                 other.hide_set(state=True)
     return unique
+
+
+def replaced_remarks(target: Side, armatures: Iterable[bpy.types.Object]) -> list[str]:
+    """Return what to say of armatures that `unbind` has taken from a side, one sentence each."""
+    return [
+        f'"{target.name}" is no longer moved by its own armature "{other.name}", whose Armature modifiers are '
+        "switched off."
+        for other in armatures
+    ]
 
 
 def _is_replaced(

@@ -27,7 +27,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
-from ..scene.binding import bind
+from ..scene.binding import bind, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
 from ..scene.character import parts_of, read_surface, vertex_ranges
 from ..scene.deform_layer import check_weights_writable
@@ -45,12 +45,27 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.my_rig import MyRigSettings
 
-__all__ = ["MyRigTransfer"]
+__all__ = ["MyRigTransfer", "check_has_body"]
 
 _STANDS = 0.5
 """Part of an armature's deforming bones that lies inside of a body from which on it stands there.  A human metarig that
 was put to the joints of six of MakeHuman's people has 0.73 and more, one that was only moved there, in another pose,
 0.34 at most (`standing_share`)."""
+
+
+def check_has_body(source: Side) -> None:
+    """Make sure that the source is something in which an armature can stand.
+
+    Raises
+    ------
+    ObjectError
+        If it is an armature that moves no mesh.
+    """
+    if getattr(source, "type", "") == "ARMATURE":
+        raise ObjectError(
+            f'"{source.name}" moves no mesh, so nothing tells where in a body its joints belong. Choose as the '
+            "Source a mesh in which it stands, and name the armature as the Rig."
+        )
 
 
 class MyRigTransfer:
@@ -143,7 +158,8 @@ class MyRigTransfer:
         done = [f'the rig "{armature.name}" with {counted(len(self._names), "bone")}']
         if self._weights is not None:
             done.append(self._write_weights(target))
-            notes += bind(target, armature, source)
+            notes += bind(target, armature, source, ())
+            self._remarks += replaced_remarks(target, unbind(target, armature, ()))
         else:
             self._remarks.append(
                 f'"{armature.name}" moves nothing yet. Generate its control rig, or bind "{target.name}" to it.'

@@ -15,7 +15,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
-from ..scene.binding import bind, made_rig, mark_made, unbind
+from ..scene.binding import bind, made_rig, mark_made, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
 from ..scene.character import parts_of
 from ..scene.key_drivers import counterparts
@@ -162,12 +162,7 @@ class RigTransfer:
             done = [f'the rig "{armature.name}" with {bones} and the rest pose "{action}"']
         if made:
             done.append("updated")
-        remarks = (
-            f'"{target.name}" is no longer moved by its own armature "{other.name}", whose Armature modifiers are '
-            "switched off."
-            for other in replaced
-        )
-        return TransferReport(", ".join(done), tuple(self._notes), tuple(remarks))
+        return TransferReport(", ".join(done), tuple(self._notes), tuple(replaced_remarks(target, replaced)))
 
     def _kept_beside(self, target: Side, model: bpy.types.Object) -> list[bpy.types.Object] | None:
         """Return the armatures that are to move the target beside the new one; None for all."""

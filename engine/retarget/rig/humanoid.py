@@ -27,8 +27,19 @@ _DOWN = 0.05
 _INWARD = 0.5
 """A bone begins inward of another, in the trunk, if it is less than this part as far from the middle."""
 
+_ROOT = 0.5
+"""Bones of the trunk begin higher than this part of where the legs do: below is a root on the ground."""
+
+_UPRIGHT = 45.0
+"""How far the trunk of a person leans at most, from the hips to the shoulders, in degrees.  Those of
+four makers lean by 8 at most, a kaiju and a bird, which have arms and legs as well, by 58 and 61."""
+
 _SHORT = 0.75
 """A bone of a shoulder is shorter than this part of the next one: of an arm in two pieces both are about as long."""
+
+_BALANCED = 0.5
+"""How long the shorter one of upper and lower arm is at least, in units of the other.  It is 0.8 and more in those of
+four makers; 0.3 if the forearm and the wrist of a wide knight are taken for them."""
 
 _PALM = 0.5
 """Bones of the palm begin nearer to the wrist than this part of where the next ones do."""
@@ -61,11 +72,12 @@ def humanoid_bones(skeleton: Skeleton, deforming: Bools, up: Floats) -> dict[str
     Raises
     ------
     RigError
-        If the rig is not that of a person who stands.
+        If the rig is not that of a person who stands upright.
     """
     tree = _Tree(skeleton, deforming, up)
     hips, legs = tree.legs()
     trunk, arms, chest = tree.arms(hips, legs)
+    _check_upright(tree, legs, arms)
     forward = sum((tree.ends[way[-1]] - skeleton.heads[_leg(tree, way)[2]] for way in legs), np.zeros(3))
     forward -= (forward @ up) * up
     left = np.cross(up, forward)
@@ -145,7 +157,7 @@ class _Tree:
             long = sorted(long, key=lambda way: -self.reach(way))[:2]
             if len(long) == 2 and (best < 0 or self.heights[bone] > self.heights[best]):
                 best, found = int(bone), long
-        if best < 0 or (self.heights[best] - self.low) / self.height < _ANKLE:
+        if best < 0 or min(self.heights[way].max() - self.low for way in found) < _ANKLE * self.height:
             raise RigError(
                 "The rig does not stand on two legs to which the feet belong, so it is open what its bones are."
             )
@@ -167,6 +179,8 @@ class _Tree:
         ways = [self.way(chest, end) for end in ends]
         if min(len(way) for way in ways) < 2 or chest in taken:
             raise RigError("The rig has no two arms, so it is open what its bones are.")
+        high = self.low + _ROOT * (min(self.heights[way].max() for way in legs) - self.low)
+        trunk = next((b for b in (trunk, *self.way(trunk, chest)) if self.heights[b] > high), trunk)
         return trunk, ways, chest
 
     def reach(self, way: Sequence[int]) -> float:
@@ -180,9 +194,33 @@ class _Tree:
 
     def middle(self, way: Sequence[int], end: int) -> int:
         """Find the place in a chain of the joint that is nearest to its middle; `end` begins where the chain ends."""
-        joints = self.bones.heads[[*way, end]]
-        lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(joints, axis=0), axis=1))])
+        lengths = self._lengths(way, end)
         return 1 + int(np.abs(lengths[1:-1] - lengths[-1] / 2).argmin())
+
+    def balance(self, way: Sequence[int], end: int) -> float:
+        """Return how long the shorter half of a chain is in units of the longer one, parted at its `middle`."""
+        lengths = self._lengths(way, end)
+        halves = np.diff(lengths[[0, self.middle(way, end), -1]])
+        return float(halves.min() / np.maximum(halves.max(), np.finfo(float).tiny))
+
+    def _lengths(self, way: Sequence[int], end: int) -> Floats:
+        """Return how far each joint is along a chain."""
+        joints = self.bones.heads[[*way, end]]
+        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(joints, axis=0), axis=1))])
+
+
+def _check_upright(tree: _Tree, legs: list[list[int]], arms: list[list[int]]) -> None:
+    """Make sure that the shoulders are above the hips."""
+    begins = [_leg(tree, way)[0] for way in legs], [_arm(tree, way)[1] for way in arms]
+    hips, shoulders = (tree.bones.heads[bones].mean(axis=0) for bones in begins)
+    trunk = shoulders - hips
+    high = float(trunk @ tree.up)
+    lean = np.degrees(np.arctan2(np.linalg.norm(trunk - high * tree.up), high))
+    if lean > _UPRIGHT:
+        raise RigError(
+            f"From the hips to the shoulders the rig leans by {lean:.0f} degrees. No person stands like that, so it is "
+            "open what its bones are."
+        )
 
 
 def _named(names: Sequence[str], bones: Sequence[int]) -> dict[str, int]:
@@ -239,6 +277,8 @@ def _arm(tree: _Tree, way: list[int]) -> list[int]:
         )
         if steps[0] >= _SHORT * steps[1] and away[0] >= _INWARD * away[1]:
             break
+        if tree.balance(way[first + 1 : wrist], way[wrist]) < _BALANCED:
+            break  # wide shoulders without a bone of their own
         first += 1
     elbow = first + tree.middle(way[first:wrist], way[wrist])
     return [way[0] if first else -1, way[first], way[elbow], way[wrist]]

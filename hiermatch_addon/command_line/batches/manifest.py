@@ -25,6 +25,7 @@ COMMANDS = {
     "match": ("match",),
     "retarget": ("retarget", "match"),
     "motion": ("retarget_action", "match"),
+    "my-rig": ("fit_my_rig", "match"),
     "wear": ("wear", "match"),
 }
 """For each subcommand that a batch can run, the operators whose options it takes; the first of a name counts."""

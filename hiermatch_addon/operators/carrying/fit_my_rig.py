@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...common.errors import ObjectError
-from ...transfers.my_rig import MyRigTransfer
+from ...transfers.my_rig import MyRigTransfer, check_has_body
 from ...transfers.options.my_rig import MyRigOptions, my_rig_settings
 from .transfer_operator import TransferOperator
 
@@ -34,11 +33,7 @@ class HIERMATCH_OT_fit_my_rig(MyRigOptions, TransferOperator, bpy.types.Operator
 
     def _pick(self, context: bpy.types.Context) -> tuple[Side, list[Side]]:
         source, targets = super()._pick(context)
-        if getattr(source, "type", "") == "ARMATURE":
-            raise ObjectError(
-                f'"{source.name}" moves no mesh, so nothing tells where in a body its joints belong. Choose as the '
-                "Source a mesh in which it stands, and name the armature as the Rig."
-            )
+        check_has_body(source)
         return source, targets
 
     def _transfers(self) -> list[Transfer]:

@@ -18,7 +18,7 @@ from mathutils import Matrix, Quaternion
 from ..armatures import armature_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Container, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -186,25 +186,14 @@ def chosen_controls(
     switches : tuple of Switch, optional
         With which it was tried; of all that was tried if not given, without any if that is enough.
     """
-    pose = cast("bpy.types.Pose", armature.pose).bones
     turning, needed, lost = dict[str, str](), list[Switch](), list[str]()
     for bone in found.bones:
-        ranks = {}
-        for (tried, name), followers in found.followers.items():
-            error, way = followers[bone]
-            if switches is None:
-                matters = not tried or (tried[0].bone, tried[0].name) in found.near[bone]
-            else:
-                matters = tried == switches
-            if matters and error <= _FOLLOWS and way <= _STAYS:
-                carried = sum(each[0] <= _FOLLOWS for each in followers.values())
-                shown = pose[name].custom_shape is not None
-                ranks[tried, name] = (-len(tried), name == bone, shown, -round(way, 1), carried, -way)
-        if ranks:
-            tried, turning[bone] = max(ranks, key=lambda key: ranks[key])
-            needed += tried
-        else:
+        best = _best_control(armature, found, bone, switches)
+        if best is None:
             lost.append(bone)
+        else:
+            turning[bone] = best[1]
+            needed += best[0]
     parents = {bone: getattr(armature_of(armature).bones[bone].parent, "name", "") for bone in lost}
     # What hangs on a bone may turn with its control, as the lower half of an arm in two pieces.
     for bone in list(lost):
@@ -214,11 +203,45 @@ def chosen_controls(
     return Controls(turning, (), switches or tuple(dict.fromkeys(needed)), tuple(lost))
 
 
-def with_carrier(found: Candidates, controls: Controls, placed: Sequence[str]) -> Controls:
+def _best_control(
+    armature: bpy.types.Object,
+    found: Candidates,
+    bone: str,
+    switches: tuple[Switch, ...] | None,
+    taken: Container[str] = (),
+) -> tuple[tuple[Switch, ...], str] | None:
+    """Choose the control that turns a bone, of those not `taken`, with the switches that it needs; see above.
+
+    One that turns the bone above it just so is that bone's or one further up, if that bone has any.
+    """
+    pose = cast("bpy.types.Pose", armature.pose).bones
+    parent = getattr(armature_of(armature).bones[bone].parent, "name", "")
+    steered = any(_turns(followers[parent]) for followers in found.followers.values() if parent in followers)
+    ranks = {}
+    for (tried, name), followers in found.followers.items():
+        if switches is None:
+            matters = not tried or (tried[0].bone, tried[0].name) in found.near[bone]
+        else:
+            matters = tried == switches
+        if steered and name != bone and followers[parent][0] <= _FOLLOWS:
+            continue
+        if matters and name not in taken and _turns(followers[bone]):
+            carried = sum(each[0] <= _FOLLOWS for each in followers.values())
+            shown = pose[name].custom_shape is not None
+            way = followers[bone][1]
+            ranks[tried, name] = (-len(tried), name == bone, shown, -round(way, 1), carried, -way)
+    return max(ranks, key=lambda key: ranks[key]) if ranks else None
+
+
+def with_carrier(armature: bpy.types.Object, found: Candidates, controls: Controls, placed: Sequence[str]) -> Controls:
     """Let the bones that get a place be moved by the control nearest to them that carries most of the body.
+
+    Others that this control would turn as well, such as the spine above the hips, get one of their own if there is one.
 
     Parameters
     ----------
+    armature : bpy.types.Object
+        The armature object.
     found : Candidates
         After `tried_controls` of `carriers` with all switches that are needed.
     controls : Controls
@@ -239,6 +262,11 @@ def with_carrier(found: Candidates, controls: Controls, placed: Sequence[str]) -
         if ways and (bone in ways or min(ways.values()) <= _NEAR):
             turning[bone] = bone if bone in ways else min(ways, key=lambda name: ways[name])
             places.append(bone)
+    taken = {turning[bone] for bone in places}
+    for bone in [name for name, control in turning.items() if control in taken and name not in places]:
+        other = _best_control(armature, found, bone, controls.switches, taken)
+        turning[bone] = turning[bone] if other is None else other[1]
+    turning = {bone: turning[bone] for bone in places} | turning  # whose control that is comes first
     lost = tuple(bone for bone in controls.lost if bone not in turning)
     return Controls(turning, tuple(places), controls.switches, lost)
 
@@ -437,6 +465,11 @@ def _at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator
                 setattr(bone, channel, value)
         armature.update_tag(refresh={"OBJECT", "DATA", "TIME"})
         _update()
+
+
+def _turns(follower: tuple[float, float]) -> bool:
+    """Tell whether a bone was turned as a control, around its own joint."""
+    return follower[0] <= _FOLLOWS and follower[1] <= _STAYS
 
 
 def _turn_basis(bone: Any, turn: Quaternion) -> None:  # noqa: ANN401 - a pose bone

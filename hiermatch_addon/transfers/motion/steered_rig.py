@@ -142,7 +142,7 @@ def steered_steps(link: SideReference, found: TransferredMotion) -> Steps[Steere
         yield from _tried_steps(link, tried, worth_trying(found_again(link), tried, moved), chosen.switches)
         chosen = chosen_controls(found_again(link), tried, chosen.switches)
     yield from _tried_steps(link, tried, carriers(found_again(link), tried), chosen.switches)
-    chosen = with_carrier(tried, chosen, placed)
+    chosen = with_carrier(found_again(link), tried, chosen, placed)
     return SteeredRig(chosen) if any(name != control for name, control in chosen.turning.items()) else None
 
 

@@ -255,6 +255,17 @@ def test_motion_has_a_row_of_its_own(tmp_path):
     assert (parsed.action, parsed.keep_feet, parsed.points) == ("Walk*", True, 32)
 
 
+def test_a_rig_of_ones_own_has_a_row_of_its_own(tmp_path):
+    path = tmp_path / "pairs.csv"
+    path.write_text("source,target,output,command,rig,my_rig_bind\na.blend:Body,b.glb,out.glb,my-rig,metarig,yes\n")
+    (pair,) = read_manifest(path, {"points": "32", "weight_limit": "4"}, "match")
+    arguments = pair.arguments()
+    assert arguments[0] == "my-rig"
+    assert set(arguments[4:]) == {"--rig=metarig", "--my-rig-bind", "--points=32"}
+    parsed = make_parser().parse_args(arguments)
+    assert (parsed.rig, parsed.my_rig_bind, parsed.points) == ("metarig", True, 32)
+
+
 def test_json_has_options_for_all(tmp_path):
     path = tmp_path / "pairs.json"
     pairs = [{"source": "a.obj", "target": "b.obj", "map": "m.npz"}]

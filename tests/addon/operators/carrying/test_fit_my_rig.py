@@ -104,7 +104,9 @@ def test_it_is_bound_with_the_weights_of_the_source():
     assert fit(source="A", rig="Standard", target="B", my_rig_bind=True, my_rig_limit=0) == {"FINISHED"}
     made = bpy.data.objects["Standard B"]
     body = bpy.data.objects["B Body"]
-    assert made in [modifier.object for modifier in body.modifiers]
+    assert [modifier.object for modifier in body.modifiers if modifier.show_viewport] == [made]
+    assert body.parent == made
+    assert 'no longer moved by its own armature "B"' in bpy.context.scene.hiermatch_retarget.report.remarks
     true = renamed(at_rest_in(someone(), HANGING).rig)
     weights = weights_of(body)
     limbs = [name for name, origin in zip(true.names, true.origins, strict=True) if origin & {"forearm.L", "shin.R"}]

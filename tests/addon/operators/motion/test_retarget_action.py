@@ -272,3 +272,69 @@ def test_an_armature_in_edit_mode_and_an_action_of_others_are_refused():
     bpy.ops.object.mode_set(mode="EDIT")
     assert not carry.poll()
     bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.parametrize(
+    ("override", "said"), [(False, "is linked from another file"), (True, "is a library override")]
+)
+@pytest.mark.parametrize("operator", ["retarget_action", "retarget_pose"])
+def test_rigs_of_other_files_are_refused_and_stay_as_they_are(tmp_path, override, said, operator):
+    target = add_linked_person(tmp_path, "B", override=override)
+    source, _ = add_person("A")
+    add_action(source)
+    before = snapshot(target)
+    with pytest.raises(RuntimeError, match=f'"B" {said}'):
+        getattr(bpy.ops.hiermatch, operator)(source="A", target="B")
+    assert snapshot(target) == before
+    assert rename_refused("B", "are linked from another file")
+
+
+def test_a_linked_rig_may_be_the_source(tmp_path):
+    source = add_linked_person(tmp_path, "A", action="Wave")
+    target, _ = add_person("B", "renamed")
+    before = snapshot(source)
+    assert carry(source="A", target="B", action="Wave") == {"FINISHED"}
+    assert snapshot(source)[1:3] == before[1:3]
+    assert target.animation_data.action.name == "Wave B"
+    assert target.animation_data.action.library is None
+
+
+@pytest.mark.parametrize("which", ["A", "B"])
+def test_one_that_is_being_edited_is_named(which):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    bpy.context.view_layer.objects.active = bpy.data.objects[which]
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.view_layer.objects.active = bpy.data.objects["B" if which == "A" else "A"]
+    before = snapshot(target)
+    with pytest.raises(RuntimeError, match=f'The armature "{which}" is in Edit Mode'):
+        carry(source="A", target="B", action="Wave")
+    assert snapshot(target) == before
+    bpy.context.view_layer.objects.active = bpy.data.objects[which]
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def add_linked_person(folder, name, *, override=False, action=""):
+    """Put a person of another file into the scene, as a link or an override, and return its armature."""
+    armature, _ = add_person(name, "renamed" if name == "B" else "plain")
+    if action:
+        add_action(armature, action)
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "library.blend"))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    with bpy.data.libraries.load(str(folder / "library.blend"), link=True) as (there, here):
+        here.objects = list(there.objects)
+    for obj in here.objects:
+        bpy.context.scene.collection.objects.link(obj)
+    linked = next(obj for obj in here.objects if obj.type == "ARMATURE")
+    found = linked.override_create(remap_local_usages=True) if override else linked
+    bpy.context.view_layer.update()
+    return found
+
+
+def rename_refused(name, said):
+    """Whether the bones of a rig keep their names, with a sentence."""
+    before = list(bpy.data.objects[name].data.bones.keys())
+    with pytest.raises(RuntimeError, match=said):
+        bpy.ops.hiermatch.rename_bones(target=name, names="UNREAL")
+    return list(bpy.data.objects[name].data.bones.keys()) == before

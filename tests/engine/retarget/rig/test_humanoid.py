@@ -70,6 +70,71 @@ def test_another_axis_may_be_up(someone):
     assert humanoid_bones(skeleton, moving, lying @ UP) == humanoid_bones(tree, moving, UP)
 
 
+def test_wide_shoulders_on_short_legs(someone):
+    tree, names = someone.rig.skeleton, list(someone.rig.names)
+    low = tree.heads[:, 2].min()
+    middle = tree.heads[names.index("thigh.L"), 2]
+
+    def toon(places):
+        places = places * [1.0, 1.0, 1.0]
+        arms = np.abs(places[:, 0]) > np.abs(tree.heads[names.index("upper_arm.L"), 0]) - 1e-9
+        places[arms, 0] += np.sign(places[arms, 0]) * 0.2 * np.ptp(tree.heads[:, 2])
+        below = places[:, 2] < middle
+        places[below, 2] = middle - 0.45 * (middle - places[below, 2])
+        return places
+
+    skeleton = Skeleton(tree.parents, toon(tree.heads), toon(tree.tails))
+    assert (middle - skeleton.heads[:, 2].min()) / np.ptp(skeleton.tails[:, 2]) < 0.4
+    assert low < skeleton.heads[:, 2].min()
+    found = humanoid_bones(skeleton, np.ones(len(tree), bool), UP)
+    assert {"left_upper_arm", "right_lower_arm", "left_lower_leg"} <= wanted(found, someone.rig.origins)
+
+
+def test_legs_may_hang_on_a_root_on_the_ground(someone):
+    tree, names = someone.rig.skeleton, list(someone.rig.names)
+    ground = np.array([[0.0, 0, tree.heads[:, 2].min()]])
+    parents = np.where(tree.parents < 0, len(tree), tree.parents)
+    for side in "LR":
+        parents[names.index(f"thigh.{side}")] = len(tree)
+    skeleton = Skeleton(
+        np.append(parents, -1), np.concatenate([tree.heads, ground]), np.concatenate([tree.tails, ground + 0.01])
+    )
+    moving = np.append(np.ones(len(tree), bool), False)
+    found = humanoid_bones(skeleton, moving, UP)
+    assert {"hips", "left_upper_leg", "right_hand"} <= wanted(found, someone.rig.origins)
+
+
+@pytest.mark.parametrize("lean", [30.0, 60.0])
+def test_what_leans_far_forward_is_another_creature(someone, lean):
+    tree, names = someone.rig.skeleton, list(someone.rig.names)
+    legs = [
+        bone
+        for bone in range(len(tree))
+        if any(names[above].startswith("thigh") for above in [bone, *ancestors(tree, bone)])
+    ]
+    turn, pivot = rotation(np.array([1.0, 0, 0]), np.radians(lean)), tree.heads[names.index("hips")]
+    ends = []
+    for places in (tree.heads, tree.tails):
+        turned = (places - pivot) @ turn.T + pivot
+        turned[legs] = places[legs]
+        ends.append(turned)
+    leaning = Skeleton(tree.parents, *ends)
+    if lean > 45.0:
+        with pytest.raises(RigError, match=r"leans by [56]\d degrees"):
+            humanoid_bones(leaning, np.ones(len(tree), bool), UP)
+    else:
+        assert "left_hand" in wanted(humanoid_bones(leaning, np.ones(len(tree), bool), UP), someone.rig.origins)
+
+
+def ancestors(tree, bone):
+    """All bones that a bone hangs on."""
+    found = []
+    while tree.parents[bone] >= 0:
+        bone = tree.parents[bone]
+        found.append(bone)
+    return found
+
+
 def test_an_animal_is_no_person():
     names, parents, heads, tails = creature_bones()
     with pytest.raises(RigError, match="open what its bones are"):
