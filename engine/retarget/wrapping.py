@@ -152,7 +152,9 @@ def wrap_steps(
         held[source.triangles[folded]] = False
     positions, folded = _smoothed(source, positions, folded)
     share = float(source.triangle_areas[folded].sum() / source.area)
-    return WrappedSurface(_united(parts.mesh, (positions * unit)[parts.welded]), held[parts.welded], share)
+    turns = growth * elastic.rotations(positions, _RADIUS)
+    placed = _united(parts.mesh, (positions * unit)[parts.welded], turns[parts.welded])
+    return WrappedSurface(placed, held[parts.welded], share)
 
 
 def kept_in_place(mesh: TriangleMesh, positions: Floats) -> Floats:
@@ -207,17 +209,20 @@ def _smoothed(mesh: TriangleMesh, positions: Floats, folded: Bools) -> tuple[Flo
     return positions, folded
 
 
-def _united(mesh: TriangleMesh, positions: Floats) -> Floats:
+def _united(mesh: TriangleMesh, positions: Floats, turns: Floats) -> Floats:
     """Bring vertices at one place of the mesh together again, (n, 3), unless they belong to different places by now.
 
     Such as both ends of an edge without length, or the corners of two shields one before the other; but not hands that
-    touched, and that the other surface holds apart.
+    touched, and that the other surface holds apart.  What little they were apart they stay, turned and scaled by turns
+    (n, 3, 3): an edge that loses its length takes the custom normals around it along.
     """
     size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
-    _, place = np.unique(np.round(mesh.vertices / (_COINCIDENT * size)), axis=0, return_inverse=True)
+    cells = np.round(mesh.vertices / (_COINCIDENT * size))
+    _, first, place = np.unique(cells, axis=0, return_index=True, return_inverse=True)
     place = place.ravel()
     counts = np.bincount(place)
-    middle = group_means(place, positions, len(counts))
+    middle, center = (group_means(place, points, len(counts)) for points in (positions, mesh.vertices))
+    apart = np.einsum("nij,nj->ni", turns[first[place]], mesh.vertices - center[place])
     away = np.zeros(len(counts))
     np.maximum.at(away, place, np.linalg.norm(positions - middle[place], axis=1))
     one, other = mesh.edges.T
@@ -227,7 +232,7 @@ def _united(mesh: TriangleMesh, positions: Floats) -> Floats:
     near = np.full(len(counts), np.inf)
     np.minimum.at(near, place, around)
     together = ((counts > 1) & (away <= near))[place]
-    return np.where(together[:, None], middle[place], positions)
+    return np.where(together[:, None], middle[place] + apart, positions)
 
 
 def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> Bools:

@@ -110,10 +110,24 @@ def test_an_edge_without_length_stays_closed():
     rest = TriangleMesh(ball, triangles)
     moved = 2 * ball
     moved[other] += [0.1 * apart, 0, 0]
-    together = _united(rest, moved)
+    turns = np.tile(2 * np.eye(3), (len(ball), 1, 1))
+    together = _united(rest, moved, turns)
     np.testing.assert_array_equal(together[one], together[other])
     moved[other] += [50 * apart, 0, 0]  # another place by now
-    np.testing.assert_array_equal(_united(rest, moved), moved)
+    np.testing.assert_array_equal(_united(rest, moved, turns), moved)
+
+
+def test_an_edge_of_next_to_no_length_keeps_it():
+    """Without any, its triangles have no normal, and custom normals around it cannot be told from it."""
+    ball, triangles = irregular(*icosphere(5), rounds=1)
+    one, other = triangles[0][:2]
+    tiny = np.array([2e-7, -1e-7, 3e-7])
+    ball[other] = ball[one] + tiny
+    mesh = TriangleMesh(ball, triangles)
+    target = TriangleMesh(2 * ball @ TURN.T, triangles)
+    there, back = SurfaceMap.identity(target), SurfaceMap.identity(mesh)
+    wrapped = run(wrap_steps(mesh, target, there, back)).positions
+    np.testing.assert_allclose(wrapped[other] - wrapped[one], 2 * TURN @ tiny, rtol=0, atol=2e-8)
 
 
 def test_parts_that_the_other_lacks_move_with_what_is_around_them():
