@@ -35,7 +35,7 @@ from .retarget.rig.skeleton import Skeleton
 from .retarget.rig.standing_rig import carry_standing_rig, carry_standing_rig_steps, moved_into, standing_share
 from .retarget.values.attribute_transfer import CarriedValues, Crossing, Domain, carry_values_steps
 from .retarget.values.corner_transfer import carry_normals, turned_normals
-from .retarget.values.deformation_gradients import LocalFrames, bone_frames, surface_frames
+from .retarget.values.deformation_gradients import LocalFrames, bone_frames, evened_frames, surface_frames
 from .retarget.values.face_correspondence import FacePlaces
 from .retarget.values.face_transfer import carry_face_values
 from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
@@ -133,6 +133,7 @@ __all__ = [
     "densify_steps",
     "distances_to_vertices_steps",
     "distortion_after",
+    "evened_frames",
     "find_symmetry",
     "find_symmetry_steps",
     "fit_rig",

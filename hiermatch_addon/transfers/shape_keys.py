@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import bone_frames, called_steps, carry_offsets_steps, surface_frames, within
+from ...engine import bone_frames, called_steps, carry_offsets_steps, evened_frames, surface_frames, within
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
@@ -107,8 +107,10 @@ class ShapeKeyTransfer:
         pair, rig = passage.pair, passage.rig
         images = pair.source_to_target.positions if rig is None else rig.registered
         frames = yield from within(called_steps(surface_frames, pair.source, images), 0.0, 0.1)
-        if rig is not None:
-            frames = yield from within(called_steps(bone_frames, rig, frames), 0.1, 0.2)
+        turned = (
+            called_steps(evened_frames, pair.source, frames) if rig is None else called_steps(bone_frames, rig, frames)
+        )
+        frames = yield from within(turned, 0.1, 0.2)
         steps = carry_offsets_steps(
             self._offsets,
             frames,
