@@ -41,7 +41,6 @@ WRONG = 0.03
 NEAR = 3.0  # error that confidence promises
 BINS = 0.0, 0.05, 0.5, 0.9, 0.99, 1.0
 PEOPLE, ANIMALS = ("michael", "tr_reg"), ("cat", "dog", "wolf")
-WIDTH, HEIGHT, LEFT, BOTTOM, MARGIN = 560, 360, 60, 50, 20
 NAN = float("nan")
 
 
@@ -165,43 +164,27 @@ def report(rows):
     return centre, spread
 
 
-def plot(rows, fitted):
-    """Draw the matches by likeness, right above and wrong below, and both functions, as an SVG."""
+def plot(rows, fitted, path):
+    """Draw the matches by likeness, right above and wrong below, and both functions."""
+    import matplotlib as mpl
+
+    mpl.use("svg")
+    from matplotlib import pyplot as plt
+
     likeness = np.array([r.likeness for r in rows])
+    right = np.array([r.right for r in rows], float)
     low, high = np.floor(likeness.min() - 1), np.ceil(min(likeness.max(), 32) + 1)
-
-    def x(value):
-        return LEFT + (min(value, high) - low) / (high - low) * (WIDTH - LEFT - MARGIN)
-
-    def y(value):
-        return HEIGHT - BOTTOM - value * (HEIGHT - BOTTOM - 2 * MARGIN)
-
-    def text(place, words, extra=""):
-        return f'<text x="{place[0]:.1f}" y="{place[1]:.1f}" {extra}>{words}</text>'
-
-    size = f'width="{WIDTH}" height="{HEIGHT}"'
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif" font-size="13">',
-        '<rect width="100%" height="100%" fill="white"/>',
-        text(((LEFT + WIDTH) / 2, HEIGHT - 12), "likeness", 'text-anchor="middle"'),
-        text((0, 0), "right matches", f'text-anchor="middle" transform="translate(18 {HEIGHT / 2}) rotate(-90)"'),
-    ]
-    for share in (0.0, 0.25, 0.5, 0.75, 1.0):
-        parts.append(f'<path d="M{LEFT} {y(share):.1f}H{WIDTH - MARGIN}" stroke="#dddddd"/>')
-        parts.append(text((LEFT - 8, y(share) + 4), f"{share:g}", 'text-anchor="end"'))
-    ticks = np.arange(5 * np.ceil(low / 5), high, 5)
-    parts += [text((x(tick), HEIGHT - BOTTOM + 20), f"{tick:g}", 'text-anchor="middle"') for tick in ticks]
+    figure, axes = plt.subplots(figsize=(7.2, 4.2), layout="constrained")
     values = np.linspace(low, high, 200)
-    curves = ("fitted", "#d55e00", fitted), ("today", "#0072b2", constants_of_today())
-    for number, (name, colour, (centre, spread)) in enumerate(curves):
-        places = " ".join(f"{x(v):.1f},{y(expit((v - centre) / spread)):.1f}" for v in values)
-        parts.append(f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="2"/>')
-        parts.append(text((WIDTH - MARGIN - 8, y(0.45) + 20 * number), name, f'text-anchor="end" fill="{colour}"'))
-    for number, row in enumerate(rows):
-        beside = (number % 5 - 2) * 2.5  # so that equal ones are seen
-        place = f'cx="{x(row.likeness):.1f}" cy="{y(float(row.right)) + beside:.1f}"'
-        parts.append(f'<circle {place} r="4" fill="{"#009e73" if row.right else "#cc3311"}" fill-opacity="0.6"/>')
-    return "\n".join([*parts, "</svg>", ""])
+    for name, colour, (centre, spread) in (("fitted", "#d55e00", fitted), ("today", "#0072b2", constants_of_today())):
+        axes.plot(values, expit((values - centre) / spread), color=colour, linewidth=2, label=name)
+    beside = (np.arange(len(rows)) % 5 - 2) * 0.008  # so that equal ones are seen
+    colours = np.where(right > 0, "#009e73", "#cc3311")
+    axes.scatter(np.minimum(likeness, high), right + beside, c=colours, alpha=0.6)
+    axes.set(xlabel="likeness", ylabel="right matches", xlim=(low, high))
+    axes.grid(axis="y", color="#dddddd")
+    axes.legend()
+    figure.savefig(path, metadata={"Date": None})
 
 
 def read(path):
@@ -243,7 +226,7 @@ def main():
                 kind = "right" if row.right else "WRONG"
                 print(f"{first} -> {second}: likeness {row.likeness:.1f}, {kind}, {row.seconds:.0f} s", flush=True)
     fitted = report(rows)
-    (options.output / "calibration.svg").write_text(plot(rows, fitted))
+    plot(rows, fitted, options.output / "calibration.svg")
     print(f"Written: {options.output / 'calibration.svg'}")
 
 
