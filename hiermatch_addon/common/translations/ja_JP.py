@@ -2329,7 +2329,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Matching the surface to itself": "表面を自身とマッチング中",
     "Comparing symmetries": "対称性を比較中",
     "Simplifying": "単純化中",
-    "Lowering the largest difference": "最大の差を減らしています",
     "Fitting the rig": "リグを合わせています",
     "The {0} had {1} duplicate vertex along open seams: it was welded for matching.": (
         "{0}には開いた継ぎ目に沿って重複頂点が{1}個ありました。マッチングのために結合しました。"

@@ -1888,7 +1888,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Matching the surface to itself": "正在将表面与自身匹配",
     "Comparing symmetries": "正在比较对称性",
     "Simplifying": "正在简化",
-    "Lowering the largest difference": "正在减小最大差异",
     "Fitting the rig": "正在适配绑定",
     "The {0} had {1} duplicate vertex along open seams: it was welded for matching.": (
         "{0}在开放的接缝处有 {1} 个重复顶点：已为匹配将其焊接。"
