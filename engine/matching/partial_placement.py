@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from ..dense.extremity_search import beam_matchings
 from ..dense.lifted_matchings import squared_differences
+from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import signed_areas
 from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps
@@ -99,28 +101,17 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
     carrier = _Carrier(whole, part)
     found: list[_Matching] = []
     for number, unit in enumerate(np.sqrt(_SHARES)):
-        different = _different(carrier.matchings(unit), distances, _ALIKE * unit)
-        found += [carrier.carried(images, unit) for images in different]
+        differ = partial(_are_apart, distances, _ALIKE * unit)
+        found += [carrier.carried(images, unit) for images in best_distinct(carrier.matchings(unit), differ, _CARRIED)]
         yield Progress((number + 1) / len(_SHARES), "Comparing maps")
     found.sort(key=lambda matching: matching.misfit)
-    chosen: list[_Matching] = []
-    for matching in found:
-        if len(chosen) == most:
-            break
-        if all(distances[matching.landings, other.landings].mean() > _APART for other in chosen):
-            chosen.append(matching)
+    chosen = best_distinct(found, lambda one, other: _are_apart(distances, _APART, one.landings, other.landings), most)
     return [PartPlacement(matching.misfit, carrier.everywhere(matching)) for matching in chosen]
 
 
-def _different(matchings: Ints, distances: Floats, apart: float) -> list[Ints]:
-    """Leave out matchings (r, m) that are nearly the same as an earlier one, and all beyond `_CARRIED`."""
-    kept: list[Ints] = []
-    for images in matchings:
-        if len(kept) == _CARRIED:
-            break
-        if all(distances[images, other].mean() > apart for other in kept):
-            kept.append(images)
-    return kept
+def _are_apart(distances: Floats, least: float, images: Ints, other: Ints) -> bool:
+    """Say whether two matchings (m,) take points farther than that from each other, in the mean."""
+    return bool(distances[images, other].mean() > least)
 
 
 class _Carrier:
