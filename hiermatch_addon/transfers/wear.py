@@ -82,6 +82,9 @@ _MENTIONED = 0.01
 _UNSURE, _MOST_UNSURE = 0.35, 0.1
 """Confidence of the map from which on the place of an item is believed; and if more of it is not, that is told."""
 
+_MOST_BARE = 0.1
+"""If more of an item has no skin below it any more, that is told."""
+
 _KEY = "Fit to "
 
 _FIT_NAMES = "Distance to Skin", "Pushed", "Uncertain"
@@ -548,6 +551,9 @@ def _doubt(name: str, fitted: FittedItem) -> str:
     unsure = float((fitted.confidence < _UNSURE).mean())
     if unsure > _MOST_UNSURE:
         parts.append(f"the match is uncertain below {unsure:.0%} of it")
+    bare = float(fitted.bare.mean())
+    if bare > _MOST_BARE:
+        parts.append(f"the body ends below {bare:.0%} of it")
     return f'"{name}" should be checked: {", ".join(parts)}.' if parts else ""
 
 

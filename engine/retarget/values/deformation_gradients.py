@@ -21,11 +21,11 @@ from ..rig.fitted_rig import FittedRig
 _RADIUS = 0.1
 """Over what distance Jacobians are averaged, in sqrt(area): about the size of a face, which turns as a whole."""
 
-_WIDE, _ALIKE = 0.2, 0.3
+_WIDE, _ALIKE = 0.2, 0.1
 """Over what distance, in sqrt(area), rotations are evened out, and by how much (as the norm of the difference of the
-matrices, about 12 degrees) they may differ: a head that is built otherwise turns a cheek by three degrees and a brow
-by as much the other way, which is no motion, while an elbow bends by far more.  Errors of keys on three heads of
-another build were 0.056, 0.061 and 0.072 without, and are 0.047, 0.050 and 0.062."""
+matrices, about 4 degrees) they may differ: a head that is built otherwise turns a cheek by three degrees and a brow by
+as much the other way, which is no motion.  Errors of keys on three heads of another build were 0.056, 0.061 and 0.072
+without, and are 0.047, 0.050 and 0.062; with 0.3 they are the same, but those of a walking body grow by a third."""
 
 _MOST_ROTATIONS = 64
 """How many rotations at most stand for all others while they are evened out."""

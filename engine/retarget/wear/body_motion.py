@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
@@ -83,14 +83,30 @@ class Motion:
 
 
 @dataclass(frozen=True, eq=False)
+class Carriers:
+    """What carries points: at each of some levels of places, which points (k',), and the shares of places (k', p).
+
+    Attributes
+    ----------
+    levels : tuple of (int, (k',) array of int, (k', p) csr_array of float)
+        The number of the level, the points, and the shares, whose rows sum to one.
+    away : (k, 3) array of float
+        From the mean of its places to each point.
+    places : (k, n) csr_array of float
+        The shares of the vertices of the body.
+    """
+
+    levels: tuple[tuple[int, Ints, csr_array], ...]
+    away: Floats
+    places: csr_array
+
+
+@dataclass(frozen=True, eq=False)
 class _Places:
     """Places on the skin (p, ...), so far apart; which vertices each stands for is a matrix (p, n) of shares."""
 
     spacing: float
     positions: Floats
-    images: Floats
-    rotations: Floats
-    scales: Floats
     normals: Floats
     areas: Floats
     bones: Floats
@@ -103,18 +119,101 @@ class _Places:
         areas = np.maximum(self.areas, 1e-9 * self.areas.mean())
         totals = np.bincount(number, areas, count).astype(np.float64)
         mean = csr_array((areas / totals[number], (number, np.arange(len(number)))), shape=(count, len(number)))
-        turned = mean @ (self.rotations * self.scales[:, None, None]).reshape(-1, 9)
         return _Places(
             2 * self.spacing,
             mean @ self.positions,
-            mean @ self.images,
-            nearest_rotations(turned.reshape(-1, 3, 3)),
-            mean @ self.scales,
             unit_vectors(mean @ self.normals),
             totals,
             mean @ self.bones,
             csr_array(mean @ self.shares),
         )
+
+
+class BodySkin:
+    """The skin of a body as what is around it sees it: places on it, ever fewer.
+
+    Parameters
+    ----------
+    body : TriangleMesh
+        The body.
+    bones : (n, b) csr_array of float, optional
+        How much each of some bones moves each vertex.
+    """
+
+    def __init__(self, body: TriangleMesh, bones: csr_array | None = None) -> None:
+        self.body = body
+        self.search = ClosestPoints(body)
+        self.size = float(np.sqrt(body.area))
+        self._has_bones = bones is not None
+        used = np.flatnonzero(body.vertex_areas > 0)
+        n = body.vertex_count
+        known = np.zeros((n, 1)) if bones is None else bones.toarray()
+        first = _Places(
+            float(np.sqrt(body.area / max(len(used), 1))),
+            body.vertices[used],
+            body.vertex_normals[used],
+            body.vertex_areas[used],
+            known[used],
+            csr_array((np.ones(len(used)), (np.arange(len(used)), used)), shape=(len(used), n)),
+        )
+        self.levels = [first]
+        while (coarser := _coarser(self.levels[-1])) is not None:
+            self.levels.append(coarser)
+        self._trees = [cKDTree(level.positions, balanced_tree=False, compact_nodes=False) for level in self.levels]
+
+    def carriers(self, points: Floats, distances: Floats, bones: csr_array | None) -> Carriers:
+        """Find what carries points.
+
+        Parameters
+        ----------
+        points : (k, 3) array of float
+            Points around the body.
+        distances : (k,) array of float
+            How wide each looks around: its distance from the skin, or more.
+        bones : (k, b) csr_array of float, optional
+            How much the same bones move each point.
+        """
+        width = np.maximum(_WIDTH * distances, _LEAST_WIDTH * self.size)
+        spacings = np.array([level.spacing for level in self.levels])
+        numbers = (np.searchsorted(spacings, width / 2, side="right") - 1).clip(min=0)
+        away, levels, places = np.zeros((len(points), 3)), [], [csr_array((0, self.body.vertex_count))]
+        for number in np.unique(numbers):
+            chosen = np.flatnonzero(numbers == number)
+            shares = []
+            for start in range(0, len(chosen), _CHUNK):
+                part = chosen[start : start + _CHUNK]
+                known = bones[part].toarray() if bones is not None and self._has_bones else None
+                shares.append(self._shares(points[part], width[part], bones=known, number=int(number)))
+            joined = csr_array(vstack(shares))
+            level = self.levels[number]
+            away[chosen] = points[chosen] - joined @ level.positions
+            levels.append((int(number), chosen, joined))
+            places.append(csr_array(joined @ level.shares))
+        order = np.argsort(np.concatenate([np.empty(0, np.int64), *(rows for _, rows, _ in levels)]), kind="stable")
+        return Carriers(tuple(levels), away, csr_array(csr_array(vstack(places))[order]))
+
+    def _shares(self, points: Floats, width: Floats, *, bones: Floats | None, number: int) -> csr_array:
+        """Find the places of a level that carry some points, and their shares."""
+        level, tree = self.levels[number], self._trees[number]
+        pool = min(_POOL, len(level.positions))
+        count = min(_NEIGHBOURS, pool)
+        distances, near = (found.reshape(-1, pool) for found in tree.query(points, pool))
+        away = points[:, None] - level.positions[near]
+        cost = np.ones_like(distances)
+        if bones is not None:
+            total = np.minimum(bones.sum(axis=1), level.bones[near].sum(axis=2).max(axis=1))
+            same = np.minimum(bones[:, None], level.bones[near]).sum(axis=2)
+            cost += _OTHER_LIMB * (total[:, None] - same).clip(0, 1)
+        front = np.einsum("kpi,kpi->kp", away, level.normals[near]) / np.maximum(distances, _TINY)
+        cost += _BEHIND * (1 - front.clip(0, 1)) * (distances > _TOUCHING * self.size)
+        cost *= distances
+        best = np.argsort(cost, axis=1, kind="stable")[:, :count]
+        near, cost = np.take_along_axis(near, best, 1), np.take_along_axis(cost, best, 1)
+        weights = level.areas[near] * np.exp(-(cost**2 - cost[:, :1] ** 2) / (2 * width[:, None] ** 2))
+        weights = np.where(weights.sum(axis=1, keepdims=True) > 0, weights, 1.0)
+        weights /= weights.sum(axis=1, keepdims=True)
+        starts = np.arange(0, near.size + 1, count)
+        return csr_array((weights.ravel(), near.ravel(), starts), shape=(len(points), len(level.positions)))
 
 
 class BodyMotion:
@@ -128,44 +227,27 @@ class BodyMotion:
 
     Parameters
     ----------
-    body : TriangleMesh
+    skin : BodySkin
         The body, before.
     images : (n, 3) array of float
         Where its vertices come to be.
-    bones : (n, b) csr_array of float, optional
-        How much each of some bones moves each vertex.
     """
 
-    def __init__(self, body: TriangleMesh, images: Floats, bones: csr_array | None = None) -> None:
+    def __init__(self, skin: BodySkin, images: Floats) -> None:
+        body = skin.body
         turning = surface_frames(body, images, radius=_TURN_RADIUS)
         growing = surface_frames(body, images, radius=_SCALE_RADIUS)
-        self.body, self.images = body, images
-        self.skin = ClosestPoints(body)
-        self.bones = bones
-        self._size = float(np.sqrt(body.area))
-        used = np.flatnonzero(body.vertex_areas > 0)
-        n = body.vertex_count
-        known = np.zeros((n, 1)) if bones is None else bones.toarray()
-        first = _Places(
-            float(np.sqrt(body.area / max(len(used), 1))),
-            body.vertices[used],
-            images[used],
-            turning.rotations[used],
-            growing.scales[used],
-            body.vertex_normals[used],
-            body.vertex_areas[used],
-            known[used],
-            csr_array((np.ones(len(used)), (np.arange(len(used)), used)), shape=(len(used), n)),
-        )
-        self._levels = [first]
-        while (coarser := _coarser(self._levels[-1])) is not None:
-            self._levels.append(coarser)
-        self._trees = [cKDTree(level.positions, balanced_tree=False, compact_nodes=False) for level in self._levels]
+        self._skin = skin
+        # Of each level: where its places come to be, how they turn and grow, and both in one, (p, 3), (p, 3, 3), (p,).
+        self._images = [level.shares @ images for level in skin.levels]
+        self._scales = [level.shares @ growing.scales for level in skin.levels]
+        grown = (turning.rotations * growing.scales[:, None, None]).reshape(-1, 9)
+        self._turned = [level.shares @ grown for level in skin.levels]
 
     @property
     def overall(self) -> float:
         """How many times as long lengths become on the whole."""
-        return float(np.average(self._levels[0].scales, weights=self._levels[0].areas))
+        return float(np.average(self._scales[0], weights=self._skin.levels[0].areas))
 
     def growth_around(self, points: Floats) -> float:
         """Find how many times as far apart the skin around some points comes to be.
@@ -178,13 +260,13 @@ class BodyMotion:
         points : (k, 3) array of float
             Points around the body before, of one rigid piece.
         """
-        radius = _PIECE_RADIUS * self._size
-        number = int(np.searchsorted([level.spacing for level in self._levels], radius / 2, side="right")) - 1
-        level = self._levels[max(number, 0)]
+        radius, levels = _PIECE_RADIUS * self._skin.size, self._skin.levels
+        number = max(int(np.searchsorted([level.spacing for level in levels], radius / 2, side="right")) - 1, 0)
+        level = levels[number]
         away = cKDTree(points).query(level.positions)[0]
         near = np.argsort(away, kind="stable")[:_MOST_PLACES]
         closeness = level.areas[near] * np.exp(-(away[near] ** 2 - away[near[0]] ** 2) / (2 * radius**2))
-        before, after = pdist(level.positions[near]), pdist(level.images[near])
+        before, after = pdist(level.positions[near]), pdist(self._images[number][near])
         one, other = np.triu_indices(len(near), 1)
         weights = closeness[one] * closeness[other] * (before > 0)
         if not weights.sum() > 0:
@@ -194,74 +276,16 @@ class BodyMotion:
         middle = np.searchsorted(np.cumsum(weights[order]), weights.sum() / 2)
         return float(ratios[order][min(int(middle), len(order) - 1)])
 
-    def move(self, points: Floats, distances: Floats, bones: csr_array | None) -> Motion:
-        """Move points along.
-
-        Parameters
-        ----------
-        points : (k, 3) array of float
-            Points around the body before.
-        distances : (k,) array of float
-            How wide each looks around: its distance from the skin, or more.
-        bones : (k, b) csr_array of float, optional
-            How much the same bones move each point.
-
-        Returns
-        -------
-        Motion
-            Where they go.
-        """
-        k = len(points)
-        width = np.maximum(_WIDTH * distances, _LEAST_WIDTH * self._size)
-        spacings = np.array([level.spacing for level in self._levels])
-        levels = (np.searchsorted(spacings, width / 2, side="right") - 1).clip(min=0)
-        result = Motion(np.empty((k, 3)), np.empty((k, 3, 3)), np.empty(k), csr_array((k, self.body.vertex_count)))
-        rows: list[Ints] = []
-        parts: list[csr_array] = []
-        for number in np.unique(levels):
-            chosen = np.flatnonzero(levels == number)
-            for start in range(0, len(chosen), _CHUNK):
-                part = chosen[start : start + _CHUNK]
-                known = None if bones is None or self.bones is None else bones[part].toarray()
-                parts.append(self._move(result, part, points[part], width[part], bones=known, number=int(number)))
-                rows.append(part)
-        if not rows:
-            return result
-        order = np.argsort(np.concatenate(rows), kind="stable")
-        return replace(result, places=csr_array(csr_array(vstack(parts))[order]))
-
-    def _move(
-        self, result: Motion, part: Ints, points: Floats, width: Floats, *, bones: Floats | None, number: int
-    ) -> csr_array:
-        """Move some points; return the shares of the vertices."""
-        level, tree = self._levels[number], self._trees[number]
-        pool = min(_POOL, len(level.positions))
-        count = min(_NEIGHBOURS, pool)
-        distances, near = (found.reshape(-1, pool) for found in tree.query(points, pool))
-        away = points[:, None] - level.positions[near]
-        cost = np.ones_like(distances)
-        if bones is not None:
-            total = np.minimum(bones.sum(axis=1), level.bones[near].sum(axis=2).max(axis=1))
-            same = np.minimum(bones[:, None], level.bones[near]).sum(axis=2)
-            cost += _OTHER_LIMB * (total[:, None] - same).clip(0, 1)
-        front = np.einsum("kpi,kpi->kp", away, level.normals[near]) / np.maximum(distances, _TINY)
-        cost += _BEHIND * (1 - front.clip(0, 1)) * (distances > _TOUCHING * self._size)
-        cost *= distances
-        best = np.argsort(cost, axis=1, kind="stable")[:, :count]
-        near, cost = np.take_along_axis(near, best, 1), np.take_along_axis(cost, best, 1)
-        away = np.take_along_axis(away, best[:, :, None], 1)
-        weights = level.areas[near] * np.exp(-(cost**2 - cost[:, :1] ** 2) / (2 * width[:, None] ** 2))
-        weights = np.where(weights.sum(axis=1, keepdims=True) > 0, weights, 1.0)
-        weights /= weights.sum(axis=1, keepdims=True)
-        turned = np.einsum("kp,kpij->kij", weights * level.scales[near], level.rotations[near])
-        rotations = nearest_rotations(turned)
-        scales = np.einsum("kp,kp->k", weights, level.scales[near])
-        moved = np.einsum("kij,kj->ki", rotations, np.einsum("kp,kpi->ki", weights, away))
-        result.positions[part] = np.einsum("kp,kpi->ki", weights, level.images[near]) + scales[:, None] * moved
-        result.rotations[part], result.scales[part] = rotations, scales
-        starts = np.arange(0, near.size + 1, count)
-        chosen = csr_array((weights.ravel(), near.ravel(), starts), shape=(len(part), len(level.positions)))
-        return csr_array(chosen @ level.shares)
+    def move(self, carriers: Carriers) -> Motion:
+        """Move points along with what carries them."""
+        k = len(carriers.away)
+        positions, turned, scales = np.empty((k, 3)), np.empty((k, 9)), np.empty(k)
+        for number, rows, shares in carriers.levels:
+            positions[rows] = shares @ self._images[number]
+            turned[rows], scales[rows] = shares @ self._turned[number], shares @ self._scales[number]
+        rotations = nearest_rotations(turned.reshape(-1, 3, 3))
+        positions += scales[:, None] * np.einsum("kij,kj->ki", rotations, carriers.away)
+        return Motion(positions, rotations, scales, carriers.places)
 
 
 def _coarser(places: _Places) -> _Places | None:

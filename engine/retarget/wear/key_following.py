@@ -9,14 +9,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
 from ...runtime.progress import Progress, Steps, within
-from .wearing import wear_steps
+from .wearing import DressedItem, dressed_steps, fitted_steps
 from .worn_item import WornItem
 
 _STILL = 0.001
@@ -69,21 +68,23 @@ def follow_keys_steps(
         )
     unit, count = float(np.sqrt(body.area)), len(offsets)
     found = [np.zeros((count, item.mesh.vertex_count, 3)) for item in items]
-    search = ClosestPoints(body)
-    below = [search.nearest(item.mesh.vertices) for item in items]
+    dressed = yield from within(dressed_steps(body, items, bones=bones), 0.0, 0.1)
+    search = dressed.skin.search
+    below = [search.nearest(one.item.mesh.vertices) for one in dressed.items]
     own = search.nearest(body.vertices)  # not the identity, which loose vertices have no place for
     same = SurfaceMap.from_barycentric(body, own.triangles, own.barycentric)
     for number, moved in enumerate(offsets):
-        yield Progress(number / count, "Following shape keys")
+        share = 0.1 + 0.9 * number / count
+        yield Progress(share, "Following shape keys")
         lengths = np.linalg.norm(moved, axis=1)
         under = [(place.barycentric * lengths[body.triangles[place.triangles]]).sum(axis=1) for place in below]
         reached = [one for one, most in enumerate(under) if most.max() > _STILL * unit]
         if not reached:
             continue
-        worn = [_left_alone(items[one], under[one] < _NOTHING * unit) for one in reached]
+        worn = tuple(_left_alone(dressed.items[one], under[one] < _NOTHING * unit) for one in reached)
         other = TriangleMesh(body.vertices + moved, body.triangles)
-        fitting = wear_steps(body, other, same, other.vertices, worn, bones=bones)
-        fitted = yield from within(fitting, number / count, (number + 1) / count, "Following shape keys")
+        fitting = fitted_steps(replace(dressed, items=worn), other, same, other.vertices)
+        fitted = yield from within(fitting, share, share + 0.9 / count, "Following shape keys")
         for one, result in zip(reached, fitted, strict=True):
             change = result.positions - items[one].mesh.vertices
             size = np.linalg.norm(change, axis=1)
@@ -92,6 +93,7 @@ def follow_keys_steps(
     return found
 
 
-def _left_alone(item: WornItem, still: Bools) -> WornItem:
+def _left_alone(worn: DressedItem, still: Bools) -> DressedItem:
     """Let some vertices (n,) not be pushed: where nothing moves below them, nothing new can poke through."""
-    return replace(item, left=still if item.left is None else item.left | still)
+    left = worn.item.left
+    return replace(worn, item=replace(worn.item, left=still if left is None else left | still))

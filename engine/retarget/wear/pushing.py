@@ -175,10 +175,10 @@ def pushed_out(
     sample_mass = samples @ (mass / np.maximum(shares, 1))
     tolerance = 1e-4 * unit
     through = 0.0
-    surface = Surface(mesh)
+    surface, above = Surface(mesh), [_Above(layer, samples.shape[0]) for layer in layers]
     for number in range(_ROUNDS):
         item, all_places = surface.moved(positions), number < _WITH_SAMPLES
-        rows, moves, counts = _needed(item, samples, sample_mass, layers, free=free, unit=unit, all_places=all_places)
+        rows, moves, counts = _needed(item, samples, sample_mass, above, free=free, unit=unit, all_places=all_places)
         if rows is None:
             through = 0.0
             break
@@ -200,7 +200,7 @@ def _needed(
     item: Surface,
     samples: csr_array,
     sample_mass: Floats,
-    layers: Sequence[Layer],
+    above: Sequence[_Above],
     *,
     free: Bools,
     unit: float,
@@ -212,10 +212,11 @@ def _needed(
     moves: list[Floats] = []
     weights: list[Floats] = []
     movable = np.asarray(samples @ free.astype(float)).ravel() > 0.5
-    for layer in layers:
+    for one in above:
+        layer = one.layer
         lying = np.flatnonzero(np.isfinite(layer.wanted) & movable)
         if all_places:
-            needed = _inside(layer, points[lying], lying)
+            needed = one.lacking(points[lying], lying)
             chosen = np.flatnonzero(needed.any(axis=1))
             at = lying[chosen]
             rows.append(csr_array(samples[at]))
@@ -231,17 +232,37 @@ def _needed(
     return csr_array(vstack(rows)), np.concatenate(moves), np.concatenate(weights)
 
 
-def _inside(layer: Layer, points: Floats, numbers: Ints) -> Floats:
-    """Find how far points (k, 3), samples of such numbers (k,), have to move out of the surface below, (k, 3).
+class _Above:
+    """Samples of an item above a layer, of which only those are looked at that may have come too near to it.
 
-    First counts the limb that each lay on, then any other, if between the two there is room.
+    A distance changes by no more than the sample moves, so that what had more room than this still has some.  Twice
+    as much is asked for, because a search along the surface may come to another fold.
     """
-    own, every = layer.surface.clearance(points, layer.starts[numbers]), layer.surface.clearance(points)
-    wanted = layer.wanted[numbers]
-    lacks = [np.where(found.known, (wanted - found.distances).clip(min=0), 0.0) for found in (own, every)]
-    left = own.distances + lacks[1] * np.einsum("ki,ki->k", own.normals, every.normals)
-    other = (lacks[1] > lacks[0]) & (left > 0)
-    return np.where(other[:, None], lacks[1][:, None] * every.normals, lacks[0][:, None] * own.normals)
+
+    def __init__(self, layer: Layer, count: int) -> None:
+        self.layer = layer
+        self._seen, self._room = np.zeros((count, 3)), np.full(count, -np.inf)
+
+    def lacking(self, points: Floats, numbers: Ints) -> Floats:
+        """Find how far points (k, 3), samples of such numbers (k,), have to move out of the layer, (k, 3).
+
+        First counts the limb that each lay on, then any other, if between the two there is room.
+        """
+        moves = np.zeros((len(points), 3))
+        moved = np.linalg.norm(points - self._seen[numbers], axis=1)
+        near = np.flatnonzero(2 * moved >= self._room[numbers])
+        if not len(near):
+            return moves
+        points, numbers = points[near], numbers[near]
+        surface, wanted = self.layer.surface, self.layer.wanted[numbers]
+        own, every = surface.clearance(points, self.layer.starts[numbers]), surface.clearance(points)
+        rooms = [np.where(found.known, found.distances - wanted, 0.0) for found in (own, every)]
+        self._seen[numbers], self._room[numbers] = points, np.minimum(*rooms)
+        lacks = [(-room).clip(min=0) for room in rooms]
+        left = own.distances + lacks[1] * np.einsum("ki,ki->k", own.normals, every.normals)
+        other = (lacks[1] > lacks[0]) & (left > 0)
+        moves[near] = np.where(other[:, None], lacks[1][:, None] * every.normals, lacks[0][:, None] * own.normals)
+        return moves
 
 
 def _poking(item: Surface, layer: Layer, free: Bools, unit: float) -> tuple[csr_array, Floats] | None:
@@ -251,7 +272,10 @@ def _poking(item: Surface, layer: Layer, free: Bools, unit: float) -> tuple[csr_
     centres = surface.mesh.vertices[surface.mesh.triangles].mean(axis=1)
     vertices = np.concatenate([surface.mesh.vertices, centres])
     normals = np.concatenate([surface.normals, surface.mesh.triangle_normals])
-    low, high = positions.min(axis=0) - reach, positions.max(axis=0) + reach
+    loose = positions[mesh.triangles[free[mesh.triangles].any(axis=1)]].reshape(-1, 3)  # what is fixed is not pushed
+    if not len(loose):
+        return None
+    low, high = loose.min(axis=0) - reach, loose.max(axis=0) + reach
     near = np.flatnonzero(((vertices > low) & (vertices < high)).all(axis=1))
     if not len(near):
         return None

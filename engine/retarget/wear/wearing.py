@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
-from ...geometry.laplacian import laplace_beltrami
+from ...geometry.laplacian import LaplaceBeltrami, laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
@@ -18,9 +18,9 @@ from ...registration.elastic import ElasticSurface
 from ...runtime.arrays import Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
-from ...runtime.progress import Progress, Steps
-from .body_motion import BodyMotion, Motion
-from .contact import Surface, surface_samples
+from ...runtime.progress import Progress, Steps, within
+from .body_motion import BodyMotion, BodySkin, Carriers, Motion
+from .contact import Clearance, Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
 from .rigid_pieces import placed_rigidly, rigid_pieces
 from .sewn_items import cut_open, sewn
@@ -50,8 +50,33 @@ _NOTHING = 5e-4
 _FASTENED = 0.02
 """How far from a rigid piece, in the same unit, cloth is that it is fastened to."""
 
+_AT_SKIN = 0.03
+"""Up to this distance from the skin, in the same unit, an item has skin below it, and so far beyond what it had it
+has none: about 4 cm on a human.  A boot reaches further below an ankle, no shirt stands off a thinner body as far."""
+
 _TIGHT, _LOOSE = 0.4, 2.5
 """What tight and loose items multiply the length by over which they smooth."""
+
+
+@dataclass(frozen=True, eq=False)
+class DressedItem:
+    """How a body wears an item: seams closed, and which vertex each was; what is below, and what carries it."""
+
+    item: WornItem
+    welded: Ints | None
+    below: Clearance
+    carriers: Carriers
+    pieces: Ints
+    laplace: LaplaceBeltrami
+
+
+@dataclass(frozen=True, eq=False)
+class DressedBody:
+    """A body with what it wears, which can be fitted to any number of others."""
+
+    skin: BodySkin
+    surface: Surface
+    items: tuple[DressedItem, ...]
 
 
 @dataclass
@@ -60,7 +85,7 @@ class _Work:
 
     item: WornItem
     motion: Motion
-    distances: Floats
+    below: Clearance
     pieces: Ints
     positions: Floats = field(default_factory=lambda: np.empty((0, 3)))
     pushed: Floats = field(default_factory=lambda: np.empty(0))
@@ -114,16 +139,46 @@ def wear_steps(
     """
     if images.shape != source.vertices.shape or len(source_to_target) != source.vertex_count:
         raise MeshError("The map belongs to other meshes than the bodies. Match them again.")
+    dressed = yield from within(dressed_steps(source, items, bones=bones), 0.0, 0.3)
+    return (yield from within(fitted_steps(dressed, target, source_to_target, images), 0.3, 1.0))
+
+
+def dressed_steps(
+    source: TriangleMesh, items: Sequence[WornItem], *, bones: csr_array | None = None
+) -> Steps[DressedBody]:
+    """Find how a body wears items, see `wear_steps`: all that does not depend on what it becomes."""
+    skin = BodySkin(source, bones)
+    surface, unit = Surface(source, skin.search), float(np.sqrt(source.area))
+    found = []
+    for number, given in enumerate(items):
+        yield Progress(number / len(items), "Moving items along")
+        item, welded = sewn(given)
+        below = surface.clearance(item.mesh.vertices)
+        reach = np.abs(below.distances) + 0.05 * unit * (item.fit == "LOOSE")
+        pieces = item.pieces
+        if pieces is None:
+            named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
+            pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
+        carriers = skin.carriers(item.mesh.vertices, reach, item.bones)
+        found.append(DressedItem(item, welded, below, carriers, pieces, laplace_beltrami(item.mesh)))
+    return DressedBody(skin, surface, tuple(found))
+
+
+def fitted_steps(
+    dressed: DressedBody, target: TriangleMesh, source_to_target: SurfaceMap, images: Floats
+) -> Steps[list[FittedItem]]:
+    """Fit what a body wears to another one, see `wear_steps`."""
     yield Progress(0.0, "Moving the skin")
-    motion = BodyMotion(source, images, bones)
-    unit, new_unit = float(np.sqrt(source.area)), motion.overall * float(np.sqrt(source.area))
-    skin_before, skin = Surface(source, motion.skin), Surface(target)
+    motion, unit = BodyMotion(dressed.skin, images), dressed.skin.size
+    new_unit = motion.overall * unit
+    skin_before, skin = dressed.surface, Surface(target)
     works: list[_Work] = []
-    count, closed = max(len(items), 1), [sewn(item) for item in items]
-    for number, (item, _) in enumerate(closed):
+    count = max(len(dressed.items), 1)
+    for number, one in enumerate(dressed.items):
         yield Progress(0.05 + 0.45 * number / count, "Moving items along")
-        works.append(_carried(item, motion, skin_before, unit))
-        _elastic(works[-1], unit)
+        moved = motion.move(one.carriers)
+        works.append(_Work(one.item, moved, one.below, one.pieces, moved.positions))
+        _elastic(works[-1], one.laplace, unit)
     for work in works:
         _place_pieces(work, works, motion, unit)
     order = sorted(range(len(works)), key=lambda number: (_height(works[number]), number))
@@ -140,34 +195,19 @@ def wear_steps(
             spacing=spacing,
         )
     yield Progress(0.95, "Measuring")
-    fitted = [_fitted(work, skin, source_to_target) for work in works]
-    return [cut_open(one, welded) for one, (_, welded) in zip(fitted, closed, strict=True)]
+    fitted = [_fitted(work, skin, source_to_target, (unit, new_unit)) for work in works]
+    return [cut_open(one, worn.welded) for one, worn in zip(fitted, dressed.items, strict=True)]
 
 
-def _carried(item: WornItem, motion: BodyMotion, skin: Surface, unit: float) -> _Work:
-    """Move an item with the skin."""
-    distances = skin.clearance(item.mesh.vertices).distances
-    reach = np.abs(distances)
-    if item.fit == "LOOSE":
-        reach = reach + 0.05 * unit
-    moved = motion.move(item.mesh.vertices, reach, item.bones)
-    pieces = item.pieces
-    if pieces is None:
-        named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
-        pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
-    return _Work(item, moved, distances, pieces, moved.positions)
-
-
-def _elastic(work: _Work, unit: float) -> None:
+def _elastic(work: _Work, laplace: LaplaceBeltrami, unit: float) -> None:
     """Let an item smooth out how the skin moved it."""
     item, moved = work.item, work.motion
-    length = _HOLD * unit + _HOLD_AWAY * np.maximum(work.distances, 0)
+    length = _HOLD * unit + _HOLD_AWAY * np.maximum(work.below.distances, 0)
     length *= {"TIGHT": _TIGHT, "LOOSE": _LOOSE}.get(item.fit, 1.0)
     if item.tightness is not None:
         length *= np.where(
             item.tightness > 0, _TIGHT ** item.tightness.clip(0, 1), _LOOSE ** (-item.tightness).clip(0, 1)
         )
-    laplace = laplace_beltrami(item.mesh)
     mass = np.where(laplace.mass > 0, laplace.mass, laplace.mass.mean())
     # The item at rest in the size that it has on the other body, which differs from place to place.
     smooth = symmetric_factor(diags_array(mass) + (2 * _HOLD * unit) ** 2 * laplace.stiffness)
@@ -208,7 +248,7 @@ def _place_pieces(work: _Work, works: Sequence[_Work], motion: BodyMotion, unit:
 
 def _height(work: _Work) -> float:
     """How far an item is from the skin where it lies on it."""
-    return float(np.quantile(work.distances, 0.25))
+    return float(np.quantile(work.below.distances, 0.25))
 
 
 def _push(
@@ -299,18 +339,22 @@ def _with_pieces(work: _Work, positions: Floats, layers: Sequence[Layer]) -> Flo
     return moved
 
 
-def _fitted(work: _Work, skin: Surface, source_to_target: SurfaceMap) -> FittedItem:
+def _fitted(work: _Work, skin: Surface, source_to_target: SurfaceMap, units: tuple[float, float]) -> FittedItem:
     """Put together what is known of an item."""
-    moved = work.motion
+    moved, below, found = work.motion, work.below, skin.clearance(work.positions)
+    apart = np.abs(below.distances)
+    # Beyond the rim of a hole there is no inside.
+    away = np.where(found.known, found.distances, np.abs(found.distances))
     return FittedItem(
         positions=work.positions,
         rotations=moved.rotations,
         scales=moved.scales,
         places=moved.places,
         pieces=work.pieces,
-        clearance_before=work.distances,
-        clearance=skin.clearance(work.positions).distances,
+        clearance_before=work.below.distances,
+        clearance=found.distances,
         pushed=work.pushed,
         confidence=moved.places @ source_to_target.confidence,
+        bare=below.known & (apart < _AT_SKIN * units[0]) & (away > moved.scales * apart + _AT_SKIN * units[1]),
         through=work.through,
     )

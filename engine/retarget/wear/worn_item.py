@@ -74,6 +74,8 @@ class FittedItem:
         How far each was pushed, so that nothing pokes through.
     confidence : (n,) array of float
         How far the map may be trusted that it was carried by, 0 to 1.
+    bare : (n,) array of bool
+        Which lay near the skin of the first body, and have none of the second below them, as boots on stumps.
     through : float
         What part of the item is still below what it should lie on, 0 to 1.
     """
@@ -87,6 +89,7 @@ class FittedItem:
     clearance: Floats
     pushed: Floats
     confidence: Floats
+    bare: Bools
     through: float = 0.0
 
     def __repr__(self) -> str:

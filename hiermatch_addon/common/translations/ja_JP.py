@@ -1564,6 +1564,7 @@ MESSAGES: Final[dict[str, str]] = {
     "pushed {0} of it out of what is below": "{0}を下のものの外へ押し出し",
     "what is below still shows through {0} of it": "下のものがまだ{0}で突き抜けています",
     "the match is uncertain below {0} of it": "その{0}の下でマッチングが不確かです",
+    "the body ends below {0} of it": "その{0}の下には体がありません",
     'Weights of {0} of "{1}" were mended for poses.': 'ポーズのために"{1}"の{0}のウェイトを直しました。',
     "1 item": "1個のアイテム",
     "{0} items": "{0}個のアイテム",

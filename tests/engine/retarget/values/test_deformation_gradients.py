@@ -93,7 +93,7 @@ def test_what_turns_alike_is_evened_out_and_a_joint_stays(mesh):
         """Error of noisy rotations on either side of a bend by this angle, before and after."""
         bent = mesh.vertices[:, 2] > 0
         turned = np.where(bent[:, None, None], rotation([1.0, 0, 0], angle) @ TURN, TURN)
-        noise = [rotation([0, 1.0, 0], 0.06 * np.sin(9 * x)) for x in mesh.vertices[:, 0]]
+        noise = [rotation([0, 1.0, 0], 0.03 * np.sin(9 * x)) for x in mesh.vertices[:, 0]]
         frames = LocalFrames(np.array(noise) @ turned, np.full(mesh.vertex_count, 3.0), 3.0)
         evened = evened_frames(mesh, frames)
         np.testing.assert_array_equal(evened.scales, frames.scales)

@@ -86,6 +86,29 @@ def test_nothing_pokes_through_where_the_body_has_grown_a_bump():
     assert not left.pushed.any()
 
 
+@pytest.mark.parametrize("closed", [True, False])
+def test_what_has_no_skin_below_it_any_more_is_told(closed):
+    # A long body, and one that ends halfway, in a stump or in a hole.
+    long = TriangleMesh(BODY.vertices * [0.3, 0.3, 1.0], BODY.triangles)
+    ends = long.vertices * [1.0, 1.0, 0.2] if closed else long.vertices
+    above = long.vertices[:, 2] > 0
+    short = TriangleMesh(np.where(above[:, None], long.vertices, ends), long.triangles)
+    if not closed:
+        short = short.submesh(above)[0]
+    boot = long.submesh(long.vertices[:, 2] < -0.3)[0]
+    boot, shirt = (
+        TriangleMesh(each.vertices + 0.02 * each.vertex_normals, each.triangles)
+        for each in (boot, long.submesh(long.vertices[:, 2] > 0.3)[0])
+    )
+    places = ClosestPoints(short).nearest(long.vertices)
+    there = SurfaceMap.from_barycentric(short, places.triangles, places.barycentric)
+    hanging, worn = run(wear_steps(long, short, there, long.vertices, [WornItem(boot), WornItem(shirt)]))
+    assert hanging.bare.mean() > 0.5
+    assert not worn.bare.any()
+    (kept,) = wear(long, long.vertices * [2.0, 1.5, 1.2], [WornItem(boot)])
+    assert not kept.bare.any()
+
+
 def test_a_margin_is_kept():
     (fitted,) = wear(BODY, BODY.vertices, [WornItem(SHIRT, margin=0.08)])
     assert fitted.clearance.min() > 0.07
