@@ -29,7 +29,8 @@ there are, after the second picture,
 
 With --my-rig a metarig of Rigify is put into the source, a person, by its joints, and fitted into the target;
 its control rig is generated, the target bound to it by automatic weights, and the action carried over to the controls.
-At last the bones of the source are renamed, and it must still move alike.  After the first picture there are
+At last the bones of the source are renamed, and it must still move alike.  The target should be one closed mesh, as
+Blender's automatic weights fail on loose pieces.  After the first picture there are
 
     2-standing.jpg      the metarig stands in the source
     3-fitted.jpg        and a copy in the target

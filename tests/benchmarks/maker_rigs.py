@@ -54,8 +54,8 @@ LIMBS = {
 }
 """What limbs are called."""
 
-LEGS = {"front": r"front_?(leg|shoulder|upper|lower).*", "back": r"back_?(leg|shoulder|upper|lower).*"}
-"""And the legs of animals, whose bones are only told apart by leg."""
+LEGS = {"front": r"(ik)?front_?(leg|shoulder|upper|lower).*|ff", "back": r"(ik)?back_?(leg|shoulder|upper|lower).*|ffb"}
+"""And the legs of animals with their feet, whose bones are only told apart by leg."""
 
 AFTER = {"upper_arm": "lower_arm", "lower_arm": "hand", "upper_leg": "lower_leg", "lower_leg": "foot"}
 FRAMES = 9

@@ -316,6 +316,8 @@ def _with_feet(
         points = limb.source_points(motion)
         touching = contacts_of(points, up, length, settings.rate)
         level, places = limb.target_points(levels)[0] @ body.ups[1], limb.target_points(posed)
+        # Each foot stands as high as at rest, also where a trunk that slopes otherwise takes fore feet up.
+        level += limb.target_points(body.target)[0] @ body.ups[1] - level[0]
         heights = body.scale * (points - limb.source_points(body.source)) @ up + level
         shifts = held_shifts(places, touching, heights, body.ups[1], settings.rate)
         lifts = grounded_lifts((places + shifts[:, None]) @ body.ups[1], heights, level, body.scale * length)
