@@ -18,6 +18,7 @@ __all__ = [
     "cut_leg",
     "cut_rear",
     "cut_tail",
+    "leave",
     "paint_left_side",
     "rest_positions",
     "to_scan",
@@ -64,13 +65,20 @@ def cut_leg(cat: bpy.types.Object) -> None:
     _cut(cat, (x > 0) & (y < 0) & (z < _LEG_BELOW))
 
 
-def _cut(cat: bpy.types.Object, lost: NDArray[np.bool_]) -> None:
-    """Delete vertices, and close the wound."""
+def leave(cat: bpy.types.Object, begin: float, end: float) -> None:
+    """Leave of a demo cat only what lies between two places on the Y axis of the rest pose, open where it was cut."""
+    along = rest_positions(cat)[:, 1]
+    _cut(cat, (along < begin) | (along > end), close=False)
+
+
+def _cut(cat: bpy.types.Object, lost: NDArray[np.bool_], *, close: bool = True) -> None:
+    """Delete vertices, and close the wound if wanted."""
     build = bmesh.new()
     build.from_mesh(cat.data)
     bmesh.ops.delete(build, geom=[vertex for vertex in build.verts if lost[vertex.index]], context="VERTS")
     bmesh.ops.delete(build, geom=[vertex for vertex in build.verts if not vertex.link_faces], context="VERTS")
-    bmesh.ops.holes_fill(build, edges=[edge for edge in build.edges if edge.is_boundary], sides=0)
+    if close:
+        bmesh.ops.holes_fill(build, edges=[edge for edge in build.edges if edge.is_boundary], sides=0)
     build.to_mesh(cat.data)
     build.free()
     cat.data.update()
