@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nearest rotations to many matrices at once: the orthogonal Procrustes problem in space."""
+"""Nearest similarity between points, and nearest rotations to many matrices at once: Procrustes problems in space."""
 
 from __future__ import annotations
 
@@ -30,6 +30,39 @@ _BLOCK = 4096
 """Matrices at once: what is computed from them stays in the cache."""
 
 _TINY = np.finfo(float).tiny
+
+
+def nearest_similarity(
+    before: Floats, after: Floats, weights: Floats | None = None, scale: float | None = None
+) -> tuple[Floats, Floats]:
+    """Find the similarity that takes points nearest to others, in the sense of least squares.
+
+    Parameters
+    ----------
+    before, after : (n, 3) array of float
+        The points, and where they should go.
+    weights : (n,) array of float, optional
+        How much each counts; alike by default.
+    scale : float, optional
+        How many times as large they become, if that is known.
+
+    Returns
+    -------
+    linear : (3, 3) array of float
+        A rotation, never a reflection, times the scale.
+    translation : (3,) array of float
+        What is added then.
+    """
+    shares = np.full(len(before), 1 / len(before)) if weights is None else weights / weights.sum()
+    here, there = shares @ before, shares @ after
+    start, end = before - here, after - there
+    left, stretch, right = np.linalg.svd((shares[:, None] * end).T @ start)
+    sign = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right)) or 1.0])
+    if scale is None:
+        spread = float(shares @ np.square(start).sum(axis=1))
+        scale = float(stretch @ sign) / spread if spread > 0 else 1.0
+    linear: Floats = scale * ((left * sign) @ right)
+    return linear, there - linear @ here
 
 
 def nearest_rotations(matrices: Floats) -> Floats:

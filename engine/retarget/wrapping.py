@@ -10,6 +10,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ..dense.components.similarity_field import Surroundings
 from ..geometry.laplacian import laplace_beltrami
+from ..geometry.procrustes import nearest_similarity
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.welded_parts import WeldedParts
 from ..mesh.surface_map import SurfaceMap
@@ -173,11 +174,8 @@ def kept_in_place(mesh: TriangleMesh, positions: Floats) -> Floats:
         The same shape: the distances of the vertices from where they were are least in the sense of least squares, by
         area.
     """
-    weights = mesh.vertex_areas / mesh.area
-    before, after = weights @ mesh.vertices, weights @ positions
-    left, _, right = np.linalg.svd((mesh.vertices - before).T @ (weights[:, None] * (positions - after)))
-    left[:, 2] *= np.sign(np.linalg.det(left @ right))
-    return (positions - after) @ (left @ right).T + before
+    linear, translation = nearest_similarity(positions, mesh.vertices, mesh.vertex_areas, scale=1.0)
+    return positions @ linear.T + translation
 
 
 def _smoothed(mesh: TriangleMesh, positions: Floats, folded: Bools) -> tuple[Floats, Bools]:

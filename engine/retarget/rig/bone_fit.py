@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
-from ...geometry.procrustes import nearest_rotations
+from ...geometry.procrustes import nearest_rotations, nearest_similarity
 from ...runtime.arrays import Floats, Ints
 from .skeleton import Skeleton
 
@@ -112,7 +112,7 @@ def fit_bones(
     axes = skeleton.tails[active] - skeleton.heads[active]
     system = _System(vertices, positions, areas, csr_array(weights[:, active]), joints, axes=axes)
     linear, translations = system.solved()
-    whole = _similarity(vertices, positions, areas)
+    whole = nearest_similarity(vertices, positions, areas)
     linear = np.concatenate([linear, whole[0][None]])[leaders]
     translations = np.concatenate([translations, whole[1][None]])[leaders]
     rotations, scales = _similarities(linear)
@@ -156,19 +156,6 @@ def _joints(skeleton: Skeleton, active: Ints, above: Ints) -> _Joints:
     return _Joints(child, above[child], skeleton.heads[active[child]])
 
 
-def _similarity(vertices: Floats, positions: Floats, areas: Floats) -> tuple[Floats, Floats]:
-    """Find the similarity that brings the body nearest to where it went: linear part (3, 3) and translation (3,)."""
-    share = areas / areas.sum()
-    here, there = share @ vertices, share @ positions
-    before, after = vertices - here, positions - there
-    covariance = (share[:, None] * after).T @ before
-    left, stretch, right = np.linalg.svd(covariance)
-    sign = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right)) or 1.0])
-    spread = max(float(share @ np.square(before).sum(axis=1)), np.finfo(float).tiny)
-    linear = (left * sign) @ right * float((stretch * sign).sum()) / spread
-    return linear, there - linear @ here
-
-
 class _System:
     """The least squares problem of k bones that move vertices."""
 
@@ -201,7 +188,7 @@ class _System:
             centre = share @ local[moved] / max(share.sum(), np.finfo(float).tiny)
             moments[bone] = share @ np.square(local[moved] - centre).sum(axis=1) / 3
             sharp = np.maximum(share * weight, np.finfo(float).tiny)
-            self._start[bone] = _similarity(local[moved], positions[moved], sharp)[0]
+            self._start[bone] = nearest_similarity(local[moved], positions[moved], sharp)[0]
         self._pull = np.zeros((count, 4))
         self._pull[:, :3] = _SIMILARITY * np.maximum(moments, _LEAST_MASS**2)[:, None]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...geometry.procrustes import nearest_similarity
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
@@ -78,14 +79,8 @@ def placed_rigidly(before: Floats, after: Floats, scale: float | None = None) ->
     (n, 3) array of float
         The points, moved by one rotation, scale and translation.
     """
-    start, end = before.mean(axis=0), after.mean(axis=0)
-    x, y = before - start, after - end
-    left, values, right = np.linalg.svd(y.T @ x)
-    sign = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
-    squares = float(np.square(x).sum())
-    if scale is None:
-        scale = float(values @ sign) / squares if squares > 0 else 1.0
-    return scale * x @ ((left * sign) @ right).T + end
+    linear, translation = nearest_similarity(before, after, scale=scale)
+    return before @ linear.T + translation
 
 
 def _solid_parts(parts: WeldedParts, unit: float) -> Bools:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of nearest rotations."""
+"""Tests of nearest rotations and similarities."""
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from engine.geometry import procrustes
-from engine.geometry.procrustes import nearest_rotations
+from engine.geometry.procrustes import nearest_rotations, nearest_similarity
 
 SMALL = 1e-12
 
@@ -95,3 +95,27 @@ def test_matrices_without_a_single_nearest_rotation_get_one_of_them(matrix, coun
 
 def test_none_have_none():
     assert nearest_rotations(np.empty((0, 3, 3))).shape == (0, 3, 3)
+
+
+@pytest.mark.parametrize("scale", [None, 1.7])
+def test_a_similarity_is_found_again_and_never_mirrors(rng, scale):
+    points, weights = rng.standard_normal((20, 3)), rng.random(20)
+    linear, shift = 1.7 * Rotation.from_rotvec([1.0, -2.0, 0.5]).as_matrix(), np.array([3.0, -1.0, 2.0])
+    found = nearest_similarity(points, points @ linear.T + shift, weights, scale)
+    np.testing.assert_allclose(found[0], linear, atol=1e-12)
+    np.testing.assert_allclose(found[1], shift, atol=1e-12)
+    mirrored, _ = nearest_similarity(points, points * [1, 1, -1], weights, scale)
+    assert np.linalg.det(mirrored) > 0
+
+
+def test_weights_say_which_points_count(rng):
+    points = rng.standard_normal((6, 3))
+    astray = np.where(np.arange(6)[:, None] == 5, 100.0, points)
+    linear, shift = nearest_similarity(points, astray, np.array([1.0, 1, 1, 1, 1, 0]))
+    np.testing.assert_allclose(points @ linear.T + shift, points, atol=1e-12)
+
+
+def test_points_at_one_place_are_moved_as_they_are():
+    linear, shift = nearest_similarity(np.ones((3, 3)), np.full((3, 3), 2.0))
+    assert np.linalg.det(linear) == pytest.approx(1)
+    np.testing.assert_allclose(np.ones(3) @ linear.T + shift, 2)
