@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from ..dense.extremity_search import beam_matchings
 from ..dense.lifted_matchings import squared_differences
+from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import signed_areas
 from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps
@@ -99,28 +100,17 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
     carrier = _Carrier(whole, part)
     found: list[_Matching] = []
     for number, unit in enumerate(np.sqrt(_SHARES)):
-        different = _different(carrier.matchings(unit), distances, _ALIKE * unit)
+        apart = _ALIKE * unit
+        different = best_distinct(
+            carrier.matchings(unit),
+            lambda images, other, apart=apart: bool(distances[images, other].mean() > apart),
+            _CARRIED,
+        )
         found += [carrier.carried(images, unit) for images in different]
         yield Progress((number + 1) / len(_SHARES), "Comparing maps")
     found.sort(key=lambda matching: matching.misfit)
-    chosen: list[_Matching] = []
-    for matching in found:
-        if len(chosen) == most:
-            break
-        if all(distances[matching.landings, other.landings].mean() > _APART for other in chosen):
-            chosen.append(matching)
+    chosen = best_distinct(found, lambda one, other: distances[one.landings, other.landings].mean() > _APART, most)
     return [PartPlacement(matching.misfit, carrier.everywhere(matching)) for matching in chosen]
-
-
-def _different(matchings: Ints, distances: Floats, apart: float) -> list[Ints]:
-    """Leave out matchings (r, m) that are nearly the same as an earlier one, and all beyond `_CARRIED`."""
-    kept: list[Ints] = []
-    for images in matchings:
-        if len(kept) == _CARRIED:
-            break
-        if all(distances[images, other].mean() > apart for other in kept):
-            kept.append(images)
-    return kept
 
 
 class _Carrier:

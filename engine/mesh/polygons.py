@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.arrays import Floats, Ints, ranges
+from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
 from .triangle_mesh import TriangleMesh, triangle_areas
 
@@ -143,27 +143,3 @@ class Polygons:
             if np.array_equal(self.corner_vertices[corners], mesh.triangles):
                 return replace(self, triangle_corners=corners)
         raise MeshError("The faces of the mesh are not those that the map was made for. Match again.")
-
-
-def from_faces(starts: Ints, corner_vertices: Ints) -> Polygons:
-    """Make polygons of faces alone: number their edges, and cut each into triangles that fan out from its first corner.
-
-    Parameters
-    ----------
-    starts : (f + 1,) array of int
-        First corner of each face, and at the end the number of corners, l.
-    corner_vertices : (l,) array of int
-        The vertex of each corner.
-    """
-    sizes = np.diff(starts)
-    following = np.arange(1, len(corner_vertices) + 1)
-    following[np.asarray(starts[1:]) - 1] = starts[:-1]
-    sides = np.sort(np.stack([corner_vertices, corner_vertices[following]], axis=1), axis=1)
-    count = int(corner_vertices.max(initial=0)) + 1
-    keys, corner_edges = np.unique(sides[:, 0] * count + sides[:, 1], return_inverse=True)
-    face = np.repeat(np.arange(len(sizes)), sizes - 2)
-    step = ranges(np.zeros_like(sizes), sizes - 2)
-    first = np.asarray(starts)[face]
-    triangles = np.stack([first, first + step + 1, first + step + 2], axis=1)
-    edges = np.stack(np.divmod(keys, count), axis=1)
-    return Polygons(starts, corner_vertices, edges, corner_edges.ravel(), triangles)

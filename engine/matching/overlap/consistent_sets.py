@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.best_distinct import best_distinct
 from ...runtime.arrays import Bools, Floats, Ints
 from .oriented_patches import OrientedPatches
 from .patch_candidates import Candidates
@@ -144,17 +145,16 @@ def _distinct(
 ) -> list[ConsistentSet]:
     """Keep the first of sets that are alike, so many at most."""
     between = patches[1].between
-    kept: list[ConsistentSet] = []
-    taken: list[Ints] = []
-    for each in sets:
-        images = np.full(len(patches[0]), -1)
-        images[candidates.first[each.members]] = candidates.second[each.members]
-        if not any(_are_alike(images, other, between) for other in taken):
-            kept.append(each)
-            taken.append(images)
-        if len(kept) == most:
-            break
-    return kept
+
+    def images(each: ConsistentSet) -> Ints:
+        """For each place of the first surface that of the second, or -1."""
+        found = np.full(len(patches[0]), -1)
+        found[candidates.first[each.members]] = candidates.second[each.members]
+        return found
+
+    ranked = ((each, images(each)) for each in sets)
+    chosen = best_distinct(ranked, lambda one, other: not _are_alike(one[1], other[1], between), most)
+    return [each for each, _ in chosen]
 
 
 def _are_alike(images: Ints, others: Ints, between: Floats) -> bool:

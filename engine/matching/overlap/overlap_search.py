@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...geometry.best_distinct import best_distinct
 from ...runtime.arrays import Floats
 from ...runtime.progress import Progress, Steps, within
 from .consistent_sets import PLANS, ConsistentSet, consistent_sets
@@ -158,13 +159,8 @@ def scored_fit(source: PartSurface, target: PartSurface, fit: Fit) -> ScoredFit:
 
 def _distinct(fits: Iterable[ScoredFit], most: int) -> list[ScoredFit]:
     """Keep the best of fits that are the same, so many at most, best first."""
-    kept: list[ScoredFit] = []
-    for each in sorted(fits, key=lambda fit: -fit.score):
-        if len(kept) == most:
-            break
-        if not any(_are_same(each.fit, other.fit) for other in kept):
-            kept.append(each)
-    return kept
+    ranked = sorted(fits, key=lambda fit: -fit.score)
+    return best_distinct(ranked, lambda one, other: not _are_same(one.fit, other.fit), most)
 
 
 def _are_same(first: Fit, second: Fit) -> bool:
