@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -100,17 +101,17 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
     carrier = _Carrier(whole, part)
     found: list[_Matching] = []
     for number, unit in enumerate(np.sqrt(_SHARES)):
-        apart = _ALIKE * unit
-        different = best_distinct(
-            carrier.matchings(unit),
-            lambda images, other, apart=apart: bool(distances[images, other].mean() > apart),
-            _CARRIED,
-        )
-        found += [carrier.carried(images, unit) for images in different]
+        differ = partial(_are_apart, distances, _ALIKE * unit)
+        found += [carrier.carried(images, unit) for images in best_distinct(carrier.matchings(unit), differ, _CARRIED)]
         yield Progress((number + 1) / len(_SHARES), "Comparing maps")
     found.sort(key=lambda matching: matching.misfit)
-    chosen = best_distinct(found, lambda one, other: distances[one.landings, other.landings].mean() > _APART, most)
+    chosen = best_distinct(found, lambda one, other: _are_apart(distances, _APART, one.landings, other.landings), most)
     return [PartPlacement(matching.misfit, carrier.everywhere(matching)) for matching in chosen]
+
+
+def _are_apart(distances: Floats, least: float, images: Ints, other: Ints) -> bool:
+    """Say whether two matchings (m,) take points farther than that from each other, in the mean."""
+    return bool(distances[images, other].mean() > least)
 
 
 class _Carrier:
