@@ -33,7 +33,7 @@ from tests.benchmarks.partial_pairs import cut_off
 from tests.benchmarks.smooth_bodies import pair_of_bodies
 from tests.bodies import fish
 from tests.messes import partly_turned, without_faces
-from tests.shapes import capsule_surface, permuted, rotation
+from tests.shapes import capsule_surface, creature, permuted, rotation
 
 WRONG = 0.03
 """Share of places that are brought to another part of the body from which on a pair counts as wrong."""
@@ -255,6 +255,17 @@ def _balls():
         yield made_case("balls", name, *((m.vertices, m.triangles) for m in meshes), rests)
 
 
+def _spiky():
+    """Small bodies, one of which has four spikes of a vertex each."""
+    for seed in (1, 2, 3):
+        random = np.random.default_rng(seed)
+        (*first, rest), (vertices, triangles, other_rest) = creature(0.0, 8), creature(0.7, 9, turn=0.4)
+        tips = random.choice(len(vertices), 4, replace=False)
+        spiked = vertices.copy()
+        spiked[tips] += random.uniform(0.5, 1.5, (4, 1)) * TriangleMesh(vertices, triangles).vertex_normals[tips]
+        yield made_case("spiky", f"body:with spikes {seed}", first, (spiked, triangles), (rest, other_rest))
+
+
 def bent_along(points, bend, towards):
     """Bend what lies along the x axis to an arc, by so many radians per unit of length."""
     across = points @ towards
@@ -276,7 +287,7 @@ def made_case(kind, name, first, second, rests):
     return Case(kind, name, bodies, meshes, tuple(np.arange(mesh.vertex_count) for mesh in meshes))
 
 
-MADE = {"long": _worms, "fish": _fish, "balls": _balls}
+MADE = {"long": _worms, "fish": _fish, "balls": _balls, "spiky": _spiky}
 """Kind -> what makes its pairs, without any data."""
 
 
