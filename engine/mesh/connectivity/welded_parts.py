@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from ...runtime.arrays import Bools, Floats, Ints
 from ..triangle_mesh import TriangleMesh
@@ -75,28 +74,6 @@ class WeldedParts:
         tail, head = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
         keys = np.unique(np.minimum(tail, head) * self.welded_count + np.maximum(tail, head))
         return np.stack(np.divmod(keys, self.welded_count), axis=1)
-
-    @cached_property
-    def edge_lengths(self) -> Floats:
-        """Length of each edge between welded vertices, (e,)."""
-        return np.linalg.norm(np.diff(self.positions[self.edges], axis=1)[:, 0], axis=1)
-
-    def distances(self, begin: Ints, limit: float = np.inf, usable: Bools | None = None) -> Floats:
-        """Return how far it is from the nearest of some welded vertices, along all edges or the usable ones (e,): (w,).
-
-        Infinite beyond the limit, and where no way leads.
-        """
-        edges, lengths = (
-            (self.edges, self.edge_lengths)
-            if usable is None
-            else (
-                self.edges[usable],
-                self.edge_lengths[usable],
-            )
-        )
-        graph = csr_array((lengths, edges.T), shape=(self.welded_count, self.welded_count))
-        found: Floats = dijkstra(graph, directed=False, indices=begin, min_only=True, limit=limit)
-        return found
 
     @property
     def part_count(self) -> int:

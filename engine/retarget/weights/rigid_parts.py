@@ -59,7 +59,7 @@ def with_rigid_parts(
         (np.ones(len(labels), np.int64), (labels, hit)), shape=(parts.part_count, source_parts.part_count)
     )
     counterpart = np.asarray(votes.argmax(axis=1)).ravel()
-    first, rigid = rigid_rows(source_weights, source_parts)
+    first, rigid = _rigid_rows(source_weights, source_parts)
     chosen = parts.small & rigid[counterpart]
     if source_parts.part_count > 1 and rigid.any():
         share, most = _shared_rows(votes, source_weights[first], rigid)
@@ -107,7 +107,7 @@ def with_single_bones(weights: csr_array, parts: WeldedParts, chosen: Bools, bon
     return with_rows(weights, changed, csr_array((data, where), shape=(len(changed), weights.shape[1])))
 
 
-def rigid_rows(weights: csr_array, parts: WeldedParts) -> tuple[Ints, Bools]:
+def _rigid_rows(weights: csr_array, parts: WeldedParts) -> tuple[Ints, Bools]:
     """Return the first vertex of each part (p,), and whether all its vertices have the same weights (p,)."""
     labels = parts.vertex_labels
     first = np.unique(labels, return_index=True)[1]

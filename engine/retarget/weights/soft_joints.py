@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
-from ...runtime.arrays import Bools, Ints
-from .rigid_parts import rigid_rows
-from .skin_weights import row_differences, with_rows
-from .skipped_plates import with_skipped_plates
+from .skin_weights import row_differences
 from .weight_filling import filled
 
 _JUMP = 1.0
@@ -25,17 +26,12 @@ keeps its shape (`tests/engine/retarget/weights/test_soft_joints.py`)."""
 
 
 def with_soft_joints(
-    weights: csr_array,
-    parts: WeldedParts,
-    source_weights: csr_array,
-    source_parts: WeldedParts,
-    surface_map: SurfaceMap,
+    weights: csr_array, parts: WeldedParts, source_parts: WeldedParts, surface_map: SurfaceMap
 ) -> csr_array:
     """Let weights pass over gradually where neighbours on a surface lie on separate plates of the source.
 
     Plates turn apart at a joint and leave a gap, or slide into each other.  A surface that goes on there would tear,
-    along whatever line the map has drawn.  If a plate lies between the two that nothing was mapped to, such as a short
-    one of a finger, it gets a strip along that line, so that the surface bends there as well.
+    along whatever line the map has drawn.
 
     Parameters
     ----------
@@ -43,8 +39,6 @@ def with_soft_joints(
         Weights that were carried from the source.
     parts : WeldedParts
         The surface that they are on.
-    source_weights : (m, g) csr_array of float
-        The weights at the source.
     source_parts : WeldedParts
         The source.
     surface_map : SurfaceMap
@@ -60,32 +54,21 @@ def with_soft_joints(
         return weights
     first = np.unique(parts.welded, return_index=True)[1]
     plate = source_parts.vertex_labels[surface_map.nearest_vertices][first]
-    joint = _joints(weights, parts, plate)
-    if not joint.any():
-        return weights
-    source = source_parts.mesh
-    growth = np.sqrt(parts.mesh.area / source.area)
-    rigid = rigid_rows(source_weights, source_parts)[1]
-    found = with_skipped_plates(plate, joint, parts, source_parts, rigid)
-    changed = np.flatnonzero((found != plate)[parts.welded])
-    if len(changed):
-        plate = found
-        examples = np.unique(source_parts.vertex_labels, return_index=True)[1]
-        weights = with_rows(weights, changed, source_weights[examples[plate[parts.welded[changed]]]])
-        joint = _joints(weights, parts, plate)
-    areas = np.bincount(source_parts.vertex_labels, source.vertex_areas, source_parts.part_count)
-    reach = _REACH * growth * np.sqrt(areas)[plate]
-    away = parts.distances(np.unique(parts.edges[joint]), float(reach.max()))
-    farthest = np.zeros(source_parts.part_count)
-    np.maximum.at(farthest, plate, away)
-    soft = (away <= reach) & (away < farthest[plate])
-    return filled(weights, ~soft[parts.welded], parts)
-
-
-def _joints(weights: csr_array, parts: WeldedParts, plate: Ints) -> Bools:
-    """Tell which edges (e,) join vertices that different plates (w,) move."""
     values = csr_array(parts.mean_over(np.ones(parts.mesh.vertex_count, bool)) @ weights)
     one, other = parts.edges.T
     joint = plate[one] != plate[other]
     joint[joint] = row_differences(values[one[joint]], values[other[joint]]) > _JUMP
-    return joint
+    if not joint.any():
+        return weights
+    source = source_parts.mesh
+    areas = np.bincount(source_parts.vertex_labels, source.vertex_areas, source_parts.part_count)
+    reach = _REACH * np.sqrt(areas * parts.mesh.area / source.area)[plate]
+    lengths = np.linalg.norm(parts.positions[one] - parts.positions[other], axis=1)
+    count = parts.welded_count
+    graph = csr_array((lengths, (one, other)), shape=(count, count))
+    begin = np.unique(parts.edges[joint])
+    away: NDArray[Any] = dijkstra(graph, directed=False, indices=begin, min_only=True, limit=float(reach.max()))
+    farthest = np.zeros(source_parts.part_count)
+    np.maximum.at(farthest, plate, away)
+    soft = (away <= reach) & (away < farthest[plate])
+    return filled(weights, ~soft[parts.welded], parts)

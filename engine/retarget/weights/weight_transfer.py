@@ -126,7 +126,7 @@ def carry_weights_steps(
     if rigid:
         result = with_rigid_parts(result, parts, weights, source_parts, target_to_source, free=marks < 0)
     if fill:
-        result = with_soft_joints(result, parts, weights, source_parts, target_to_source)
+        result = with_soft_joints(result, parts, source_parts, target_to_source)
     result = with_single_bones(result, parts, marks > 0, telling)
     if fill:
         yield Progress(0.2, "Looking for torn vertices")
