@@ -20,6 +20,7 @@ import csv
 import multiprocessing
 import os
 import time
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
@@ -35,6 +36,7 @@ from tests.shapes import creature, subdivided
 VERTICES = "1000,2000,5000,10000,20000,50000,100000,200000,500000,1000000"
 GROWING = {"points": (16, 32, 64, 128, 256), "targets": (1, 2, 4, 8), "jobs": (1, 2, 4)}
 USUAL, PAIRS = 5000, 8
+SPAWN = multiprocessing.get_context("spawn")
 PER_UNIT = 3000 / 18**2
 """Vertices of the body, by the square of the cells of its grid per unit of length."""
 FINEST = 30
@@ -66,13 +68,12 @@ def one_pair(number):
     return peak()
 
 
-def measured(task):
+def measured(of, size):
     """Measure one row, alone in this process."""
-    of, size = task
     if of == "jobs":
         start = time.perf_counter()
-        with multiprocessing.get_context("spawn").Pool(size) as pool:
-            peaks = pool.map(one_pair, range(PAIRS), chunksize=1)
+        with ProcessPoolExecutor(size, SPAWN) as pool:
+            peaks = list(pool.map(one_pair, range(PAIRS)))
         return Cost(of, size, time.perf_counter() - start, max(peaks))
     count = size if of == "vertices" else USUAL
     source = body(count, 0.0, 0.0)
@@ -126,8 +127,8 @@ def main():
     for of in options.only.split(","):
         for size in growing[of]:
             # A new process for each: its peak is of this work alone.
-            with multiprocessing.get_context("spawn").Pool(1) if of != "jobs" else _Here() as pool:
-                (cost,) = pool.map(measured, [(of, size)])
+            with ProcessPoolExecutor(1, SPAWN) as pool:
+                cost = pool.submit(measured, of, size).result()
             costs.append(cost)
             print(f"{of:9s} {cost.size:8d} {cost.seconds:8.1f} s {cost.peak:7.0f} MB", flush=True)
     options.output.mkdir(parents=True, exist_ok=True)
@@ -137,18 +138,6 @@ def main():
         writer.writerows(asdict(cost) for cost in costs)
     plot(costs, options.output / "cost_growth.svg")
     print(f"Written: {options.output / 'cost_growth.csv'} and cost_growth.svg")
-
-
-class _Here:
-    """A pool of no processes: those of a pool may not start others."""
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *of_error):
-        pass
-
-    map = staticmethod(map)
 
 
 if __name__ == "__main__":

@@ -238,7 +238,7 @@ def _mutual_steps(pair: CoarsePair, ways: tuple[list[ScoredFit], list[ScoredFit]
     return sorted(found, key=lambda mutual: -mutual.score)
 
 
-_Side = tuple["Ints", "Bools"]
+_Side = tuple[Ints, Bools]
 
 
 def _side(scored: ScoredFit, back: int) -> _Side:

@@ -22,10 +22,10 @@ from .patch_candidates import compatibilities, patch_candidates
 _LAID, PATCHES = 160, 300
 """Patches of the surface that is laid onto the other, and of that one."""
 
-_HEATS = (1, 25), (4, 12), (len(FAST), 12)
-"""After how many rounds registrations are compared, and how many of these go on.  Where a right way was among the
-starts, for 36 sides of pairs of PARTIALSMAL, one was among the best eleven after the first round, and nine after the
-fourth."""
+_HEATS = (1, None), (4, 25), (len(FAST), 12)
+"""Up to which round registrations go on, and how many of them: the best so far, or all.  Where a right way was among
+the starts, for 36 sides of pairs of PARTIALSMAL, one was among the best eleven after the first round, and of the best
+nine after the fourth."""
 
 _REGROWN, _POLISHED, _KEPT = 6, 5, 8
 """How many of the best fits are grown again, are registered once more, and are returned."""
@@ -82,12 +82,12 @@ def overlap_fits_steps(pair: CoarsePair) -> Steps[list[ScoredFit]]:
     fits: list[ScoredFit] = []
     done, begin = 0, 0.3
     for rounds, most in _HEATS:
+        order = sorted(range(len(fits)), key=lambda number: -fits[number].score)[:most]
+        starts = [replace(starts[one], positions=fits[one].fit.positions) for one in order] or starts
         fits = []
         for number, start in enumerate(starts):
             fits.append(_followed(source, target, start, FAST[done:rounds], done))
             yield Progress(begin + 0.55 / len(_HEATS) * (number + 1) / len(starts), _LABEL)
-        order = sorted(range(len(starts)), key=lambda number: -fits[number].score)[:most]
-        starts = [replace(starts[one], positions=fits[one].fit.positions) for one in order]
         done, begin = rounds, begin + 0.55 / len(_HEATS)
     best = _distinct(fits, _REGROWN)
     for number, each in enumerate(list(best)):

@@ -244,26 +244,24 @@ def test_tables_are_read_as_programs_write_them(tmp_path, delimiter):
     assert pair.arguments()[-3:] == ["--points=99", "--weight-limit=4", "--weight-mix=0.5"]
 
 
-def test_motion_has_a_row_of_its_own(tmp_path):
+@pytest.mark.parametrize(
+    ("command", "options", "values", "wanted"),
+    [
+        ("motion", "action,keep_feet", "Walk*,true", {"action": "Walk*", "keep_feet": True}),
+        ("my-rig", "rig,my_rig_bind", "metarig,yes", {"rig": "metarig", "my_rig_bind": True}),
+    ],
+)
+def test_other_commands_have_rows_of_their_own(tmp_path, command, options, values, wanted):
     path = tmp_path / "pairs.csv"
-    path.write_text("source,target,output,command,action,keep_feet\na.glb,b.glb,out.glb,motion,Walk*,true\n")
+    path.write_text(f"source,target,output,command,{options}\na.blend:Body,b.glb,out.glb,{command},{values}\n")
     (pair,) = read_manifest(path, {"points": "32", "weight_limit": "4"}, "match")
     arguments = pair.arguments()
-    assert arguments[0] == "motion"
-    assert set(arguments[4:]) == {"--action=Walk*", "--keep-feet", "--points=32"}
+    assert arguments[0] == command
+    written = {f"--{name.replace('_', '-')}" + ("" if value is True else f"={value}") for name, value in wanted.items()}
+    assert set(arguments[4:]) == {*written, "--points=32"}
     parsed = make_parser().parse_args(arguments)
-    assert (parsed.action, parsed.keep_feet, parsed.points) == ("Walk*", True, 32)
-
-
-def test_a_rig_of_ones_own_has_a_row_of_its_own(tmp_path):
-    path = tmp_path / "pairs.csv"
-    path.write_text("source,target,output,command,rig,my_rig_bind\na.blend:Body,b.glb,out.glb,my-rig,metarig,yes\n")
-    (pair,) = read_manifest(path, {"points": "32", "weight_limit": "4"}, "match")
-    arguments = pair.arguments()
-    assert arguments[0] == "my-rig"
-    assert set(arguments[4:]) == {"--rig=metarig", "--my-rig-bind", "--points=32"}
-    parsed = make_parser().parse_args(arguments)
-    assert (parsed.rig, parsed.my_rig_bind, parsed.points) == ("metarig", True, 32)
+    assert {name: getattr(parsed, name) for name in wanted} == wanted
+    assert parsed.points == 32
 
 
 def test_json_has_options_for_all(tmp_path):
