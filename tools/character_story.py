@@ -4,7 +4,8 @@
     make package-no-wheels
     BLENDER_USER_RESOURCES=EMPTY_FOLDER blender --factory-startup --enable-event-simulate \
         --window-geometry 0 0 1600 1000 --python tools/character_story.py -- \
-        [--motion | --my-rig] FOLDER build/package-no-wheels/hiermatch-VERSION.zip SOURCE.glb TARGET.glb [COMMAND ...]
+        [--motion | --my-rig | --wear ITEM,ITEM,...] FOLDER build/package-no-wheels/hiermatch-VERSION.zip \
+        SOURCE.glb TARGET.glb [COMMAND ...]
 
 Any Blender from 4.3 on with NumPy and SciPy will do; the zip is installed as by hand.  Either character may have any
 number of meshes, both need a rig; a source without an action gets one that swings its arms and legs.  Everything is
@@ -37,6 +38,16 @@ Blender's automatic weights fail on loose pieces.  After the first picture there
     4-generated.jpg     the target with its control rig
     5-pairing.jpg to 8-action.jpg  as with --motion
 
+With --wear the target gets these items of the source, fitted to it, and swings its arms and legs in them.  An ITEM is
+an object of the source's file, such as Cape, or of an object what has some materials, such as Head:Straw+Ribbon, which
+is then separated from it.  What hangs on the source's bones without being weighted, as weapons do, is put away if it is
+no item.  After the second picture there are
+
+    3-fitting.jpg       while the bodies are matched
+    4-dressed.jpg       what the panel says to the items
+    5-sides.jpg         the target in them, from four sides
+    6-posed.jpg         and at four times, from before and from behind
+
 Blender cannot read its own pixels on some screens, virtual ones above all: see `screenshots.py` for COMMAND.
 """
 
@@ -44,6 +55,7 @@ from __future__ import annotations
 
 import sys
 import traceback
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -78,6 +90,9 @@ _BENDS, _TIMES = 3, 4
 
 _WISHED = ("walk", "run", "swim", "gallop")
 """What the name of an action to play should contain, the best first."""
+
+_AROUND = ("FRONT", "RIGHT", "BACK", "LEFT")
+"""Sides from which the target is seen in its items."""
 
 _SWINGS = {"upperarm": -0.6, "upperleg": 0.6, "thigh": 0.6}
 """How far the bones with these words in their names swing, in radians, where the source has no action."""
@@ -116,10 +131,19 @@ def tell(story: Story, camera: Camera) -> Iterator[float | None]:
 
 def tell_motion(story: Story, camera: Camera) -> Iterator[float | None]:
     """Go through the steps for a target that keeps its rig."""
-    _open_motion()
+    _open("HIERMATCH_PT_motion")
     yield from story.bring(camera)
     yield from story.carry(camera)
     yield from story.play(camera, carried=True)
+
+
+def tell_wear(story: Story, camera: Camera, items: list[str]) -> Iterator[float | None]:
+    """Go through the steps for what the source wears."""
+    _open("HIERMATCH_PT_wear")
+    yield from story.bring(camera, items)
+    yield from story.dress(camera)
+    yield from story.look_around(camera)
+    yield from story.pose(camera)
 
 
 def tell_my_rig(story: Story, camera: Camera) -> Iterator[float | None]:
@@ -129,7 +153,7 @@ def tell_my_rig(story: Story, camera: Camera) -> Iterator[float | None]:
     fold("hiermatch_my_rig", package=registration.__package__.rpartition(".")[0])
     yield from story.bring(camera)
     yield from story.fit_my_rig(camera)
-    _open_motion()
+    _open("HIERMATCH_PT_motion")
     choose_tab()
     yield from story.carry(camera, number=5)
     yield from story.play(camera, carried=True, sheet=8)
@@ -149,10 +173,11 @@ class Story:
         self._paths = source, target
         self._rigs: list[bpy.types.Object] = []
         self._meshes: list[list[bpy.types.Object]] = []
+        self._items: list[bpy.types.Object] = []
         self._made: bpy.types.Object | None = None
 
-    def bring(self, camera: Camera) -> Iterator[float | None]:
-        """Import both, one beside the other, and pick their armatures."""
+    def bring(self, camera: Camera, items: list[str] | None = None) -> Iterator[float | None]:
+        """Import both, one beside the other, and pick their armatures; with items both rest."""
         for thing in list(bpy.data.objects):
             bpy.data.objects.remove(thing)
         large_view()
@@ -160,7 +185,9 @@ class Story:
         choose_tab()
         for path in self._paths:
             self._import(path)
-        if _action_of(self._rigs[0]) is None:
+        if items is not None:
+            self._take_apart(items)
+        elif _action_of(self._rigs[0]) is None:
             _swing(self._rigs[0])
         self._stand_apart()
         self._look()
@@ -246,6 +273,82 @@ class Story:
         rigs = {rig for obj in self._meshes[1] for rig in _moving(obj)}
         check(rigs == {self._made}, "The target is not moved by its own rig")
         check(cast("Any", self._made.animation_data).action is not None, "The target's rig has no action")
+
+    def _take_apart(self, items: list[str]) -> None:
+        """Separate the items, remove what is neither weighted nor an item, and let both rest."""
+        for item in items:
+            name, _, materials = item.partition(":")
+            found = [obj for obj in self._meshes[0] if obj.name == name]
+            check(found, f"The source has no {name}, but {[obj.name for obj in self._meshes[0]]}")
+            self._items.append(_separated(found[0], materials.split("+")) if materials else found[0])
+        meshes = {*self._meshes[0], *self._items}
+        kept = [obj for obj in meshes if obj in self._items or _moving(obj)]
+        for obj in meshes - set(kept):
+            bpy.data.objects.remove(obj)
+        self._meshes[0] = kept
+        for rig in self._rigs:
+            rig.animation_data_clear()
+            for bone in cast("Any", rig.pose).bones:
+                bone.matrix_basis = Matrix()
+
+    def dress(self, camera: Camera) -> Iterator[float | None]:
+        """Select what the source wears, and fit it to the target."""
+        before = {obj: _shape(obj) for obj in self._all()}
+        for item in self._items:
+            item.select_set(state=True)
+        bpy.context.view_layer.objects.active = self._items[0]
+        yield None
+        press(cast("Any", bpy.ops).hiermatch.wear)
+        progress = cast("Any", bpy.context.window_manager).hiermatch
+        yield from until(lambda: progress.fraction > _FAR_ENOUGH or not running(), "The first third")
+        camera.take_with_panel("3-fitting", self._all())
+        yield from self._finished("Fitting")
+        print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
+        names = {item.name for item in self._items}
+        made = [obj for obj in bpy.data.objects if obj.get("hiermatch_item") in names]
+        check(len(made) == len(names), f"{len(made)} of {len(names)} items were fitted")
+        check(all(_shape(obj) == shape for obj, shape in before.items()), "The bodies or the originals were changed")
+        check(all(self._rigs[1] in _moving(obj) for obj in made), "The target's rig does not move all items")
+        self._meshes[1] += made
+        for obj in bpy.data.objects:
+            obj.select_set(state=False)
+        camera.take_with_panel("4-dressed", self._all())
+
+    def look_around(self, camera: Camera) -> Iterator[float | None]:
+        """Look at the target from four sides, close by."""
+        for obj in self._meshes[0]:
+            obj.hide_set(state=True)
+        looks = []
+        for side in _AROUND:
+            with bpy.context.temp_override(**view()):
+                bpy.ops.view3d.view_axis(type=side)
+                for obj in self._meshes[1]:
+                    obj.select_set(state=True)
+            look_at_selected()
+            for obj in self._meshes[1]:
+                obj.select_set(state=False)
+            yield None
+            looks.append(camera.look(seen(self._meshes[1])))
+        camera.save("5-sides", [looks])
+
+    def pose(self, camera: Camera) -> Iterator[float | None]:
+        """Let the target swing its arms and legs in what it wears, and look at it from two sides."""
+        scene, rig, shown = cast("Any", bpy.context.scene), self._rigs[1], self._meshes[1]
+        _swing(rig)
+        rows, shapes = [], set()
+        for side in _AROUND[::2]:
+            with bpy.context.temp_override(**view()):
+                bpy.ops.view3d.view_axis(type=side)
+                bpy.ops.view3d.view_orbit(angle=0.35, type="ORBITLEFT")
+            looks = []
+            for number in range(_TIMES):
+                scene.frame_set(1 + 6 * number)
+                yield None
+                looks.append(camera.look(seen(shown)))
+                shapes.add(tuple(_shape(obj, shown=True) for obj in shown))
+            rows.append(looks)
+        check(len(shapes) > 1, "The target does not move")
+        camera.save("6-posed", rows)
 
     def _finished(self, what: str) -> Iterator[float | None]:
         """Answer if asked, and wait for the end."""
@@ -344,13 +447,13 @@ class Story:
         overlay.show_bones = False
 
 
-def _open_motion() -> None:
-    """Let the panel for motion be unfolded and all others folded when they are drawn for the first time."""
+def _open(name: str) -> None:
+    """Let one panel be unfolded and all others folded when they are drawn for the first time."""
     panels: list[Any] = [cls for cls in _registration().CLASSES if issubclass(cls, bpy.types.Panel)]
     for panel in reversed(panels):
         bpy.utils.unregister_class(panel)
     for panel in panels:
-        panel.bl_options = set() if panel.__name__ == "HIERMATCH_PT_motion" else {"DEFAULT_CLOSED"}
+        panel.bl_options = set() if panel.__name__ == name else {"DEFAULT_CLOSED"}
         bpy.utils.register_class(panel)
 
 
@@ -366,6 +469,27 @@ def _show_bones(rig: bpy.types.Object) -> None:
         if obj.type == "ARMATURE":
             cast("Any", obj).show_in_front = obj == rig
             obj.hide_set(state=obj != rig)
+
+
+def _separated(obj: bpy.types.Object, materials: list[str]) -> bpy.types.Object:
+    """Separate what has some materials from an object, as by P in Edit Mode, and return it."""
+    before, slots = set(bpy.data.objects), obj.material_slots.keys()
+    missing = set(materials) - set(slots)
+    check(not missing, f"{obj.name} has no material {missing}, but {slots}")
+    with bpy.context.temp_override(**view()):
+        bpy.ops.object.select_all(action="DESELECT")
+        obj.select_set(state=True)
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="DESELECT")
+        for material in materials:
+            obj.active_material_index = slots.index(material)
+            bpy.ops.object.material_slot_select()
+        bpy.ops.mesh.separate(type="SELECTED")
+        bpy.ops.object.mode_set(mode="OBJECT")
+    (item,) = set(bpy.data.objects) - before
+    item.name = f"{obj.name} {materials[0]}"
+    return item
 
 
 def _bind(meshes: list[bpy.types.Object], rig: bpy.types.Object) -> None:
@@ -462,9 +586,11 @@ def _assign(rig: bpy.types.Object, action: Any) -> None:  # noqa: ANN401 - an ac
 
 def main(arguments: list[str]) -> None:
     """Install the zip, and let Blender's own timer do one step after the other."""
-    ways = {"--motion": tell_motion, "--my-rig": tell_my_rig}
-    telling = next((way for flag, way in ways.items() if flag in arguments), tell)
-    arguments = [argument for argument in arguments if argument not in ways]
+    telling: Any = {"--motion": tell_motion, "--my-rig": tell_my_rig}.get(arguments[0] if arguments else "", tell)
+    if arguments[:1] == ["--wear"]:
+        telling = partial(tell_wear, items=arguments[1].split(","))
+        del arguments[0]
+    arguments = arguments[telling is not tell :]
     if len(arguments) < 4:
         sys.exit("Name a folder for the pictures, the extension's zip, and the files of the source and the target.")
     folder, package, source, target = (Path(argument).resolve() for argument in arguments[:4])

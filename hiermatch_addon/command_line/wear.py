@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import bpy
+
 from ..scene.character import parts_of
 from ..scene.garments import meshes_of, undressed
 from ..transfers.options.wear import wear_settings
@@ -56,7 +58,7 @@ def _undressed_pair(options: Any, pair: tuple[Side, Side]) -> tuple[Side, Side]:
     if options.collection and not options.items:
         bodies = [*parts_of(target), *(parts_of(source) if len(parts_of(source)) == 1 else ())]
         options.items = meshes_of(options.collection, *bodies)
-    return undressed(source, options.items), target
+    return undressed(source, options.items, bpy.context.evaluated_depsgraph_get()), target
 
 
 def _transfers(options: Any, _pair: tuple[Side, Side]) -> list[Transfer]:  # noqa: ANN401 - stands for the operator

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 from mathutils import Matrix
 
+from ...engine import continues_body
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from .armatures import find_armature, moving_armatures
-from .character import joined, parts_of
+from .character import joined, parts_of, read_surface
 from .garment_shape_io import mirror_axes
 from .key_drivers import counterparts, point_key_drivers
+from .mesh_io import read_mesh
 from .pair import check_object
 from .shape_key_io import keys_of
 
@@ -82,10 +84,18 @@ def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
     return tuple(found)
 
 
-def undressed(body: Side, items: Collection[str]) -> Side:
-    """Leave items out of a character that they are parts of, as all that its armature moves is; not all of it."""
+def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph) -> Side:
+    """Leave items out of a character that they are parts of, as all that its armature moves is; not all of it.
+
+    Those stay in that it has no skin below, such as boots without feet: they are the surface of its body there.
+    """
     parts = [part for part in parts_of(body) if part.name not in items]
-    return joined(body.name, parts) if parts else body
+    worn = [part for part in parts_of(body) if part.name in items]
+    if not parts or not worn:
+        return body
+    bare = read_surface(joined(body.name, parts), depsgraph, use_modifiers=False)
+    ends = [item for item in worn if continues_body(bare, read_mesh(item, depsgraph, use_modifiers=False))]
+    return joined(body.name, [*parts, *ends])
 
 
 def fitted_to(body: Side) -> list[bpy.types.Object]:
@@ -93,16 +103,19 @@ def fitted_to(body: Side) -> list[bpy.types.Object]:
     return [obj for obj in bpy.data.objects if obj.type == "MESH" and cast("Any", obj).get(BODY) == body.name]
 
 
-def check_item(context: bpy.types.Context, item: bpy.types.Object, source: Side, target: Side) -> None:
-    """Make sure that an object can be fitted from one body to another.
+def check_item(
+    context: bpy.types.Context, item: bpy.types.Object, source: Side, target: Side, items: Collection[bpy.types.Object]
+) -> None:
+    """Make sure that an object, one of some items, can be fitted from one body to another.
 
     Raises
     ------
     ObjectError
         If it cannot.
     """
-    if item in (*parts_of(source), *parts_of(target)):
-        role = "Source" if item in parts_of(source) else "Target"
+    is_source = item in parts_of(source) and set(parts_of(source)) <= set(items)
+    if is_source or item in parts_of(target):
+        role = "Source" if is_source else "Target"
         raise ObjectError(
             f'"{item.name}" is the body itself, picked as the {role}. Take it out of the items, or pick another body.'
         )
@@ -190,9 +203,10 @@ def fitted_copy(
     copy.select_set(state=False)
     # Of a body of several objects the largest stands for all that something may point to.
     largest = max(parts_of(target), key=lambda part: len(mesh_of(part).vertices))
-    places: dict[bpy.types.ID, bpy.types.ID] = {item: copy}
+    places: dict[bpy.types.ID, bpy.types.ID] = {}
     for part in parts_of(source):
         places |= counterparts(part, largest, find_armature(source), find_armature(target))
+    places[item] = copy  # also of one that is part of the body
     _point_to(copy, places, growth)
     keys = keys_of(copy)
     if keys is None:

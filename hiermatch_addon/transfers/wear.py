@@ -135,14 +135,16 @@ class WearTransfer:
         self._keys: BodyKeys | None = None
         self._followed: list[NDArray[np.float64]] = []
         self._notes: list[str] = []
+        self._ends: list[str] = []
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read all items, and make sure that they can be fitted."""
         settings = self._settings
         chosen = self._chosen(context, source, target)
         depsgraph = context.evaluated_depsgraph_get()
+        self._ends = [item.name for item in chosen if item in parts_of(source)]
         for item in chosen:
-            check_item(context, item, source, target)
+            check_item(context, item, source, target, chosen)
             if settings.result == "KEY":
                 check_keys_writable(item, [_KEY + target.name])
                 check_writable(item)
@@ -336,6 +338,9 @@ class WearTransfer:
             doubt = _doubt(item.name, fitted)
             if doubt:
                 notes.append(doubt)
+        remarks.extend(
+            f'"{name}" counts as part of the body as well: "{source.name}" has no skin below it.' for name in self._ends
+        )
         if any(weights is not None and weights.from_skin and weights.lost for weights in self._weights):
             remarks.append(
                 f'The rig of "{target.name}" has other bones, so the weights were taken from its skin and from the '

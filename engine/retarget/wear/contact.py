@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
 from ...runtime.arrays import Bools, Floats, Ints
@@ -49,6 +51,9 @@ class Clearance:
 class Surface:
     """A surface that things lie on.
 
+    Seams at which it was cut open, as files for games are at every sharp edge, are no rims: it is searched with them
+    closed.
+
     Parameters
     ----------
     mesh : TriangleMesh
@@ -62,15 +67,20 @@ class Surface:
         Unit normals of the vertices, weighted by angles: they tell inside from outside.
     rim : (n,) array of bool
         Which vertices lie on the rim of a hole.
+    sewn : _Sewn or None
+        The same with its seams closed; none if it has none.
     """
 
     def __init__(self, mesh: TriangleMesh, search: ClosestPoints | None = None) -> None:
         self.mesh = mesh
         self.search = search or ClosestPoints(mesh)
+        self.sewn = _Sewn.of(mesh)
 
     @cached_property
     def rim(self) -> Bools:
         """Which vertices lie on the rim of a hole, (n,)."""
+        if self.sewn is not None:
+            return self.sewn.surface.rim[self.sewn.parts.welded]
         rim = np.zeros(self.mesh.vertex_count, bool)
         rim[self.mesh.boundary_edges] = True
         return rim
@@ -78,12 +88,17 @@ class Surface:
     @cached_property
     def normals(self) -> Floats:
         """Unit normals of the vertices, weighted by angles, (n, 3)."""
+        if self.sewn is not None:
+            return self.sewn.surface.normals[self.sewn.parts.welded]
         return _angle_normals(self.mesh)
 
     def moved(self, vertices: Floats) -> Surface:
         """Return the surface with its vertices elsewhere, (n, 3); what depends on the triangles alone is shared."""
-        other = Surface(TriangleMesh(vertices, self.mesh.triangles), self.search.moved(vertices))
-        other.rim = self.rim
+        other = copy(self)
+        other.mesh, other.search = TriangleMesh(vertices, self.mesh.triangles), self.search.moved(vertices)
+        other.__dict__.pop("normals", None)
+        if self.sewn is not None:
+            other.sewn = replace(self.sewn, surface=self.sewn.surface.moved(self.sewn.parts.means @ vertices))
         return other
 
     def clearance(self, points: Floats, starts: Ints | None = None) -> Clearance:
@@ -96,6 +111,8 @@ class Surface:
         starts : (k,) array of int, optional
             A vertex from which to search along the surface, which so never leaves its limb; else all of it counts.
         """
+        if self.sewn is not None:
+            return self.sewn.clearance(points, starts)
         found = self.search.nearest(points) if starts is None else self.search.walk(points, starts)
         corners, barycentric = self.mesh.triangles[found.triangles], found.barycentric
         feet = np.einsum("kc,kci->ki", barycentric, self.mesh.vertices[corners])
@@ -107,6 +124,39 @@ class Surface:
         distances = np.where(np.einsum("ki,ki->k", away, normals) < 0, -distances, distances)
         known = ~((barycentric > _INSIDE) <= self.rim[corners]).all(axis=1) | inside
         return Clearance(distances, feet, blended, found.nearest_vertices(self.mesh.triangles), known)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sewn:
+    """A surface with its seams closed, and the vertex from which to search there for each of the cut one, (n,)."""
+
+    parts: WeldedParts
+    surface: Surface
+    starts: Ints
+
+    @classmethod
+    def of(cls, mesh: TriangleMesh) -> _Sewn | None:
+        """Close the seams of a mesh; none if it has none."""
+        parts = WeldedParts.of(mesh)
+        if not parts.seams:
+            return None
+        surface = Surface(parts.closed)
+        starts, lost = parts.welded, np.ones(parts.welded_count, bool)
+        lost[parts.triangles] = False
+        if lost.any():  # what fell together into a point
+            nearest = np.arange(parts.welded_count)
+            nearest[lost] = surface.search.nearest_vertices(parts.positions[lost])
+            starts = nearest[starts]
+        return cls(parts, surface, starts)
+
+    def clearance(self, points: Floats, starts: Ints | None) -> Clearance:
+        """Measure as the cut one does, in its numbers of vertices."""
+        found = self.surface.clearance(points, None if starts is None else self.starts[starts])
+        return replace(found, vertices=self._first[found.vertices])
+
+    @cached_property
+    def _first(self) -> Ints:
+        return np.unique(self.parts.welded, return_index=True)[1]
 
 
 def surface_samples(mesh: TriangleMesh, spacing: float) -> csr_array:

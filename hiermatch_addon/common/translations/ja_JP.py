@@ -1565,6 +1565,9 @@ MESSAGES: Final[dict[str, str]] = {
     "what is below still shows through {0} of it": "下のものがまだ{0}で突き抜けています",
     "the match is uncertain below {0} of it": "その{0}の下でマッチングが不確かです",
     "the body ends below {0} of it": "その{0}の下には体がありません",
+    '"{0}" counts as part of the body as well: "{1}" has no skin below it.': (
+        '"{1}"には"{0}"の下に肌がないので、"{0}"も体の一部とみなします。'
+    ),
     'Weights of {0} of "{1}" were mended for poses.': 'ポーズのために"{1}"の{0}のウェイトを直しました。',
     "1 item": "1個のアイテム",
     "{0} items": "{0}個のアイテム",

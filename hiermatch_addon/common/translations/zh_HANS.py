@@ -1294,6 +1294,9 @@ MESSAGES: Final[dict[str, str]] = {
     "what is below still shows through {0} of it": "下方之物仍从其{0}处穿出",
     "the match is uncertain below {0} of it": "其{0}下方的匹配不确定",
     "the body ends below {0} of it": "其{0}下方没有身体",
+    '"{0}" counts as part of the body as well: "{1}" has no skin below it.': (
+        '"{0}"也被当作身体的一部分："{1}"在它下面没有皮肤。'
+    ),
     'Weights of {0} of "{1}" were mended for poses.': '已为姿势修正"{1}"的{0}的权重。',
     "1 item": "1件物品",
     "{0} items": "{0}件物品",

@@ -84,7 +84,7 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
             bodies = theirs if named and len(own) > 1 and not own <= selected else own | theirs
             chosen = (obj.name for obj in selected - bodies if _can_be_worn(obj))
             self._chosen = tuple(sorted(chosen))
-        return undressed(source, self._chosen), targets
+        return undressed(source, self._chosen, context.evaluated_depsgraph_get()), targets
 
     def _transfers(self) -> list[Transfer]:
         options: Any = self

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -328,3 +329,35 @@ def test_items_that_are_parts_of_the_source_are_worn_by_the_others(pair):
     bpy.data.objects["Shirt"].select_set(state=True)
     assert wear(source="Source + Shirt") == {"FINISHED"}
     assert fitted("Shirt")
+
+
+def cut_off(body, name):
+    """Cut off all but the upper end of a body, as an object of its own."""
+    half = body.copy()
+    half.data, half.name = body.data.copy(), name
+    bpy.context.scene.collection.objects.link(half)
+    height = np.quantile(in_world(body)[:, 2], 0.9)
+    for obj, upper in ((body, True), (half, False)):
+        build = bmesh.new()
+        build.from_mesh(obj.data)
+        faces = [f for f in build.faces if ((obj.matrix_world @ f.calc_center_median()).z > height) != upper]
+        bmesh.ops.delete(build, geom=faces, context="FACES")
+        build.to_mesh(obj.data)
+        build.free()
+    bpy.context.view_layer.update()
+    return half
+
+
+def test_an_item_without_skin_below_it_is_part_of_the_body_as_well(pair):
+    source, target, _, _ = pair
+    boots = cut_off(source, "Boots")
+    before = in_world(boots).copy()
+    assert wear("Boots", source="Source + Boots", accept_doubtful=True) == {"FINISHED"}
+    report = bpy.context.scene.hiermatch_retarget.report
+    assert '"Boots" counts as part of the body as well: "Source" has no skin below it.' in report.remarks
+    copy = fitted("Boots")
+    assert depths(copy, target).max() < 1e-4
+    assert np.ptp(in_world(copy)[:, 2]) > 0.6 * np.ptp(in_world(target)[:, 2])
+    np.testing.assert_array_equal(in_world(boots), before)
+    with pytest.raises(RuntimeError, match='"Boots" is the body itself, picked as the Source'):
+        wear("Boots", "Source", source="Source + Boots")

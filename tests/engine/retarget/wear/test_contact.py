@@ -34,3 +34,19 @@ def test_inside_is_negative_and_what_is_nearest_to_a_rim_is_not_known():
     bowl = Surface(TriangleMesh(vertices, triangles[(vertices[triangles][:, :, 2] < 0.3).all(axis=1)]))
     found = bowl.clearance(np.array([[0, 0, 3.0], [0, 0, -3.0]]))
     assert found.known.tolist() == [False, True]
+
+
+@pytest.mark.parametrize("walking", [False, True])
+def test_a_surface_that_is_cut_open_at_every_edge_is_searched_as_a_whole(walking):
+    whole, random = TriangleMesh(*irregular(*cylinder(16, 12, 0.5, 2.0), rounds=1)), np.random.default_rng(0)
+    corners = whole.triangles.ravel()
+    opened = Surface(TriangleMesh(whole.vertices[corners], np.arange(len(corners)).reshape(-1, 3)))
+    points, starts = random.normal((0, 0, 1), size=(200, 3)), random.integers(0, len(corners), 200)
+    found = opened.clearance(points, starts if walking else None)
+    wanted = Surface(whole).clearance(points, corners[starts] if walking else None)
+    for name in ("distances", "feet", "normals", "known"):
+        np.testing.assert_allclose(getattr(found, name), getattr(wanted, name), atol=1e-12)
+    np.testing.assert_array_equal(corners[found.vertices], wanted.vertices)
+    np.testing.assert_array_equal(opened.rim, Surface(whole).rim[corners])
+    there = opened.moved(2.0 * opened.mesh.vertices)
+    np.testing.assert_allclose(there.clearance(2.0 * points).distances, 2.0 * opened.clearance(points).distances)

@@ -201,3 +201,20 @@ def test_an_item_that_is_cut_open_at_every_edge_is_fitted_as_a_whole():
         np.testing.assert_allclose(getattr(opened, name), getattr(whole, name)[corners], atol=1e-6)
     assert opened.places.shape == (len(corners), BODY.vertex_count)
     assert opened.through == whole.through
+
+
+def test_a_body_that_is_cut_open_at_every_edge_is_dressed_as_a_whole():
+    """Files for games are made so; inside and outside are known all the same, and what pokes through is seen."""
+    images = BODY.vertices.copy()
+    bump = np.exp(-np.square(BODY.vertices - [0.0, -0.6, 0.8]).sum(axis=1) / 0.02)
+    grown = images * (1 + 0.15 * bump)[:, None]
+    corners = BODY.triangles.ravel()
+    cut = np.arange(len(corners)).reshape(-1, 3)
+    fitted = []
+    for kept, triangles in ((slice(None), BODY.triangles), (corners, cut)):
+        body, target = TriangleMesh(BODY.vertices[kept], triangles), TriangleMesh(grown[kept], triangles)
+        fitted += run(wear_steps(body, target, SurfaceMap.identity(target), images[kept], [WornItem(SHIRT)]))
+    whole, opened = fitted
+    assert whole.pushed.max() > 0.05
+    assert opened.clearance.min() >= 0
+    np.testing.assert_allclose(opened.positions, whole.positions, atol=0.02)
