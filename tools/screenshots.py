@@ -31,6 +31,7 @@ import page_scan
 import page_settings
 import page_steering
 import page_symmetry
+import page_wear
 from camera import Camera
 from screen import choose_tab, large_view, register_unfolded, set_scene, show_panels
 
@@ -44,6 +45,7 @@ PAGES = {
     "steering": page_steering.pictures,
     "retargeting": page_retargeting.pictures,
     "motion": page_motion.pictures,
+    "wear": page_wear.pictures,
     "scan": page_scan.pictures,
     "symmetry": page_symmetry.pictures,
 }

@@ -22,7 +22,7 @@ from .attribute_io import read_polygons
 from .mesh_io import position_digest, read_mesh, topology, vertex_positions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -36,6 +36,7 @@ __all__ = [
     "edge_ranges",
     "face_ranges",
     "joined",
+    "joined_mesh",
     "own_positions",
     "parts_of",
     "positions_of",
@@ -213,7 +214,11 @@ def edge_ranges(side: Side) -> list[slice]:
 
 def read_surface(side: Side, depsgraph: bpy.types.Depsgraph, *, use_modifiers: bool) -> TriangleMesh:
     """Read all parts of a side as one surface, as they stand in the world; see `read_mesh`."""
-    meshes = [read_mesh(part, depsgraph, use_modifiers=use_modifiers) for part in parts_of(side)]
+    return joined_mesh([read_mesh(part, depsgraph, use_modifiers=use_modifiers) for part in parts_of(side)])
+
+
+def joined_mesh(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
+    """Make one surface of several."""
     if len(meshes) == 1:
         return meshes[0]
     starts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes)])[:-1]

@@ -12,7 +12,7 @@ from ...engine import continues_body
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from .armatures import find_armature, moving_armatures
-from .character import joined, parts_of, read_surface
+from .character import joined, joined_mesh, parts_of
 from .garment_shape_io import mirror_axes
 from .key_drivers import counterparts, point_key_drivers
 from .mesh_io import read_mesh
@@ -89,13 +89,17 @@ def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph
 
     Those stay in that it has no skin below, such as boots without feet: they are the surface of its body there.
     """
-    parts = [part for part in parts_of(body) if part.name not in items]
-    worn = [part for part in parts_of(body) if part.name in items]
-    if not parts or not worn:
+    parts = parts_of(body)
+    worn = {part.name in items for part in parts}
+    if len(worn) == 1:
         return body
-    bare = read_surface(joined(body.name, parts), depsgraph, use_modifiers=False)
-    ends = [item for item in worn if continues_body(bare, read_mesh(item, depsgraph, use_modifiers=False))]
-    return joined(body.name, [*parts, *ends])
+    meshes = {part: read_mesh(part, depsgraph, use_modifiers=False) for part in parts}
+    # The largest first: of a jacket over a shirt it is the shirt that stands for the chest.
+    for item in sorted(parts, key=lambda part: -meshes[part].area):
+        rest = [part for part in parts if part is not item]
+        if item.name in items and not continues_body(joined_mesh([meshes[part] for part in rest]), meshes[item]):
+            parts = tuple(rest)
+    return joined(body.name, parts)
 
 
 def fitted_to(body: Side) -> list[bpy.types.Object]:

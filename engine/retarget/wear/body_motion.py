@@ -201,8 +201,11 @@ class BodySkin:
         away = points[:, None] - level.positions[near]
         cost = np.ones_like(distances)
         if bones is not None:
-            total = np.minimum(bones.sum(axis=1), level.bones[near].sum(axis=2).max(axis=1))
-            same = np.minimum(bones[:, None], level.bones[near]).sum(axis=2)
+            total = np.minimum(bones.sum(axis=1), level.bones.sum(axis=1)[near].max(axis=1))
+            same = np.zeros_like(distances)
+            for bone, column in enumerate(bones.T):  # few of which move any one point
+                moved = np.flatnonzero(column)
+                same[moved] += np.minimum(column[moved, None], level.bones[near[moved], bone])
             cost += _OTHER_LIMB * (total[:, None] - same).clip(0, 1)
         front = np.einsum("kpi,kpi->kp", away, level.normals[near]) / np.maximum(distances, _TINY)
         cost += _BEHIND * (1 - front.clip(0, 1)) * (distances > _TOUCHING * self.size)

@@ -1101,12 +1101,12 @@ MESSAGES: Final[dict[str, str]] = {
     "Take out the way from the first to the last frame, for walk cycles": (
         "最初から最後のフレームまでの移動を取り除きます。歩行サイクル用です"
     ),
-    "Keep Feet on Ground": "足を地面に保つ",
+    "Feet on Ground": "足を地面に保つ",
     "Where a foot stands in the source, let it stand in the target: the leg is bent for it. All frames "
     "are computed then": (
         "ソースで足が立っているところでは、ターゲットの足も動かないように脚を曲げます。全フレームが計算されます"
     ),
-    "Keep Hands on Body": "手を体に保つ",
+    "Hands on Body": "手を体に保つ",
     "Where a hand touches the body or the other hand in the source, bend the target's arm so that it "
     "does so too. All frames are computed then": (
         "ソースで手が体や反対の手に触れているところでは、ターゲットの手も触れるように腕を曲げます。全フレームが計"

@@ -913,10 +913,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Take out the way from the first to the last frame, for walk cycles": (
         "去除从第一帧到最后一帧的移动，用于行走循环"
     ),
-    "Keep Feet on Ground": "脚保持着地",
+    "Feet on Ground": "脚保持着地",
     "Where a foot stands in the source, let it stand in the target: the leg is bent for it. All frames "
     "are computed then": ("源的脚站立之处，目标的脚也站立不动：为此弯曲腿部。此时会计算所有帧"),
-    "Keep Hands on Body": "手保持贴身",
+    "Hands on Body": "手保持贴身",
     "Where a hand touches the body or the other hand in the source, bend the target's arm so that it "
     "does so too. All frames are computed then": (
         "源的手触及身体或另一只手之处，弯曲目标的手臂使其同样触及。此时会计算所有帧"

@@ -48,7 +48,7 @@ class HIERMATCH_OT_retarget_pose(MotionOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     keep_hands: bpy.props.BoolProperty(
-        name="Keep Hands on Body",
+        name="Hands on Body",
         description="Where a hand touches the body or the other hand in the source, bend the target's arm so that it "
         "does so too",
     )

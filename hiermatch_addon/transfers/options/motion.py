@@ -88,12 +88,12 @@ class MotionOptions:
             default=0.0035,
         ),
         "keep_feet": _props.BoolProperty(
-            name="Keep Feet on Ground",
+            name="Feet on Ground",
             description="Where a foot stands in the source, let it stand in the target: the leg is bent for it. All "
             "frames are computed then",
         ),
         "keep_hands": _props.BoolProperty(
-            name="Keep Hands on Body",
+            name="Hands on Body",
             description="Where a hand touches the body or the other hand in the source, bend the target's arm so that "
             "it does so too. All frames are computed then",
         ),

@@ -7,6 +7,8 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.scene.character import joined, parts_of
+from hiermatch.hiermatch_addon.scene.garments import undressed
 from mathutils import Vector
 
 from tests.addon.garments import add_item
@@ -361,3 +363,17 @@ def test_an_item_without_skin_below_it_is_part_of_the_body_as_well(pair):
     np.testing.assert_array_equal(in_world(boots), before)
     with pytest.raises(RuntimeError, match='"Boots" is the body itself, picked as the Source'):
         wear("Boots", "Source", source="Source + Boots")
+
+
+def test_of_layers_over_nothing_the_inner_one_stands_for_the_body(pair):
+    source, _, _, _ = pair
+    made = []
+    for name, low, high, size in (("Head", 2, 3, 1), ("Legs", -3, -2, 1), ("Vest", -2, 2, 1), ("Cloak", -2, 2, 1.2)):
+        bpy.ops.mesh.primitive_cylinder_add(radius=size, depth=high - low, location=(9, 0, (low + high) / 2))
+        made.append(bpy.context.object)
+        made[-1].name = name
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    body = joined("Doll", made)
+    worn = undressed(body, ["Vest", "Cloak"], depsgraph)
+    assert [part.name for part in parts_of(worn)] == ["Head", "Legs", "Vest"]
+    assert undressed(source, ["Shirt"], depsgraph) is source

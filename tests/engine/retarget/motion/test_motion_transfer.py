@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Motion that goes from one rig to another: the mesh ends up where the truth is."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
-from engine import BonePairing, MotionSettings, RigError, Skeleton, transfer_motion
+from engine import BonePairing, Motion, MotionSettings, RigError, Skeleton, transfer_motion
 from tests.people import HANGING, at_rest_in, coarse_rig, fine_rig, moved, renamed, skinned, walk
 from tests.shapes import rotation
 
@@ -146,3 +148,37 @@ def test_what_makes_no_motion_is_refused(someone, wild):
         transfer_motion(wild, pairing, Skeleton(tree.parents[:3], tree.heads[:3], tree.tails[:3]))
     with pytest.raises(RigError, match="frame rate"):
         transfer_motion(wild, pairing, tree, MotionSettings(rate=0))
+
+
+def four_legged(chest=1.0, heels=0.0, bend=0.08):
+    """Bones of an animal: height of its chest, of its hind feet above the ground, and how far its elbows bend."""
+    bones = [(-1, (0, 0.0, 1.0), (0, 0.6, (1.0 + chest) / 2)), (0, (0, 0.6, (1.0 + chest) / 2), (0, 1.2, chest))]
+    bones.append((1, (0, 1.2, chest), (0, 1.7, chest + 0.4)))
+    for trunk, y, top, low, out in ((0, 0.0, 1.0, heels, 0.08), (1, 1.2, chest, 0.0, bend)):
+        for x in (-0.2, 0.2):
+            above = trunk
+            knee, ankle = low + 0.55 * (top - low), low + 0.1
+            ends = [(x, y, top), (x, y + out, knee), (x, y, ankle), (x, y + 0.15, low)]
+            for head, tail in pairwise(ends):
+                bones.append((above, head, tail))
+                above = len(bones) - 1
+    parents, heads, tails = (np.array(column) for column in zip(*bones, strict=True))
+    return Skeleton(parents, heads.astype(float), tails.astype(float))
+
+
+def test_each_foot_stands_at_its_own_height():
+    """The target rests with bent elbows, so that what lies as the source's does takes its fore feet down."""
+    source, target = four_legged(), four_legged(1.1, heels=0.06, bend=0.4)
+    numbers = np.arange(len(source))
+    # At rest each bone of the target is turned in the plane of the body from its partner.
+    angles = [np.arctan2(*(tree.tails - tree.heads)[:, :0:-1].T) for tree in (source, target)]
+    turns = np.stack([rotation([1, 0, 0], angle) for angle in angles[1] - angles[0]])
+    pairing = BonePairing(numbers, numbers, np.ones(len(source)), turns, target.heads, np.eye(3))
+    motion = Motion(source, np.tile(np.eye(3), (24, len(source), 1, 1)), np.tile(source.heads, (24, 1, 1)))
+    toes = [5, 8, 11, 14]
+    free = transfer_motion(motion, pairing, target, MotionSettings())
+    held = transfer_motion(motion, pairing, target, MotionSettings(feet=True))
+    wanted = target.tails[toes, 2]
+    assert np.ptp(wanted) > 0.05
+    assert np.ptp(free.motion.tails[:, toes, 2] - wanted, axis=1).min() > 0.1
+    assert np.abs(held.motion.tails[:, toes, 2] - wanted).max() < 0.01

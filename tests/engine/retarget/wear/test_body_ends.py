@@ -44,5 +44,16 @@ def test_what_goes_on_beyond_an_open_end_is_part_of_the_body(item, continues):
     assert continues_body(turned(LEG), turned(item)) == continues
 
 
+def test_what_holds_a_body_together_is_part_of_it():
+    ball = TriangleMesh(*icosphere(6))
+    ends = [ball.vertices * 0.6 + np.array([0.0, 0.0, height]) for height in (-2.0, 2.0)]
+    apart = TriangleMesh(np.concatenate(ends), np.concatenate([ball.triangles, ball.triangles + ball.vertex_count]))
+    assert continues_body(apart, tube(-2.0, 2.0, 0.61))
+    assert continues_body(turned(apart), turned(tube(-2.0, 2.0, 0.61)))
+    assert not continues_body(apart, tube(-2.5, -1.0, 0.61))
+    whole = TriangleMesh(ball.vertices * [0.6, 0.6, 3.0], ball.triangles)
+    assert not continues_body(whole, tube(-2.0, 2.0, 0.61))
+
+
 def test_a_closed_body_is_whole():
     assert not continues_body(TriangleMesh(*icosphere(6)), tube(2.0, 9.0, 0.5))
