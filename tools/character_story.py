@@ -30,8 +30,8 @@ there are, after the second picture,
 
 With --my-rig a metarig of Rigify is put into the source, a person, by its joints, and fitted into the target;
 its control rig is generated, the target bound to it by automatic weights, and the action carried over to the controls.
-At last the bones of the source are renamed, and it must still move alike.  The target should be one closed mesh, as
-Blender's automatic weights fail on loose pieces.  After the first picture there are
+At last the bones of the source are renamed, and it must still move alike.  The target should be one mesh, as Blender's
+automatic weights fail on what lies loose inside others.  After the first picture there are
 
     2-standing.jpg      the metarig stands in the source
     3-fitted.jpg        and a copy in the target
@@ -59,6 +59,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+import bmesh
 import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
@@ -90,6 +91,9 @@ _BENDS, _TIMES = 3, 4
 
 _WISHED = ("walk", "run", "swim", "gallop")
 """What the name of an action to play should contain, the best first."""
+
+_SEAM = 1e-5
+"""How far apart the vertices are, in metres, at seams of glTF files."""
 
 _AROUND = ("FRONT", "RIGHT", "BACK", "LEFT")
 """Sides from which the target is seen in its items."""
@@ -151,9 +155,11 @@ def tell_my_rig(story: Story, camera: Camera) -> Iterator[float | None]:
     cast("Any", bpy.ops.preferences).addon_enable(module="rigify")
     registration = _registration()
     fold("hiermatch_my_rig", package=registration.__package__.rpartition(".")[0])
+    _open("HIERMATCH_PT_match", "HIERMATCH_PT_retarget", alone=True)
     yield from story.bring(camera)
     yield from story.fit_my_rig(camera)
-    _open("HIERMATCH_PT_motion")
+    _open("HIERMATCH_PT_motion", alone=True)  # all of it would not fit below the others
+    yield None
     choose_tab()
     yield from story.carry(camera, number=5)
     yield from story.play(camera, carried=True, sheet=8)
@@ -255,7 +261,7 @@ class Story:
         action = _action_of(self._rigs[0])
         check(action is not None, "The source has no action")
         _assign(self._rigs[0], action)
-        cast("Any", self._rigs[1]).animation_data_clear()
+        _stop(self._rigs[1])
         yield None
         press(cast("Any", bpy.ops).hiermatch.pair_bones)
         progress = cast("Any", bpy.context.window_manager).hiermatch
@@ -287,7 +293,7 @@ class Story:
             bpy.data.objects.remove(obj)
         self._meshes[0] = kept
         for rig in self._rigs:
-            rig.animation_data_clear()
+            _stop(rig)
             for bone in cast("Any", rig.pose).bones:
                 bone.matrix_basis = Matrix()
 
@@ -447,13 +453,16 @@ class Story:
         overlay.show_bones = False
 
 
-def _open(name: str) -> None:
-    """Let one panel be unfolded and all others folded when they are drawn for the first time."""
+def _open(*names: str, alone: bool = False) -> None:
+    """Let some panels be unfolded when they are drawn for the first time, and all others folded, or gone."""
     panels: list[Any] = [cls for cls in _registration().CLASSES if issubclass(cls, bpy.types.Panel)]
     for panel in reversed(panels):
         bpy.utils.unregister_class(panel)
     for panel in panels:
-        panel.bl_options = set() if panel.__name__ == name else {"DEFAULT_CLOSED"}
+        shown = panel.__name__ in names
+        panel.bl_options = set() if shown else {"DEFAULT_CLOSED"}
+        if alone:
+            panel.poll = classmethod(lambda _cls, _context, shown=shown: shown)
         bpy.utils.register_class(panel)
 
 
@@ -493,7 +502,7 @@ def _separated(obj: bpy.types.Object, materials: list[str]) -> bpy.types.Object:
 
 
 def _bind(meshes: list[bpy.types.Object], rig: bpy.types.Object) -> None:
-    """Let a rig move meshes in the place of their own, by automatic weights."""
+    """Let a rig move meshes in the place of their own, by automatic weights, for which seams have to be merged."""
     with bpy.context.temp_override(**view()):
         bpy.ops.object.select_all(action="DESELECT")
         for mesh in meshes:
@@ -501,6 +510,11 @@ def _bind(meshes: list[bpy.types.Object], rig: bpy.types.Object) -> None:
             mesh.parent = None
             mesh.matrix_world = stands
             mesh.vertex_groups.clear()
+            build = bmesh.new()
+            build.from_mesh(mesh.data)
+            bmesh.ops.remove_doubles(build, verts=build.verts, dist=_SEAM)
+            build.to_mesh(mesh.data)
+            build.free()
             for modifier in [one for one in mesh.modifiers if one.type == "ARMATURE"]:
                 mesh.modifiers.remove(modifier)
             mesh.select_set(state=True)
@@ -582,6 +596,15 @@ def _assign(rig: bpy.types.Object, action: Any) -> None:  # noqa: ANN401 - an ac
     animation.action = action
     if getattr(animation, "action_slot", True) is None:
         animation.action_slot = animation.action_suitable_slots[0]
+
+
+def _stop(rig: bpy.types.Object) -> None:
+    """Take a rig's actions away, and leave its drivers."""
+    animation: Any = rig.animation_data
+    if animation is not None:
+        animation.action = None
+        for track in list(animation.nla_tracks):
+            animation.nla_tracks.remove(track)
 
 
 def main(arguments: list[str]) -> None:

@@ -7,11 +7,12 @@ FOLDER holds rigged characters as .glb or .vrm files. Without --only these are a
 and of four-legged animals, that are named in `PEOPLE` and `ANIMALS`, each once. Everything goes through the buttons:
 import, Pair Bones, Retarget Action. A source without an action gets a walk, by what its limbs are called.
 
-A row holds how many limb bones of the target are paired right, of those that the source has as well, told by names; how
-many are paired with the other side; the mean and the largest angle between upper and lower limbs of source and target
-over the action, in degrees (not for animals, whose legs are built in other pieces); how far the lowest point of the
-target is below the ground at most, and how far the source is below its own, both in % of the height; and the seconds of
-one core that pairing, match included, and the motion took. --save keeps a .blend of each pair, to look at.
+A row holds the confidence of the match in %; how many limb bones of the target are paired right, of those that the
+source has as well, told by names; how many are paired with the other side; the mean and the largest angle between
+upper and lower limbs of source and target over the action, in degrees (not for animals, whose legs are built in other
+pieces); how far the lowest point of the target is below the ground at most, and how far the source is below its own,
+both in % of the height; and the seconds of one core that pairing, match included, and the motion took. --save keeps a
+.blend of each pair, to look at.
 """
 
 import argparse
@@ -195,6 +196,7 @@ def row(folder, names, save):
     between = time.process_time()
     bpy.ops.hiermatch.retarget_action(source=source.name, target=target.name, action=action.name)
     end = time.process_time()
+    confidence = 100 * bpy.context.scene.hiermatch.summary.confidence
     right, count, crossed, said = paired(bpy.context.scene.hiermatch_bone_pairs, source, target)
     angles, depths = [], [0.0, 0.0]
     for frame in np.linspace(*action.frame_range, FRAMES):
@@ -206,8 +208,9 @@ def row(folder, names, save):
     if save is not None:
         bpy.ops.wm.save_as_mainfile(filepath=str(save / f"{'-'.join(Path(name).stem for name in names)}.blend"))
     bends = f"{np.mean(angles):5.1f} {np.max(angles):5.1f}" if angles else f"{'':5} {'':5}"
+    title = " -> ".join(Path(name).stem for name in names)
     return (
-        f"{' -> '.join(Path(name).stem for name in names):64} {right:3d}/{count:<3d} {crossed:3d}  {bends}  "
+        f"{title:64} {confidence:4.0f}  {right:3d}/{count:<3d} {crossed:3d}  {bends}  "
         f"{depths[0]:5.1f} {depths[1]:5.1f}  {between - begin:6.1f} {end - between:5.1f}"
     ), said
 
