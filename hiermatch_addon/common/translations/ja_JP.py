@@ -701,7 +701,7 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」は自身のアーマチュア「{1}」ではもう動きません。そのアーマチュアモディファイアーはオフになっています。"
     ),
     "Bind": "バインド",
-    "Rest Pose like the Source's": "ソースと同じレストポーズ",
+    "Same Rest Pose": "ソースと同じレストポーズ",
     (
         "Whether to bring the target to the rest pose of the source, so that the source's actions play on "
         "it. How it stood is kept as an action"
@@ -814,7 +814,7 @@ MESSAGES: Final[dict[str, str]] = {
         "個々の部品を指定するターゲットの頂点グループ。ウェイト1の頂点がある独立部品は一つのボーンで動き、ウェイト0の頂点"
         "がある部品は、ソースにかかわらず一体としては動きません"
     ),
-    "Without Counterpart": "対応のない場所",
+    "No Counterpart": "対応のない場所",
     "Follow the Map": "マップに従う",
     (
         "What vertices get that have no counterpart on the source, as Show > Overlap tells: where the target shows "
@@ -924,7 +924,7 @@ MESSAGES: Final[dict[str, str]] = {
         "ターゲットのシームの代わりに、ソースのシームに沿う辺をシームとしてマークします。転送されるUVマップは独"
         "自のシームを伴います"
     ),
-    "Creases and Bevel Weights": "クリースとベベル",
+    "Creases and Bevels": "クリースとベベル",
     "Carry creases and bevel weights over to the edges and vertices that follow those of the source": (
         "クリースとベベルウェイトを、ソースのものに沿う辺と頂点に転送します"
     ),

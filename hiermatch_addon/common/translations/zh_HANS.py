@@ -585,7 +585,7 @@ MESSAGES: Final[dict[str, str]] = {
         "“{0}”不再受自身的骨架“{1}”驱动，其骨架修改器已关闭。"
     ),
     "Bind": "绑定",
-    "Rest Pose like the Source's": "与源相同的静置姿态",
+    "Same Rest Pose": "与源相同的静置姿态",
     (
         "Whether to bring the target to the rest pose of the source, so that the source's actions play on "
         "it. How it stood is kept as an action"
@@ -676,7 +676,7 @@ MESSAGES: Final[dict[str, str]] = {
         "目标上用于指定单个部件的顶点组：组中有权重为 1 的顶点的松散部件由一根骨骼驱动，有权重为 0 的顶点的部件从不整体"
         "移动，不论源如何"
     ),
-    "Without Counterpart": "没有对应部分处",
+    "No Counterpart": "没有对应部分处",
     "Follow the Map": "遵循映射",
     (
         "What vertices get that have no counterpart on the source, as Show > Overlap tells: where the target shows "
@@ -763,7 +763,7 @@ MESSAGES: Final[dict[str, str]] = {
         "Mark the edges as seams that follow seams of the source, instead of those of the target. UV maps that are "
         "carried over bring their own"
     ): "将沿着源缝合边的边标记为缝合边，取代目标的缝合边。传递的 UV 贴图自带其缝合边",
-    "Creases and Bevel Weights": "折痕与倒角权重",
+    "Creases and Bevels": "折痕与倒角权重",
     "Carry creases and bevel weights over to the edges and vertices that follow those of the source": (
         "将折痕和倒角权重传递到沿着源的边和顶点上"
     ),

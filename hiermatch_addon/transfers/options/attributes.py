@@ -78,7 +78,7 @@ class AttributeOptions:
             default=False,
         ),
         "attribute_creases": _props.BoolProperty(
-            name="Creases and Bevel Weights",
+            name="Creases and Bevels",
             description="Carry creases and bevel weights over to the edges and vertices that follow those of the "
             "source",
             default=True,

@@ -70,7 +70,7 @@ class RigOptions:
             default=True,
         ),
         "rest_pose_like_source": _props.EnumProperty(
-            name="Rest Pose like the Source's",
+            name="Same Rest Pose",
             description="Whether to bring the target to the rest pose of the source, so that the source's actions play "
             "on it. How it stood is kept as an action",
             items=[

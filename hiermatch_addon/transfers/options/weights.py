@@ -121,7 +121,7 @@ class WeightOptions:
             default=True,
         ),
         "weight_alone": _props.EnumProperty(
-            name="Without Counterpart",
+            name="No Counterpart",
             description="What vertices get that have no counterpart on the source, as Show > Overlap tells: where the "
             "target shows more of a body than the source",
             items=[

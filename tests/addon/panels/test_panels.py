@@ -369,3 +369,10 @@ def test_long_names_of_numbers_stand_inside_their_fields(context, monkeypatch):
     assert not split["coarse_candidates"]
     assert split["metric"]
     assert split["settle"]
+
+
+def test_labels_of_what_is_carried_fit_beside_their_values():
+    """At the sidebar's default width: 90 pixels beside a value, 130 beside a check mark, about six for a letter."""
+    for prop in type(bpy.context.scene.hiermatch_retarget).bl_rna.properties:
+        if prop.type not in ("POINTER", "COLLECTION"):
+            assert len(prop.name) <= (20 if prop.type == "BOOLEAN" else 14), prop.name
