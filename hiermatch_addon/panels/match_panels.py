@@ -266,5 +266,5 @@ def _search_text(summary: HIERMATCH_PG_summary) -> str:
 def _orientation_text(summary: HIERMATCH_PG_summary) -> str:
     """Say whether the match keeps left and right."""
     if abs(summary.orientation) < _CLEAR_ORIENTATION:
-        return translated("unclear, look at the colors")
+        return translated("unclear, see colors")
     return translated("kept") if summary.orientation > 0 else translated("exchanged")

@@ -18,6 +18,9 @@ __all__ = ["draw_notes", "draw_text", "letters_across", "wrap_text"]
 _PIXELS_PER_LETTER = 7
 """Rough width of a letter at normal interface scale, to wrap sentences."""
 
+_BESIDE = 7
+"""How many letters margins and the icon take, and letters that are wider: with 6 a line of 34 was cut off."""
+
 _NEVER_FIRST: Final = "、。，．：；！？）」』”’・ー々ぁぃぅぇぉっゃゅょァィゥェォッャュョ"
 """What no line of Japanese or Chinese starts with."""
 
@@ -46,7 +49,7 @@ def letters_across(context: bpy.types.Context) -> int:
     """Return how many letters of a sentence stand in a line of the sidebar."""
     region, preferences = cast("Any", context.region), cast("Any", context.preferences)
     width = region.width / (_PIXELS_PER_LETTER * preferences.system.ui_scale)
-    return max(16, int(width) - 6)
+    return max(16, int(width) - _BESIDE)
 
 
 def wrap_text(text: str, width: int) -> list[str]:

@@ -1752,7 +1752,7 @@ MESSAGES: Final[dict[str, str]] = {
     "kept": "保持",
     "finished": "完了",
     "ended early, at most {gap} from the best": "途中で終了。最良との差は最大{gap}",
-    "unclear, look at the colors": "不明。色を見て確かめてください",
+    "unclear, see colors": "不明。色を見て確かめてください",
     "good": "良好",
     "fair": "まずまず",
     "look closely": "よく確かめてください",

@@ -1452,7 +1452,7 @@ MESSAGES: Final[dict[str, str]] = {
     "kept": "保持",
     "finished": "已完成",
     "ended early, at most {gap} from the best": "提前结束，与最优解最多相差 {gap}",
-    "unclear, look at the colors": "不明确，请查看颜色",
+    "unclear, see colors": "不明确，请查看颜色",
     "good": "良好",
     "fair": "尚可",
     "look closely": "请仔细检查",
