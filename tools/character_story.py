@@ -461,9 +461,19 @@ def _open(*names: str, alone: bool = False) -> None:
     for panel in panels:
         shown = panel.__name__ in names
         panel.bl_options = set() if shown else {"DEFAULT_CLOSED"}
-        if alone:
-            panel.poll = classmethod(lambda _cls, _context, shown=shown: shown)
+        if alone and not getattr(panel, "bl_parent_id", ""):
+            panel.poll = _always if shown else _never
         bpy.utils.register_class(panel)
+
+
+@classmethod
+def _always(_cls: type, _context: bpy.types.Context) -> bool:
+    return True
+
+
+@classmethod
+def _never(_cls: type, _context: bpy.types.Context) -> bool:
+    return False
 
 
 def _registration() -> Any:  # noqa: ANN401 - a module

@@ -9,10 +9,10 @@ import, Pair Bones, Retarget Action. A source without an action gets a walk, by 
 
 A row holds the confidence of the match in %; how many limb bones of the target are paired right, of those that the
 source has as well, told by names; how many are paired with the other side; the mean and the largest angle between
-upper and lower limbs of source and target over the action, in degrees (not for animals, whose legs are built in other
-pieces); how far the lowest point of the target is below the ground at most, and how far the source is below its own,
-both in % of the height; and the seconds of one core that pairing, match included, and the motion took. --save keeps a
-.blend of each pair, to look at.
+upper and lower limbs of source and target over the action, each as seen from its own front, in degrees (not for
+animals, whose legs are built in other pieces); how far the lowest point of the target is below the ground at most, and
+how far the source is below its own, both in % of the height; and the seconds of one core that pairing, match included,
+and the motion took. --save keeps a .blend of each pair, to look at.
 """
 
 import argparse
@@ -145,6 +145,13 @@ def ways(rig):
     }
 
 
+def facing(rig):
+    """Angle on the ground of the way from the right leg to the left one, by what they are called; zero without any."""
+    heads = {limb(bone.name): rig.matrix_world @ bone.head_local for bone in rig.data.bones}
+    ends = [heads.get(("upper_leg", side)) for side in "LR"]
+    return 0.0 if None in ends else float(np.arctan2(ends[0].y - ends[1].y, ends[0].x - ends[1].x))
+
+
 def heights(meshes):
     """Lowest and highest point of meshes as they are shown."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -199,10 +206,11 @@ def row(folder, names, save):
     confidence = 100 * bpy.context.scene.hiermatch.summary.confidence
     right, count, crossed, said = paired(bpy.context.scene.hiermatch_bone_pairs, source, target)
     angles, depths = [], [0.0, 0.0]
+    turn = Quaternion((0, 0, 1), facing(target) - facing(source))
     for frame in np.linspace(*action.frame_range, FRAMES):
         bpy.context.scene.frame_set(round(frame))
         mine, other = ways(source), ways(target)
-        angles += [np.degrees(way.angle(other[what])) for what, way in mine.items() if what in other]
+        angles += [np.degrees((turn @ way).angle(other[what])) for what, way in mine.items() if what in other]
         for number, (meshes, (low, high)) in enumerate(zip((others, its), rests[::-1], strict=True)):
             depths[number] = max(depths[number], 100 * (low - heights(meshes)[0]) / (high - low))
     if save is not None:
