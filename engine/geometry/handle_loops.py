@@ -18,9 +18,10 @@ from ..runtime.progress import Progress, Steps
 _ROOTS = 256
 """Most vertices of the first loops that shorter ones are looked for at."""
 
-_CREASE = 0.2
+_CREASE = 0.05
 """What a unit of length counts for in a crease: around where two parts touch the surface is hollow, around a wrist it
-bulges."""
+bulges.  With 0.2 forearms that lie on the back are cut off, as half of what goes around them is a crease (``python -m
+tests.benchmarks.fused_bodies``)."""
 
 _SADDLE = 0.1
 """By how much the angles around a vertex exceed a full turn, in radians, for a narrow place to count as a crease."""
@@ -39,13 +40,17 @@ def genus(mesh: TriangleMesh) -> int:
     return (2 - ends - characteristic) // 2
 
 
-def shortest_handle_loop_steps(mesh: TriangleMesh) -> Steps[Ints]:
+def shortest_handle_loop_steps(mesh: TriangleMesh, lids: Bools | None = None) -> Steps[Ints]:
     """Find a short loop of edges that goes around a handle, or through it, in a crease if there is one.
 
     Parameters
     ----------
     mesh : TriangleMesh
         A connected, oriented manifold of genus 1 or more.
+    lids : (n,) array of bool, optional
+        Vertices in the middle of what closes an opening: there is no surface, and their edges count as creases.  Two
+        hands and the face that they cover are parted in two cuts, the second of which goes through the lid of the
+        first.
 
     Returns
     -------
@@ -63,7 +68,7 @@ def shortest_handle_loop_steps(mesh: TriangleMesh) -> Steps[Ints]:
     ----------
     .. [1] J. Erickson, K. Whittlesey, "Greedy optimal homotopy and homology generators", SODA 2005.
     """
-    loops = _Loops(mesh)
+    loops = _Loops(mesh, lids)
     centre = np.average(mesh.vertices, axis=0, weights=mesh.vertex_areas)
     first = loops.at(int(np.square(mesh.vertices - centre).sum(axis=1).argmax()))
     best = first[0]
@@ -89,7 +94,7 @@ class _Ends:
 class _Loops:
     """Finds the shortest loops through a vertex that no disc is spanned by."""
 
-    def __init__(self, mesh: TriangleMesh) -> None:
+    def __init__(self, mesh: TriangleMesh, lids: Bools | None = None) -> None:
         ends = _Ends(mesh)
         tails = mesh.triangles.ravel()
         heads = np.roll(mesh.triangles, -1, axis=1).ravel()
@@ -98,6 +103,8 @@ class _Loops:
         lengths = np.linalg.norm(mesh.vertices[self._tails] - mesh.vertices[self._heads], axis=1)
         creased = _creased(mesh)
         in_crease = creased[self._tails] & creased[self._heads]
+        if lids is not None:
+            in_crease |= lids[self._tails] | lids[self._heads]
         # An edge without length would be none to the search.
         least = float(np.finfo(float).eps * lengths.max())
         self._lengths = np.maximum(np.where(in_crease, _CREASE * lengths, lengths), least)

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from ..geometry.eigenpairs import eigenpairs_steps
 from ..geometry.handle_loops import genus, shortest_handle_loop_steps
 from ..mesh.connectivity.boundary_loops import boundary_loops
 from ..mesh.connectivity.edge_chains import way_to_root
@@ -25,13 +26,26 @@ from .shape import Shape
 _MOST = 6
 """Handles that are cut at most: a surface that has so many more, such as chain mail, has them on purpose."""
 
+_COMPARED = 30
+"""Eigenvalues that tell how much alike two surfaces are: from ten to sixty they choose nearly the same cuts (``python
+-m tests.benchmarks.fused_bodies``)."""
+
+_NEARER = 0.8
+"""Part of what the eigenvalues of two surfaces are apart up to which handles of both are cut: bodies whose hands rest
+in different places come as near as 0.3 to 0.8 of it, rings that are cut somewhere to 0.7 or not at all (``python -m
+tests.benchmarks.fused_bodies``)."""
+
 
 def evened_steps(x: Shape, y: Shape) -> Steps[tuple[Shape, Shape]]:
-    """Cut the handles of one shape that the other has not.
+    """Cut the handles of one shape that the other has not, and those of both if that makes them more alike.
 
     A hand that touches the thigh, or feet that touch, are one with it in a scan: then distances along the surface take
     a short cut, and none of them is that of the body in another pose.  Such a place is a handle.  The shortest loops
     are cut: they go around where parts touch, as touching parts enclose more than they share.
+
+    Where both have handles, these may be the same, as those of two mugs, or not, as hands on the hips and hands on the
+    face.  So as many more are cut on both sides as make their eigenvalues the most alike, if that is by much: where
+    distances differ, eigenvalues do.
 
     Parameters
     ----------
@@ -43,22 +57,50 @@ def evened_steps(x: Shape, y: Shape) -> Steps[tuple[Shape, Shape]]:
     x, y : Shape
         The same, or cut, with a note that says so.
     """
-    more = genus(x.mesh) - genus(y.mesh)
-    if more > 0:
-        x = yield from _without_handles_steps(x, more, "source", "target")
-    elif more < 0:
-        y = yield from _without_handles_steps(y, -more, "target", "source")
-    return x, y
+    handles = genus(x.mesh), genus(y.mesh)
+    most, least = max(handles), min(handles)
+    if most - least > _MOST or most == 0 or x is y:
+        return x, y
+    left = range(least, -1, -1) if most <= _MOST else range(least, least + 1)
+    ways = []
+    for shape, count, names, begin in (
+        (x, handles[0], ("source", "target"), 0.0),
+        (y, handles[1], ("target", "source"), 0.4),
+    ):
+        cut = yield from within(_opened_steps(shape, count - left[-1], names), begin, begin + 0.4)
+        ways.append([cut[min(count - kept, len(cut) - 1)] for kept in left])
+    pairs = list(zip(*ways, strict=True))
+    if len(pairs) == 1:
+        return pairs[0]
+    apart = []
+    for number, pair in enumerate(pairs):
+        begin, end = (0.8 + 0.2 * (number + i) / len(pairs) for i in (0, 1))
+        apart.append((yield from within(_spectra_apart_steps(*pair), begin, end)))
+    best = int(np.argmin(apart))
+    return pairs[best if apart[best] < _NEARER * apart[0] else 0]
 
 
-def _without_handles_steps(shape: Shape, count: int, name: str, other: str) -> Steps[Shape]:
-    """Cut a shape along the shortest loops of its handles, if there are not too many."""
-    if count > _MOST:
-        return shape
-    surface = shape.surface
+def _spectra_apart_steps(x: Shape, y: Shape) -> Steps[float]:
+    """Measure how far the eigenvalues of two shapes are apart: the mean of the logarithms of their ratios."""
+    logarithms = []
+    for shape in (x, y):
+        spectrum = yield from eigenpairs_steps(shape.laplace, min(_COMPARED + 1, shape.mesh.vertex_count))
+        values = spectrum.values[1:] * shape.laplace.area
+        logarithms.append(np.log(np.maximum(values, np.finfo(float).tiny)))
+    count = min(map(len, logarithms))
+    return float(np.abs(logarithms[0][:count] - logarithms[1][:count]).mean())
+
+
+def _opened_steps(shape: Shape, count: int, names: tuple[str, str]) -> Steps[list[Shape]]:
+    """Cut a shape along the shortest loops of so many handles, one by one: it with no cut, with one, and so on."""
+    surface, opened = shape.surface, [shape]
+    name, other = names
+    note = f"The {name} hangs together where the {other} does not: it was cut open there for matching."
+    notes = (*surface.cleaned.notes, note)
     for number in range(count):
         begin, middle, end = number / count, (number + 0.5) / count, (number + 1) / count
-        found = yield from within(shortest_handle_loop_steps(surface.mesh), begin, middle)
+        lids = surface.cleaned.main.original_vertices[surface.proxy.vertices] < 0
+        found = yield from within(shortest_handle_loop_steps(surface.mesh, lids), begin, middle)
         loop = _on_dense(surface.proxy, surface.cleaned.mesh, found)
         main = cut_along(surface.cleaned.main, loop)
         if main is None:
@@ -67,13 +109,10 @@ def _without_handles_steps(shape: Shape, count: int, name: str, other: str) -> S
             proxy = Proxy.identity(main.mesh)
         else:
             proxy = yield from within(proxy_steps(main.mesh, surface.mesh.vertex_count), middle, end)
-        cleaned = replace(surface.cleaned, pieces=(main, *surface.cleaned.pieces[1:]))
+        cleaned = replace(surface.cleaned, pieces=(main, *surface.cleaned.pieces[1:]), notes=notes)
         surface = replace(surface, cleaned=cleaned, proxy=proxy)
-    if surface is shape.surface:
-        return shape
-    note = f"The {name} hangs together where the {other} does not: it was cut open there for matching."
-    cleaned = replace(surface.cleaned, notes=(*surface.cleaned.notes, note))
-    return Shape.of(replace(surface, cleaned=cleaned))
+        opened.append(Shape.of(surface))
+    return opened
 
 
 def cut_along(part: SurfacePart, loop: Ints) -> SurfacePart | None:

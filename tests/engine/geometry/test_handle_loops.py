@@ -104,3 +104,12 @@ def test_a_handle_of_an_open_surface():
     assert len(cut.boundary_edges)
     assert genus(cut) == 1
     assert length(cut, shortest_loop(cut)) == pytest.approx(length(whole, shortest_loop(whole)))
+
+
+def test_a_loop_may_go_through_what_closes_an_opening():
+    """What is no surface hardly counts: a ring is cut along its outside, though the way around its tube is shorter."""
+    mesh = TriangleMesh(*torus(48, 20))
+    away = np.linalg.norm(mesh.vertices[:, :2], axis=1)
+    outermost = away > away.max() - 1e-9
+    loop = run(shortest_handle_loop_steps(mesh, outermost))
+    np.testing.assert_array_equal(np.sort(loop), np.flatnonzero(outermost))

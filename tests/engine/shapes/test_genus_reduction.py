@@ -11,7 +11,7 @@ from engine.runtime.progress import run
 from engine.shapes.genus_reduction import cut_along, evened_steps
 from tests.engine.geometry.test_handle_loops import with_handles
 from tests.messes import bridged
-from tests.shapes import compacted, creature, icosphere, torus
+from tests.shapes import capsule_surface, compacted, creature, icosphere, irregular, torus
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
 
@@ -67,10 +67,49 @@ def test_shapes_with_equal_handles_stay_as_they_are(handles):
     assert run(evened_steps(x, y)) == (x, y)
 
 
+@pytest.mark.parametrize("stretched", [(1, 1, 1), (1, 1, 1.5)])
+def test_a_ring_stays_a_ring_however_it_is_built_and_meshed(stretched):
+    """The same handle on both: what they are without it is not more alike."""
+    vertices, triangles = torus(48, 20)
+    x, y = Shape(TriangleMesh(vertices * stretched, triangles)), Shape(TriangleMesh(*irregular(*torus(60, 24))))
+    assert run(evened_steps(x, y)) == (x, y)
+
+
+def figure(elbow, hand, turn=0.0):
+    """Make somebody whose arms end at places, where they grow together with what is there."""
+    parts = [((0, 0, 0.9), (0, 0, 1.35), 0.17, 0.17), ((0, 0, 1.5), (0, 0, 1.8), 0.08, 0.14)]
+    for side in ([1, 1, 1], [-1, 1, 1]):
+        hip, foot, shoulder, *arm = np.array([(0.12, 0, 0.85), (0.2, 0, 0.1), (0.18, 0, 1.38), elbow, hand]) * side
+        parts += [(hip, foot, 0.1, 0.07), (shoulder, arm[0], 0.07, 0.06), (*arm, 0.055, 0.055)]
+    return TriangleMesh(*capsule_surface(parts, [[-1, -0.4, -0.1], [1, 0.4, 2.1]], 16, turn))
+
+
+def test_a_body_that_touches_itself_elsewhere_is_cut_on_both_sides():
+    """Hands on the hips are two handles, hands at the head two others."""
+    hips, head = figure((0.62, 0, 1.15), (0.24, 0, 0.9)), figure((0.55, 0, 1.5), (0.2, 0, 1.78), turn=0.5)
+    assert genus(hips) == genus(head) == 2
+    x, y = run(evened_steps(Shape(hips), Shape(head)))
+    assert genus(x.mesh) == genus(y.mesh) < 2
+    for shape, name, other in ((x, "source", "target"), (y, "target", "source")):
+        note = f"The {name} hangs together where the {other} does not: it was cut open there for matching."
+        assert shape.surface.cleaned.notes == (note,)
+
+
+def test_hands_on_the_hips_stay_there_if_they_are_so_in_both():
+    shapes = tuple(Shape(figure((0.62, 0, 1.15), (0.24, 0, 0.9), turn)) for turn in (0.0, 0.6))
+    assert run(evened_steps(*shapes)) == shapes
+
+
+def test_one_surface_matched_to_itself_is_not_cut():
+    ring = Shape(TriangleMesh(*torus()))
+    assert all(shape is ring for shape in run(evened_steps(ring, ring)))
+
+
 def test_chain_mail_stays_as_it_is():
     """A surface with many handles has them on purpose."""
-    x, y = Shape(with_handles(7, 20)), Shape(with_handles(0))
+    x, y, z = Shape(with_handles(7, 20)), Shape(with_handles(0)), Shape(with_handles(7, 18))
     assert run(evened_steps(x, y)) == (x, y)
+    assert run(evened_steps(x, z)) == (x, z)
 
 
 def test_a_dense_surface_is_cut_where_its_proxy_would_be():
