@@ -59,8 +59,8 @@ def area_samples(mesh: TriangleMesh, area: float) -> AreaSamples:
     return AreaSamples(_places(mesh, triangles, number), triangles, (mesh.triangle_areas / counts)[triangles])
 
 
-def even_samples(mesh: TriangleMesh, area: float) -> Floats:
-    """Spread points over a mesh each of which stands for about the same area, (s, 3): one at least.
+def even_samples(mesh: TriangleMesh, area: float) -> AreaSamples:
+    """Spread points over a mesh each of which stands for the same area, about the given one: one point at least.
 
     Unlike those of `area_samples` they are no more where triangles are small, and not in every triangle.
     """
@@ -68,7 +68,7 @@ def even_samples(mesh: TriangleMesh, area: float) -> Floats:
     number = np.arange(count)
     ends = np.cumsum(mesh.triangle_areas)
     triangles = np.searchsorted(ends, (number + 0.5) / count * ends[-1])
-    return _places(mesh, triangles, number)
+    return AreaSamples(_places(mesh, triangles, number), triangles, np.full(count, ends[-1] / count))
 
 
 def _places(mesh: TriangleMesh, triangles: Ints, number: Ints) -> Floats:

@@ -47,8 +47,12 @@ def test_degenerate_triangles_have_a_point_of_no_area():
 def test_even_samples_do_not_depend_on_how_fine_the_triangles_are():
     coarse, fine = TriangleMesh(*icosphere(3)), TriangleMesh(*icosphere(40))
     for mesh in (coarse, fine):
-        points = even_samples(mesh, mesh.area / 500)
+        samples = even_samples(mesh, mesh.area / 500)
+        points = samples.positions
+        assert samples.areas.sum() == pytest.approx(mesh.area)
+        own = mesh.vertices[mesh.triangles[samples.triangles]].mean(axis=1)
+        assert np.linalg.norm(points - own, axis=1).max() < mesh.edge_lengths.max()
         assert len(points) == pytest.approx(500, abs=1)
         assert points.mean(axis=0) == pytest.approx(0, abs=0.05)
         assert np.histogram(points[:, 2], 4, (-1, 1))[0] == pytest.approx(125, rel=0.25)
-    assert len(even_samples(coarse, 100.0)) == 1
+    assert len(even_samples(coarse, 100.0).positions) == 1

@@ -133,6 +133,19 @@ def test_eyes_stay_pieces_of_their_own(body):
     assert {"The source has 2 smaller parts: they follow their surroundings."} <= set(found.cleaned.notes)
 
 
+def test_small_parts_of_a_finger_belong_to_the_body_but_an_eye_of_their_size_does_not(body):
+    ball, faces = icosphere(4)
+    tip = body.mesh.vertices[body.mesh.vertices[:, 0].argmax()]
+    parts = [(ball * [0.05, 0.035, 0.035] + tip + [0.03 + 0.08 * number, 0, 0], faces) for number in range(4)]
+    eye = ball * 0.035 + tip - [0.1, 0, 0], faces
+    mesh = TriangleMesh(*together((body.mesh.vertices, body.mesh.triangles), *parts, eye))
+    count = body.mesh.vertex_count
+    of_body = np.arange(mesh.vertex_count) < count + 4 * len(ball)
+    assert separate_limbs(clean(mesh))[count:].tolist() == of_body[count:].tolist()
+    surface = joined(mesh)
+    assert surface.mesh.vertices[:, 0].max() == pytest.approx(mesh.vertices[:, 0].max(), abs=0.03)
+
+
 def test_a_mesh_in_one_piece_has_no_limbs():
     shape = Shape(whole())
     assert not separate_limbs(shape.surface.cleaned).any()
