@@ -59,14 +59,26 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-import bmesh
 import bpy
-import numpy as np
-from mathutils import Matrix, Quaternion, Vector
+from mathutils import Matrix
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from camera import Camera, seen
+from characters import (
+    action_of,
+    armatures_of,
+    assign,
+    bind,
+    check,
+    extent_of,
+    hangs_on,
+    separated,
+    shape_of,
+    show_bones,
+    stop,
+    swing,
+)
 from metarig import add_metarig, generate
 from screen import choose_tab, fold, large_view, look_at_selected, view
 from window_events import press, running, until
@@ -89,30 +101,9 @@ _FAR_ENOUGH = 0.3
 _BENDS, _TIMES = 3, 4
 """How many test poses, and moments of the action, are put on one sheet."""
 
-_WISHED = ("walk", "run", "swim", "gallop")
-"""What the name of an action to play should contain, the best first."""
-
-_SEAM = 1e-5
-"""How far apart the vertices are, in metres, at seams of glTF files."""
 
 _AROUND = ("FRONT", "RIGHT", "BACK", "LEFT")
 """Sides from which the target is seen in its items."""
-
-_SWINGS = {"upperarm": -0.6, "upperleg": 0.6, "thigh": 0.6}
-"""How far the bones with these words in their names swing, in radians, where the source has no action."""
-
-_SIDES = (((".l", "_l", "left"), 1), ((".r", "_r", "right"), -1))
-"""How names of bones end on the left and on the right."""
-
-
-class StoryError(Exception):
-    """A step did not do what it should; the message says which."""
-
-
-def check(condition: object, message: str) -> None:
-    """Make sure that a step did what it should."""
-    if not condition:
-        raise StoryError(message)
 
 
 def state() -> Any:  # noqa: ANN401 - a property group
@@ -193,8 +184,8 @@ class Story:
             self._import(path)
         if items is not None:
             self._take_apart(items)
-        elif _action_of(self._rigs[0]) is None:
-            _swing(self._rigs[0])
+        elif action_of(self._rigs[0]) is None:
+            swing(self._rigs[0])
         self._stand_apart()
         self._look()
         yield None
@@ -205,7 +196,7 @@ class Story:
 
     def retarget(self, camera: Camera) -> Iterator[float | None]:
         """Press the button, and answer if asked."""
-        before = {obj: _shape(obj) for obj in self._meshes[0]}
+        before = {obj: shape_of(obj) for obj in self._meshes[0]}
         press(cast("Any", bpy.ops).hiermatch.retarget)
         progress = cast("Any", bpy.context.window_manager).hiermatch
         yield from until(lambda: progress.fraction > _FAR_ENOUGH or not running(), "The first third")
@@ -214,8 +205,8 @@ class Story:
         camera.take_with_panel("4-retargeted", self._all())
         print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
         check(report().done, "Nothing was carried")
-        check(all(_shape(obj) == shape for obj, shape in before.items()), "The source was changed")
-        rigs = {rig for obj in self._meshes[1] for rig in _moving(obj)}
+        check(all(shape_of(obj) == shape for obj, shape in before.items()), "The source was changed")
+        rigs = {rig for obj in self._meshes[1] for rig in armatures_of(obj)}
         check(len(rigs) == 1, f"The target is moved by {len(rigs)} armatures instead of one")
         (self._made,) = rigs
         check(self._made not in self._rigs, "The target is still moved by its own armature")
@@ -224,7 +215,7 @@ class Story:
         """Put a metarig into the source, fit it into the target, and bind the target to its control rig."""
         metarig, options = add_metarig(self._rigs[0]), cast("Any", bpy.context.scene).hiermatch_retarget
         options.rig = metarig.name
-        _show_bones(metarig)
+        show_bones(metarig)
         yield None
         camera.take_with_panel("2-standing", self._all())
         press(cast("Any", bpy.ops).hiermatch.fit_my_rig, rig=options.rig)
@@ -232,13 +223,13 @@ class Story:
         print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
         fitted = [obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj not in (*self._rigs, metarig)]
         check(len(fitted) == 1, f"{len(fitted)} armatures were fitted instead of one")
-        _show_bones(fitted[0])
+        show_bones(fitted[0])
         yield None
         camera.take_with_panel("3-fitted", self._all())
         made = generate(fitted[0])
         metarig.hide_set(state=True)
         print(f"generated: {len(made.data.bones)} bones", flush=True)
-        _bind(self._meshes[1], made)
+        bind(self._meshes[1], made)
         self._rigs[1].hide_set(state=True)
         self._rigs[1] = made
         state().target = made
@@ -247,21 +238,21 @@ class Story:
 
     def rename(self) -> Iterator[float | None]:
         """Give the source's bones other names, and see that it still moves alike."""
-        before = _shape(self._meshes[0][0], shown=True)
+        before = shape_of(self._meshes[0][0], shown=True)
         press(cast("Any", bpy.ops).hiermatch.rename_bones, target=self._rigs[0].name, names="UNREAL")
         yield None
         names = set(cast("Any", self._rigs[0].data).bones.keys())
         check({"upperarm_l", "calf_r", "head"} <= names, f"The bones are called {sorted(names)}")
         scene = cast("Any", bpy.context.scene)
         scene.frame_set(scene.frame_current)
-        check(_shape(self._meshes[0][0], shown=True) == before, "The source moves otherwise with other names")
+        check(shape_of(self._meshes[0][0], shown=True) == before, "The source moves otherwise with other names")
 
     def carry(self, camera: Camera, number: int = 3) -> Iterator[float | None]:
         """Pair the bones, and carry the action over to the target's rig; the first picture has some number."""
-        action = _action_of(self._rigs[0])
+        action = action_of(self._rigs[0])
         check(action is not None, "The source has no action")
-        _assign(self._rigs[0], action)
-        _stop(self._rigs[1])
+        assign(self._rigs[0], action)
+        stop(self._rigs[1])
         yield None
         press(cast("Any", bpy.ops).hiermatch.pair_bones)
         progress = cast("Any", bpy.context.window_manager).hiermatch
@@ -276,7 +267,7 @@ class Story:
         camera.take_with_panel(f"{number + 2}-carried", self._all())
         print(report().done, report().verdict, report().notes, report().remarks, sep="\n", flush=True)
         self._made = self._rigs[1]
-        rigs = {rig for obj in self._meshes[1] for rig in _moving(obj)}
+        rigs = {rig for obj in self._meshes[1] for rig in armatures_of(obj)}
         check(rigs == {self._made}, "The target is not moved by its own rig")
         check(cast("Any", self._made.animation_data).action is not None, "The target's rig has no action")
 
@@ -286,20 +277,20 @@ class Story:
             name, _, materials = item.partition(":")
             found = [obj for obj in self._meshes[0] if obj.name == name]
             check(found, f"The source has no {name}, but {[obj.name for obj in self._meshes[0]]}")
-            self._items.append(_separated(found[0], materials.split("+")) if materials else found[0])
+            self._items.append(separated(found[0], materials.split("+")) if materials else found[0])
         meshes = {*self._meshes[0], *self._items}
-        kept = [obj for obj in meshes if obj in self._items or _moving(obj)]
+        kept = [obj for obj in meshes if obj in self._items or armatures_of(obj)]
         for obj in meshes - set(kept):
             bpy.data.objects.remove(obj)
         self._meshes[0] = kept
         for rig in self._rigs:
-            _stop(rig)
+            stop(rig)
             for bone in cast("Any", rig.pose).bones:
                 bone.matrix_basis = Matrix()
 
     def dress(self, camera: Camera) -> Iterator[float | None]:
         """Select what the source wears, and fit it to the target."""
-        before = {obj: _shape(obj) for obj in self._all()}
+        before = {obj: shape_of(obj) for obj in self._all()}
         for item in self._items:
             item.select_set(state=True)
         bpy.context.view_layer.objects.active = self._items[0]
@@ -313,8 +304,8 @@ class Story:
         names = {item.name for item in self._items}
         made = [obj for obj in bpy.data.objects if obj.get("hiermatch_item") in names]
         check(len(made) == len(names), f"{len(made)} of {len(names)} items were fitted")
-        check(all(_shape(obj) == shape for obj, shape in before.items()), "The bodies or the originals were changed")
-        check(all(self._rigs[1] in _moving(obj) for obj in made), "The target's rig does not move all items")
+        check(all(shape_of(obj) == shape for obj, shape in before.items()), "The bodies or the originals were changed")
+        check(all(self._rigs[1] in armatures_of(obj) for obj in made), "The target's rig does not move all items")
         self._meshes[1] += made
         for obj in bpy.data.objects:
             obj.select_set(state=False)
@@ -340,7 +331,7 @@ class Story:
     def pose(self, camera: Camera) -> Iterator[float | None]:
         """Let the target swing its arms and legs in what it wears, and look at it from two sides."""
         scene, rig, shown = cast("Any", bpy.context.scene), self._rigs[1], self._meshes[1]
-        _swing(rig)
+        swing(rig)
         rows, shapes = [], set()
         for side in _AROUND[::2]:
             with bpy.context.temp_override(**view()):
@@ -351,7 +342,7 @@ class Story:
                 scene.frame_set(1 + 6 * number)
                 yield None
                 looks.append(camera.look(seen(shown)))
-                shapes.add(tuple(_shape(obj, shown=True) for obj in shown))
+                shapes.add(tuple(shape_of(obj, shown=True) for obj in shown))
             rows.append(looks)
         check(len(shapes) > 1, "The target does not move")
         camera.save("6-posed", rows)
@@ -390,10 +381,10 @@ class Story:
     def play(self, camera: Camera, *, carried: bool = False, sheet: int = 6) -> Iterator[float | None]:
         """Give both rigs one action of the source, if it was not carried over, and look at some moments of it."""
         scene = cast("Any", bpy.context.scene)
-        action = _action_of(self._rigs[0])
+        action = action_of(self._rigs[0])
         check(action is not None, "The source has no action")
         for rig in (self._rigs[0],) if carried else (self._rigs[0], cast("Any", self._made)):
-            _assign(rig, action)
+            assign(rig, action)
         first, last = (int(frame) for frame in action.frame_range)
         print(f"playing: {action.name}, frames {first} to {last}", flush=True)
         looks, shapes = [], set()
@@ -401,7 +392,7 @@ class Story:
             scene.frame_set(first + round(number * (last - first) / _TIMES))
             yield None
             looks.append(camera.look(seen(self._all())))
-            shapes.add(_shape(self._meshes[1][0], shown=True))
+            shapes.add(shape_of(self._meshes[1][0], shown=True))
         check(len(shapes) > 1, "The target does not move")
         half = (len(looks) + 1) // 2
         camera.save(f"{sheet}-action", [looks[:half], looks[half:]])
@@ -418,15 +409,13 @@ class Story:
         rigs = [obj for obj in new if obj.type == "ARMATURE"]
         check(rigs, f"{path.name} has no armature")
         self._rigs.append(rigs[0])
-        self._meshes.append(
-            [obj for obj in new if obj.type == "MESH" and _hangs_on(obj, rigs[0]) and obj.data.polygons]
-        )
+        self._meshes.append([obj for obj in new if obj.type == "MESH" and hangs_on(obj, rigs[0]) and obj.data.polygons])
         print(f"{path.name}: {len(self._meshes[-1])} meshes, {len(rigs[0].data.bones)} bones", flush=True)
 
     def _stand_apart(self) -> None:
         """Move the target beside the source, as a person would to see both."""
         bpy.context.view_layer.update()
-        (low, high), (its_low, its_high) = (_extent(meshes) for meshes in self._meshes)
+        (low, high), (its_low, its_high) = (extent_of(meshes) for meshes in self._meshes)
         room = _APART * max(high - low, its_high - its_low)
         root = self._rigs[1]
         while root.parent is not None:
@@ -481,83 +470,6 @@ def _registration() -> Any:  # noqa: ANN401 - a module
     return next(module for name, module in sys.modules.items() if name.endswith("hiermatch_addon.registration"))
 
 
-def _show_bones(rig: bpy.types.Object) -> None:
-    """Draw the bones of one armature, over everything."""
-    view()["space_data"].overlay.show_bones = True
-    for obj in bpy.data.objects:
-        if obj.type == "ARMATURE":
-            cast("Any", obj).show_in_front = obj == rig
-            obj.hide_set(state=obj != rig)
-
-
-def _separated(obj: bpy.types.Object, materials: list[str]) -> bpy.types.Object:
-    """Separate what has some materials from an object, as by P in Edit Mode, and return it."""
-    before, slots = set(bpy.data.objects), obj.material_slots.keys()
-    missing = set(materials) - set(slots)
-    check(not missing, f"{obj.name} has no material {missing}, but {slots}")
-    with bpy.context.temp_override(**view()):
-        bpy.ops.object.select_all(action="DESELECT")
-        obj.select_set(state=True)
-        bpy.context.view_layer.objects.active = obj
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.mesh.select_all(action="DESELECT")
-        for material in materials:
-            obj.active_material_index = slots.index(material)
-            bpy.ops.object.material_slot_select()
-        bpy.ops.mesh.separate(type="SELECTED")
-        bpy.ops.object.mode_set(mode="OBJECT")
-    (item,) = set(bpy.data.objects) - before
-    item.name = f"{obj.name} {materials[0]}"
-    return item
-
-
-def _bind(meshes: list[bpy.types.Object], rig: bpy.types.Object) -> None:
-    """Let a rig move meshes in the place of their own, by automatic weights, for which seams have to be merged."""
-    with bpy.context.temp_override(**view()):
-        bpy.ops.object.select_all(action="DESELECT")
-        for mesh in meshes:
-            stands = mesh.matrix_world.copy()
-            mesh.parent = None
-            mesh.matrix_world = stands
-            mesh.vertex_groups.clear()
-            build = bmesh.new()
-            build.from_mesh(mesh.data)
-            bmesh.ops.remove_doubles(build, verts=build.verts, dist=_SEAM)
-            build.to_mesh(mesh.data)
-            build.free()
-            for modifier in [one for one in mesh.modifiers if one.type == "ARMATURE"]:
-                mesh.modifiers.remove(modifier)
-            mesh.select_set(state=True)
-        rig.select_set(state=True)
-        bpy.context.view_layer.objects.active = rig
-        bpy.ops.object.parent_set(type="ARMATURE_AUTO")
-        bpy.ops.object.select_all(action="DESELECT")
-    bpy.context.view_layer.objects.active = None
-
-
-def _hangs_on(obj: bpy.types.Object, rig: bpy.types.Object) -> bool:
-    return rig in _moving(obj) or rig == obj.parent
-
-
-def _moving(obj: bpy.types.Object) -> list[bpy.types.Object]:
-    """Return what moves a mesh: the armatures of its modifiers that are switched on."""
-    return [cast("Any", one).object for one in obj.modifiers if one.type == "ARMATURE" and one.show_viewport]
-
-
-def _extent(meshes: list[bpy.types.Object]) -> tuple[float, float]:
-    """Return from where to where meshes reach along X."""
-    along = [(obj.matrix_world @ Vector(corner)).x for obj in meshes for corner in obj.bound_box]
-    return min(along), max(along)
-
-
-def _shape(obj: bpy.types.Object, *, shown: bool = False) -> bytes:
-    """Return the vertices of a mesh, its own or as they are shown."""
-    mesh = cast("Any", obj.evaluated_get(bpy.context.evaluated_depsgraph_get()) if shown else obj).data
-    positions = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.vertices.foreach_get("co", positions)
-    return positions.tobytes()
-
-
 def _limbs(markers: list[Any]) -> list[Any]:
     """Leave out the bones at the ends, such as fingers and toes, of which little is seen."""
     small = ("finger", "thumb", "index", "middle", "ring", "pinky", "toe", "ik", "eye", "leaf", "end")
@@ -567,54 +479,6 @@ def _limbs(markers: list[Any]) -> list[Any]:
 def _spread(things: list[Any], count: int) -> list[Any]:
     """Choose some of a list, evenly."""
     return [things[round((number + 0.5) * (len(things) - 1) / count)] for number in range(count)]
-
-
-def _action_of(rig: bpy.types.Object) -> Any:  # noqa: ANN401 - an action, or None
-    """Choose an action that a rig has, or that was imported for it: a walk if there is one."""
-    animation: Any = rig.animation_data
-    if animation is None:
-        return None
-    strips = [strip.action for track in animation.nla_tracks for strip in track.strips]
-    actions = [one for one in [animation.action, *strips] if one is not None]
-    for word in _WISHED:
-        for action in actions:
-            if word in action.name.lower():
-                return action
-    return actions[0] if actions else None
-
-
-def _swing(rig: bpy.types.Object) -> None:
-    """Give a rig that has no action one that swings its arms and legs, as in a walk."""
-    bones = cast("Any", rig.pose).bones
-    for bone in bones:
-        word = next((word for word in _SWINGS if word in bone.name.lower().replace("_", "").replace(" ", "")), None)
-        side = next((side for ends, side in _SIDES if bone.name.lower().endswith(ends)), None)
-        if word is None or side is None:
-            continue
-        axis = (rig.matrix_world @ bone.bone.matrix_local).to_3x3().inverted() @ Vector((1.0, 0.0, 0.0))
-        bone.rotation_mode = "QUATERNION"
-        for number, way in enumerate((1, 0, -1, 0, 1)):
-            bone.rotation_quaternion = Quaternion(axis.normalized(), way * side * _SWINGS[word])
-            bone.keyframe_insert("rotation_quaternion", frame=1 + 6 * number)
-    check(rig.animation_data is not None, "The source has no action, and no bones called as arms or legs")
-    cast("Any", rig.animation_data).action.name = "Swing Walk"
-
-
-def _assign(rig: bpy.types.Object, action: Any) -> None:  # noqa: ANN401 - an action
-    """Let a rig play an action, as the menu of the Action Editor does."""
-    animation: Any = rig.animation_data or rig.animation_data_create()
-    animation.action = action
-    if getattr(animation, "action_slot", True) is None:
-        animation.action_slot = animation.action_suitable_slots[0]
-
-
-def _stop(rig: bpy.types.Object) -> None:
-    """Take a rig's actions away, and leave its drivers."""
-    animation: Any = rig.animation_data
-    if animation is not None:
-        animation.action = None
-        for track in list(animation.nla_tracks):
-            animation.nla_tracks.remove(track)
 
 
 def main(arguments: list[str]) -> None:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -65,9 +64,6 @@ _WIDEST = 0.06
 """Widest gap that is bridged, in sqrt(area)."""
 
 _LABEL = "Joining pieces"
-
-_KNOWN: WeakKeyDictionary[CleanSurface, Bools] = WeakKeyDictionary()
-"""Which pieces take part, of surfaces that still exist: it is asked for several times in a match."""
 
 
 def separate_limbs(cleaned: CleanSurface) -> Bools:
@@ -204,14 +200,7 @@ def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Step
 
 def _taking_part(cleaned: CleanSurface) -> Bools:
     """Tell which pieces (p,) go on beyond those before them: the main one, and limbs if these matter."""
-    known = _KNOWN.get(cleaned)
-    if known is None:
-        known = _KNOWN[cleaned] = _going_on(cleaned.pieces)
-    return known.copy()
-
-
-def _going_on(pieces: tuple[SurfacePart, ...]) -> Bools:
-    """Find out what `_taking_part` tells."""
+    pieces = cleaned.pieces
     areas = np.array([piece.mesh.area for piece in pieces])
     least = _LEAST_MORE * areas.sum()
     taking_part = np.arange(len(pieces)) == 0
