@@ -11,7 +11,7 @@ from ..dense.credibility import EVEN, MUCH_ALIKE, RISE
 from ..runtime.arrays import Bools
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
-from ..shapes.enclosing_surface import separate_limbs, with_limbs_steps
+from ..shapes.enclosing_surface import all_with_limbs_steps
 from ..shapes.landmarks import landmark_pairs
 from ..shapes.shape import Shape
 from .partial_match import has_border
@@ -31,13 +31,13 @@ _TORN = 0.2
 _ALL = 0.99
 """Part of the main parts with a partner from which on these are whole bodies, if they are `MUCH_ALIKE`."""
 
-_FIRST, _JOINED = 0.4, 0.05
-"""Parts of the work that are done when pieces are matched one by one, and that joining those of a body takes."""
+_FIRST, _JOINED = 0.4, 0.1
+"""Parts of the work that are done when pieces are matched one by one, and that joining those of both bodies takes."""
 
 
 def has_limbs(x: Shape, y: Shape) -> bool:
     """Say whether either of two bodies has limbs that are pieces of their own."""
-    return any(bool(separate_limbs(shape.surface.cleaned).any()) for shape in (x, y))
+    return any(bool(shape.surface.cleaned.limbs.any()) for shape in (x, y))
 
 
 def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tuple[MatchResult, Shape, Shape]]:
@@ -66,7 +66,7 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         If landmarks are at fault, or neither the main parts nor the joined bodies can be matched.
     """
     landmark_pairs(x, y, task.landmarks, task.settings.points)  # what is wrong with them is wrong for every part
-    limbs = separate_limbs(x.surface.cleaned), separate_limbs(y.surface.cleaned)
+    limbs = x.surface.cleaned.limbs, y.surface.cleaned.limbs
     if not (limbs[0].any() or limbs[1].any()):
         return (yield from matched_steps(x, y, task)), x, y
     bodies = _body(x, limbs[0]), _body(y, limbs[1])
@@ -80,13 +80,12 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         together = 0.0 if first is None else _together_but_for_extras(first, bodies)
         if first is not None and together >= _TOGETHER and (alike or _is_clear(first)):
             return first, x, y
-    joined = []
-    for number, (shape, name) in enumerate(((x, "source"), (y, "target"))):
-        begin, end = (_FIRST + _JOINED * (number + i) for i in (0, 1))
-        steps = with_limbs_steps(shape, name, np.flatnonzero(limbs[number]))
-        joined.append((yield from within(steps, begin, end)))
+    wanted = [
+        (shape, name, np.flatnonzero(own)) for shape, name, own in zip((x, y), ("source", "target"), limbs, strict=True)
+    ]
+    begin = _FIRST + _JOINED
+    joined = yield from within(all_with_limbs_steps(wanted), _FIRST, begin)
     task.clock.lap("joining pieces")
-    begin = _FIRST + 2 * _JOINED
     end = 1.0 if first is not None else (1 + begin) / 2
     second = None
     if joined[0] is not x or joined[1] is not y:

@@ -13,6 +13,7 @@ from ..mesh.reflection import reflected_mesh
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints, marked
+from .body_pieces import body_pieces
 from .cleaning_notes import CleaningCounts
 
 
@@ -191,6 +192,16 @@ class CleanSurface:
     def parts(self) -> tuple[TriangleMesh, ...]:
         """The other parts, in decreasing area."""
         return tuple(piece.mesh for piece in self.pieces[1:])
+
+    @cached_property
+    def of_body(self) -> Bools:
+        """Which pieces are the body, (p,): the main one and limbs, see `body_pieces`."""
+        return body_pieces([piece.mesh for piece in self.pieces])
+
+    @property
+    def limbs(self) -> Bools:
+        """Which vertices of the original mesh, (n,), are on pieces that the main one lacks as a body."""
+        return self.of_body[self.vertex_parts] & (self.vertex_parts > 0)
 
     @property
     def inverted(self) -> bool:

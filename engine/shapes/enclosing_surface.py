@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,40 +16,25 @@ from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.triangle_mesh import TriangleMesh
+from ..repair.body_pieces import LEAST_MORE, SAMPLES
 from ..repair.clean_surface import CleanSurface, StandIn, SurfacePart
 from ..repair.cleaning import clean
 from ..repair.cleaning_notes import cleaning_notes
 from ..repair.gap_bridges import bridged
 from ..repair.solid_indicator import solid_indicator
 from ..repair.surface_nets import surface_net
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Ints
 from ..runtime.errors import MeshError
-from ..runtime.progress import Progress, Steps, in_turn, within
+from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
+from ..runtime.progress import Progress, Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
-
-_BESIDE = 0.02
-"""How far from what is known already, in sqrt(area), a piece goes on beyond it: eyes, teeth and clothes do not."""
-
-_BEYOND, _WITHIN = 0.25, -0.5
-"""The same for a piece that is small, such as a part of a finger, in the square root of its own area; and the sine of
-the angle below the surface from which on a point lies within.  These tell the parts of two mannequins' fingers from the
-balls of their joints, and from the eyes of six other characters."""
-
-_MOSTLY = 0.3
-"""Part of a piece that must do so: the rest may lie in others."""
 
 _LYING = 0.04
 """How far, in sqrt(area), most of a piece may be from a surface around it."""
 
 _FINER = 4
 """How many times the vertices of a small body its surface has at most: about as many as `Proxy.finer` makes of them."""
-
-_LEAST_MORE = 0.04
-"""Part of the surface in such pieces from which on they matter: a head or two hands."""
-
-_SAMPLES, _LEAST_SAMPLES = 20_000, 30
-"""Points that all pieces are compared at, together, and each of them at least."""
 
 _SPACING = 0.005
 """Distance of the places of the grid, in sqrt(area): a third of a finger of a person, which loses 2 cm of its length on
@@ -66,46 +52,47 @@ _WIDEST = 0.06
 _LABEL = "Joining pieces"
 
 
-def separate_limbs(cleaned: CleanSurface) -> Bools:
-    """Tell which vertices of a mesh, (n,), are of pieces that the main one lacks as a body: no eyes and no clothes."""
-    return _taking_part(cleaned)[cleaned.vertex_parts] & (cleaned.vertex_parts > 0)
-
-
 def with_limbs_steps(shape: Shape, name: str, vertices: Ints) -> Steps[Shape]:
-    """Join the pieces of a body if some vertices of it are on limbs beside the main piece.
+    """Join the pieces of one body, see `all_with_limbs_steps`."""
+    (whole,) = yield from all_with_limbs_steps([(shape, name, vertices)])
+    return whole
+
+
+def all_with_limbs_steps(bodies: Sequence[tuple[Shape, str, Ints]]) -> Steps[list[Shape]]:
+    """Join the pieces of each body some vertices of which are on limbs beside the main piece.
 
     Parameters
     ----------
-    shape : Shape
-        The body.
-    name : str
-        What notes call it.
-    vertices : (k,) array of int
-        Vertices of the original mesh; those that do not exist are passed over.
+    bodies : sequence of (Shape, str, (k,) array of int)
+        A body, what notes call it, and vertices of the original mesh; those that do not exist are passed over.
 
     Returns
     -------
-    Shape
-        The body as one surface, or what was given.
+    list of Shape
+        Each body as one surface, or what was given.
     """
-    surface = shape.surface
-    limbs = separate_limbs(surface.cleaned)
-    known = vertices[(vertices >= 0) & (vertices < len(limbs))]
-    if not limbs[known].any():
-        return shape
-    if shape.joined is not None:
-        return shape.joined
-    taking_part = _taking_part(surface.cleaned)
-    count = sum(
-        piece.mesh.vertex_count for piece, takes in zip(surface.cleaned.pieces, taking_part, strict=True) if takes
-    )
-    wanted = min(surface.wanted, _FINER * count)
-    joined = yield from joined_steps(surface.cleaned, name, wanted)
-    whole = shape
-    if joined is not surface.cleaned:
-        whole = Shape.of(replace(surface, cleaned=joined, proxy=Proxy.identity(joined.mesh), wanted=wanted))
-    shape.keep_joined(whole)
-    return whole
+    wanted = [_touches_limbs(shape.surface.cleaned, vertices) for shape, _, vertices in bodies]
+    # Keyed by itself: a shape may be matched with itself.
+    new = {
+        id(shape): (shape, name)
+        for (shape, name, _), wants in zip(bodies, wanted, strict=True)
+        if wants and shape.joined is None
+    }
+    items = [(shape.surface.cleaned, name, shape.surface.wanted) for shape, name in new.values()]
+    share = shared_steps if all(item[0].original.vertex_count <= MOST_SENT for item in items) else here_steps
+    found = yield from share(_joined_steps, None, items)
+    for (shape, _), joined in zip(new.values(), found, strict=True):
+        whole, surface = shape, shape.surface
+        if joined is not None:
+            cleaned = replace(joined, original=surface.cleaned.original)  # not the copy of another process
+            # It has as many vertices as it should, also that of a small body.
+            count = min(surface.wanted, cleaned.mesh.vertex_count)
+            whole = Shape.of(replace(surface, cleaned=cleaned, proxy=Proxy.identity(cleaned.mesh), wanted=count))
+        shape.keep_joined(whole)
+    return [
+        shape.joined if wants and shape.joined is not None else shape
+        for (shape, _, _), wants in zip(bodies, wanted, strict=True)
+    ]
 
 
 def joined_shapes_steps(x: Shape, y: Shape, found: SurfaceMap, ends: tuple[Ints, Ints]) -> Steps[tuple[Shape, Shape]]:
@@ -125,17 +112,28 @@ def joined_shapes_steps(x: Shape, y: Shape, found: SurfaceMap, ends: tuple[Ints,
     x, y : Shape
         The bodies as one surface each, or what was given.
     """
-    limbs = separate_limbs(x.surface.cleaned), separate_limbs(y.surface.cleaned)
+    limbs = x.surface.cleaned.limbs, y.surface.cleaned.limbs
     main, on_main = (shape.surface.cleaned.vertex_parts == 0 for shape in (x, y))
     images, areas = found.nearest_vertices, x.original.vertex_areas
     across = (main & limbs[1][images]) | (limbs[0] & on_main[images])
-    if areas @ across > _LEAST_MORE * areas[main | limbs[0]].sum():
+    if areas @ across > LEAST_MORE * areas[main | limbs[0]].sum():
         ends = np.flatnonzero(limbs[0]), np.flatnonzero(limbs[1])
-    x, y = yield from in_turn([with_limbs_steps(x, "source", ends[0]), with_limbs_steps(y, "target", ends[1])])
+    x, y = yield from all_with_limbs_steps([(x, "source", ends[0]), (y, "target", ends[1])])
     return x, y
 
 
-def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Steps[CleanSurface]:
+def _touches_limbs(cleaned: CleanSurface, vertices: Ints) -> bool:
+    """Say whether any of some vertices is on a limb."""
+    limbs = cleaned.limbs
+    return bool(limbs[vertices[(vertices >= 0) & (vertices < len(limbs))]].any())
+
+
+def _joined_steps(_: None, item: tuple[CleanSurface, str, int]) -> Steps[CleanSurface | None]:
+    """Join the pieces of a body."""
+    return (yield from joined_steps(*item))
+
+
+def joined_steps(cleaned: CleanSurface, name: str, most: int = 5000) -> Steps[CleanSurface | None]:
     """Put one surface around the main part of a mesh and the pieces that go on beyond it.
 
     Parameters
@@ -144,13 +142,13 @@ def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Step
         The mesh, and its pieces.
     name : str
         What notes call it.
-    vertices : int
-        About how many vertices the surface should have.
+    most : int
+        About how many vertices the surface has; a small body's has fewer.
 
     Returns
     -------
-    CleanSurface
-        That surface in the place of the main part; what was given if the pieces have no inside together.
+    CleanSurface or None
+        That surface in the place of the main part; None if the pieces have no inside together.
 
     Notes
     -----
@@ -158,9 +156,9 @@ def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Step
     between them are bridged.  The surface is where that begins.  What is finer than the grid, such as fingers that
     touch, is one there.
     """
-    taking_part = _taking_part(cleaned)
-    body = _Body.of([piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if takes])
-    unit = float(np.sqrt(body.mesh.area))
+    taken = [piece for piece, takes in zip(cleaned.pieces, cleaned.of_body, strict=True) if takes]
+    body = _Body.of(taken)
+    unit, count = float(np.sqrt(body.mesh.area)), sum(piece.mesh.vertex_count for piece in taken)
     yield Progress(0.0, _LABEL)
     solid = solid_indicator(body.solid, _SPACING * unit)
     yield Progress(0.3, _LABEL)
@@ -168,16 +166,16 @@ def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Step
     yield Progress(0.5, _LABEL)
     places, triangles = surface_net(values, _LEVEL)
     if not len(triangles):
-        return cleaned
+        return None
     try:
         skin = clean(TriangleMesh(places * solid.spacing + solid.origin, triangles)).mesh
     except MeshError:
-        return cleaned
-    coarse = yield from within(proxy_steps(skin, vertices), 0.6, 0.9, _LABEL)
+        return None
+    coarse = yield from within(proxy_steps(skin, min(most, _FINER * count)), 0.6, 0.9, _LABEL)
     # What is too far away from all else was not reached.
-    taking_part &= _lying_on(skin, cleaned.pieces)
+    taking_part = cleaned.of_body & _lying_on(skin, cleaned.pieces)
     if not taking_part[0] or taking_part.sum() == 1:
-        return cleaned
+        return None
     body = _Body.of([piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if takes])
     number = np.cumsum(~taking_part)
     number[taking_part] = 0
@@ -198,46 +196,11 @@ def joined_steps(cleaned: CleanSurface, name: str, vertices: int = 5000) -> Step
     )
 
 
-def _taking_part(cleaned: CleanSurface) -> Bools:
-    """Tell which pieces (p,) go on beyond those before them: the main one, and limbs if these matter."""
-    pieces = cleaned.pieces
-    areas = np.array([piece.mesh.area for piece in pieces])
-    least = _LEAST_MORE * areas.sum()
-    taking_part = np.arange(len(pieces)) == 0
-    if areas[1:].sum() <= least:
-        return taking_part
-    far = _BESIDE * np.sqrt(areas.sum())
-    places, normals = _seen(pieces[0].mesh, areas.sum() / _SAMPLES)
-    for number in range(1, len(pieces)):
-        own, its = _seen(pieces[number].mesh, min(areas.sum() / _SAMPLES, areas[number] / _LEAST_SAMPLES))
-        distances, nearest = cKDTree(places).query(own)
-        size = _BEYOND * np.sqrt(areas[number])
-        beside = distances > min(far, size)
-        if size < far:  # an eye is as far from the skin as a part of a finger from the next one, but within
-            heights = ((own - places[nearest]) * normals[nearest]).sum(axis=1)
-            beside &= heights > _WITHIN * distances
-        if beside.mean() > _MOSTLY:
-            taking_part[number] = True
-            places, normals = np.concatenate([places, own]), np.concatenate([normals, its])
-    taking_part[1:] &= areas[1:][taking_part[1:]].sum() > least
-    return taking_part
-
-
-def _seen(mesh: TriangleMesh, area: float) -> tuple[Floats, Floats]:
-    """Spread points over a piece, each of which stands for an area: places and outward normals, (s, 3) each."""
-    samples = even_samples(mesh, area)
-    twins = pair_half_edges(mesh.vertices, mesh.triangles, group_half_edges(mesh.triangles, mesh.vertex_count))
-    components = triangle_components(twins)
-    inward = (enclosed_volumes(mesh.vertices, mesh.triangles, twins, components) < 0)[components]
-    outward = np.where(inward[:, None], -mesh.triangle_normals, mesh.triangle_normals)
-    return samples.positions, outward[samples.triangles]
-
-
 def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> Bools:
     """Tell which pieces (p,) lie on a surface, or near beneath it, for the most part."""
     tree, lying = cKDTree(mesh.vertices), np.zeros(len(pieces), bool)
     for number, piece in enumerate(pieces):
-        distances = tree.query(even_samples(piece.mesh, mesh.area / _SAMPLES).positions)[0]
+        distances = tree.query(even_samples(piece.mesh, mesh.area / SAMPLES).positions)[0]
         lying[number] = np.median(distances) < _LYING * np.sqrt(mesh.area)
     return lying
 

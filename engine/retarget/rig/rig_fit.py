@@ -20,7 +20,7 @@ from ...runtime.arrays import Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, run, within
-from ...shapes.enclosing_surface import joined_steps, separate_limbs
+from ...shapes.enclosing_surface import joined_steps
 from ...shapes.proxy import Proxy, proxy_steps
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .digit_fit import with_digits
@@ -139,7 +139,8 @@ def fit_rig_steps(
 def _cleaned_steps(mesh: TriangleMesh, name: str) -> Steps[CleanSurface]:
     """Clean a mesh, and put one surface around it if limbs are pieces of their own: bones move these, too."""
     cleaned = clean(mesh, name)
-    return (yield from joined_steps(cleaned, name)) if separate_limbs(cleaned).any() else cleaned
+    joined = (yield from joined_steps(cleaned, name)) if cleaned.limbs.any() else None
+    return joined or cleaned
 
 
 def _checked(weights: csr_array, source: TriangleMesh, skeleton: Skeleton) -> csr_array:

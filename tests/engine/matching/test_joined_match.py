@@ -11,7 +11,6 @@ from engine.matching.shape_matching import MatchTask
 from engine.mesh.surface_points import SurfacePoints
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
-from engine.shapes.enclosing_surface import separate_limbs
 from tests.limbs import modular_creature
 from tests.messes import together
 from tests.shapes import creature, cylinder, icosphere
@@ -135,7 +134,7 @@ def test_what_a_body_stands_beside_stays_a_piece(whole):
     vertices, triangles, rest = creature(0.8, 10, turn=0.7)
     ball, faces = icosphere(6)
     target = TriangleMesh(*together((vertices, triangles), (0.4 * ball + [0.0, 0.0, 0.72], faces)))
-    assert separate_limbs(clean(target)).any()
+    assert clean(target).limbs.any()
     result = match(whole[0], target, QUICK)
     assert not any("one surface around all" in note for note in result.notes)
     its_rest = np.concatenate([rest, np.full((len(ball), 3), np.nan)])

@@ -11,7 +11,7 @@ from engine.mesh.closest_points import ClosestPoints
 from engine.mesh.surface_points import SurfacePoints
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
-from engine.shapes.enclosing_surface import separate_limbs, with_limbs_steps
+from engine.shapes.enclosing_surface import with_limbs_steps
 from tests.limbs import modular_creature
 from tests.messes import together
 from tests.shapes import creature, icosphere, permuted, rotation
@@ -119,8 +119,8 @@ def test_limbs_are_separate_but_eyes_and_clothes_are_not(body):
     ball, faces = icosphere(3)
     eye = 0.06 * ball + [1.2, 0.1, 0.5], faces
     clothed = clean(TriangleMesh(*together((vertices, triangles), coat, eye)))
-    assert not separate_limbs(clothed).any()
-    assert np.array_equal(separate_limbs(clean(body.mesh)), body.pieces > 0)
+    assert not clothed.limbs.any()
+    assert np.array_equal(clean(body.mesh).limbs, body.pieces > 0)
 
 
 def test_eyes_stay_pieces_of_their_own(body):
@@ -141,14 +141,14 @@ def test_small_parts_of_a_finger_belong_to_the_body_but_an_eye_of_their_size_doe
     mesh = TriangleMesh(*together((body.mesh.vertices, body.mesh.triangles), *parts, eye))
     count = body.mesh.vertex_count
     of_body = np.arange(mesh.vertex_count) < count + 4 * len(ball)
-    assert separate_limbs(clean(mesh))[count:].tolist() == of_body[count:].tolist()
+    assert clean(mesh).limbs[count:].tolist() == of_body[count:].tolist()
     surface = joined(mesh)
     assert surface.mesh.vertices[:, 0].max() == pytest.approx(mesh.vertices[:, 0].max(), abs=0.03)
 
 
 def test_a_mesh_in_one_piece_has_no_limbs():
     shape = Shape(whole())
-    assert not separate_limbs(shape.surface.cleaned).any()
+    assert not shape.surface.cleaned.limbs.any()
     assert run(with_limbs_steps(shape, "source", np.arange(5))) is shape
 
 
