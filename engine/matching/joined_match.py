@@ -15,12 +15,16 @@ from ..shapes.enclosing_surface import all_with_limbs_steps
 from ..shapes.landmarks import landmark_pairs
 from ..shapes.shape import Shape
 from .partial_match import has_border
-from .pieced_body import PiecedBody, resized_share, torn_share, without_partner
+from .pieced_body import PiecedBody, common_cut, resized_share, torn_share, without_partner
 from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
 
-_ALIKE = 0.1
-"""By how much the main parts may differ, as parts of their bodies, for the pieces to be matched one by one at first."""
+_ALIKE = 0.95
+"""Part of bodies that is common to their largest pieces, and so on, from which on they are cut alike: each piece may go
+with one of the other.  Of nine characters no two have more than 0.93, and one in two poses has 1."""
+
+_ALL_BUT_HANDS = 0.9
+"""Part of a body that its main part has if that may be all of it, and what the other has beside its own is no body."""
 
 _TOGETHER, _MORE = 0.955, 0.02
 """Part of the bodies from which on pieces go with one another, and how much more has to if bodies are joined."""
@@ -71,10 +75,10 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         return (yield from matched_steps(x, y, task)), x, y
     bodies = _body(x, limbs[0]), _body(y, limbs[1])
     first, together = None, 0.0
-    more = float(bodies[0].shares[0] - bodies[1].shares[0])
-    alike = abs(more) < _ALIKE
+    alike = common_cut(*bodies) >= _ALIKE
+    main = [float(body.shares[0]) for body in bodies]
     # Without its limbs, a trunk is open; what is closed may be all of a body, and the rest what it stands on.
-    if alike or not has_border(y if more > 0 else x):
+    if alike or (max(main) >= _ALL_BUT_HANDS and not has_border(y if main[0] > main[1] else x)):
         # What is not right rather than not by its main parts is better joined first.
         first = yield from within(_tried_steps(x, y, replace(task, least=max(task.least, EVEN))), 0.0, _FIRST)
         together = 0.0 if first is None else _together_but_for_extras(first, bodies)
@@ -96,8 +100,8 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     if second is None:
         # If bodies as a whole cannot be matched either, their main parts say why.
         return first or (yield from within(matched_steps(x, y, task), end, 1.0)), x, y
-    if first is None and not (_is_plausible(second) and _partnered(second) >= _TOGETHER):
-        # What hangs on one body alone is better left alone.
+    if first is None and not (_is_plausible(second) and _covered(second) >= _TOGETHER):
+        # What hangs on one body alone is better left alone, as clothes are here.
         least = max(task.least, min(_likeness(second), EVEN))
         first = yield from within(_tried_steps(x, y, replace(task, least=least)), end, 1.0)
     if first is not None and not alike and (together < _TOGETHER or _likeness(first) < _likeness(second)):
@@ -141,10 +145,13 @@ def _together(result: MatchResult, bodies: tuple[PiecedBody, PiecedBody]) -> flo
 
 def _partnered(result: MatchResult) -> float:
     """Tell what part of two bodies has a partner."""
+    return _covered(result) * (1 - (0.0 if result.quality is None else result.quality.pieces_alone))
+
+
+def _covered(result: MatchResult) -> float:
+    """Tell what part of the surfaces that were matched has a partner."""
     quality = result.quality
-    if quality is None:
-        return 1.0
-    return min(quality.coverage, quality.source_coverage) * (1 - quality.pieces_alone)
+    return 1.0 if quality is None else min(quality.coverage, quality.source_coverage)
 
 
 def _body(shape: Shape, limbs: Bools) -> PiecedBody:
@@ -166,8 +173,7 @@ def _is_plausible(result: MatchResult) -> bool:
 
 def _is_clear(result: MatchResult) -> bool:
     """Say whether all of the main parts is alike: nothing is missing on them."""
-    covered = 0.0 if result.quality is None else min(result.quality.coverage, result.quality.source_coverage)
-    return covered >= _ALL and _likeness(result) >= MUCH_ALIKE
+    return result.quality is not None and _covered(result) >= _ALL and _likeness(result) >= MUCH_ALIKE
 
 
 def _is_better(joined: MatchResult, pieces: MatchResult, together: float) -> bool:

@@ -62,6 +62,17 @@ class PiecedBody:
         return sums[1:]
 
 
+def common_cut(first: PiecedBody, second: PiecedBody) -> float:
+    """Tell what part of the area of two bodies is common to the largest pieces of each, the second largest, and so on.
+
+    It is 1 for bodies that are cut alike, wherever they are cut, and small where only one of them is cut.
+    """
+    shares = np.zeros((2, max(len(first.shares), len(second.shares))))
+    for row, body in zip(shares, (first, second), strict=True):
+        row[: len(body.shares)] = np.sort(body.shares)[::-1]
+    return float(shares.min(axis=0).sum())
+
+
 def without_partner(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> Ints:
     """Tell which pieces of a body but the first have none of the other: a map takes most of them to its first piece."""
     main = target.pieces[found.nearest_vertices] == 0

@@ -79,12 +79,10 @@ def all_with_limbs_steps(bodies: Sequence[tuple[Shape, str, Ints]]) -> Steps[lis
         if wants and shape.joined is None
     }
     items = [(shape.surface.cleaned, name, shape.surface.wanted) for shape, name in new.values()]
-    share = shared_steps if all(item[0].original.vertex_count <= MOST_SENT for item in items) else here_steps
-    found = yield from share(_joined_steps, None, items)
-    for (shape, _), joined in zip(new.values(), found, strict=True):
+    found = yield from all_joined_steps(items)
+    for (shape, _), cleaned in zip(new.values(), found, strict=True):
         whole, surface = shape, shape.surface
-        if joined is not None:
-            cleaned = replace(joined, original=surface.cleaned.original)  # not the copy of another process
+        if cleaned is not surface.cleaned:
             # It has as many vertices as it should, also that of a small body.
             count = min(surface.wanted, cleaned.mesh.vertex_count)
             whole = Shape.of(replace(surface, cleaned=cleaned, proxy=Proxy.identity(cleaned.mesh), wanted=count))
@@ -133,7 +131,26 @@ def _joined_steps(_: None, item: tuple[CleanSurface, str, int]) -> Steps[CleanSu
     return (yield from joined_steps(*item))
 
 
-def joined_steps(cleaned: CleanSurface, name: str, most: int = 5000) -> Steps[CleanSurface | None]:
+def all_joined_steps(bodies: Sequence[tuple[CleanSurface, str, int]]) -> Steps[list[CleanSurface]]:
+    """Put one surface around the body of each of several meshes, see `joined_steps`, which has what is given.
+
+    Returns
+    -------
+    list of CleanSurface
+        Those surfaces; what was given of meshes without limbs, of those joined before, and where pieces have no inside
+        together.
+    """
+    number = [i for i, (cleaned, _, _) in enumerate(bodies) if cleaned.stand_in is None and cleaned.limbs.any()]
+    items = [bodies[i] for i in number]
+    share = shared_steps if all(item[0].original.vertex_count <= MOST_SENT for item in items) else here_steps
+    joined = [cleaned for cleaned, _, _ in bodies]
+    for i, found in zip(number, (yield from share(_joined_steps, None, items)), strict=True):
+        if found is not None:
+            joined[i] = replace(found, original=joined[i].original)  # not the copy of another process
+    return joined
+
+
+def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurface | None]:
     """Put one surface around the main part of a mesh and the pieces that go on beyond it.
 
     Parameters

@@ -17,7 +17,7 @@ from ..repair.cleaning import clean
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
-from .proxy import Proxy, proxy_steps
+from .proxy import MATCHED, Proxy, proxy_steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +156,7 @@ class PreparedSurface:
 
 
 def prepared_steps(
-    mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: Bools | None = None
+    mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = MATCHED, excluded: Bools | None = None
 ) -> Steps[PreparedSurface]:
     """Clean a mesh, and make a proxy of its main part where it is dense.
 

@@ -22,6 +22,9 @@ from .remeshing.dual_triangulation import manifold_part
 from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
 from .remeshing.voronoi_regions import VoronoiRegions, spread_regions_steps
 
+MATCHED = 5000
+"""About how many vertices stand for a denser mesh, by default."""
+
 _LARGE = 1.6  # times as many vertices as wanted: meshes with fewer stand for themselves
 _CELLS = 20.0  # cells for each vertex of the proxy: some where it is densest, and none ever joins two fingers
 _CELL_SIZE = 0.85  # of sqrt(area / cells); a cube cuts more from a slanted surface than its side squared
@@ -92,7 +95,7 @@ class Proxy:
         return values if self.ends is None else np.concatenate([values, values[self.ends].mean(axis=1)])
 
 
-def proxy_steps(mesh: TriangleMesh, vertices: int = 5000) -> Steps[Proxy]:
+def proxy_steps(mesh: TriangleMesh, vertices: int = MATCHED) -> Steps[Proxy]:
     """Approximate a dense mesh by a coarse one.
 
     Parameters

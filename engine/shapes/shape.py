@@ -16,7 +16,7 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.progress import Steps, run
 from .prepared_surface import PreparedSurface, prepared_steps
-from .proxy import Proxy
+from .proxy import MATCHED, Proxy
 from .surface_samples import SurfaceSampler, SurfaceSamples
 
 _FEW = 0.4
@@ -96,7 +96,7 @@ class Shape:
     """See `parallel_map.shared_steps`; true of `lean` ones, which do not change any more."""
 
     def __init__(
-        self, mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: Bools | None = None
+        self, mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = MATCHED, excluded: Bools | None = None
     ) -> None:
         surface = run(prepared_steps(mesh, name, proxy_vertices, excluded))
         self._start(_Operators(surface.mesh, GeodesicSolver(surface.mesh), surface))
@@ -107,7 +107,7 @@ class Shape:
 
     @classmethod
     def steps(
-        cls, mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = 5000, excluded: Bools | None = None
+        cls, mesh: TriangleMesh, name: str = "mesh", proxy_vertices: int = MATCHED, excluded: Bools | None = None
     ) -> Steps[Shape]:
         """Make a shape in steps: for dense meshes that takes seconds."""
         return cls.of((yield from prepared_steps(mesh, name, proxy_vertices, excluded)))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from ...engine import HierMatchError, Progress, fit_rig_steps, within
 from ..common.access import view_layer_of
 from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError
+from ..properties.preferences import shape_memory
 from ..scene.armatures import read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of
 from ..scene.pair import check_pair, check_side, is_own
@@ -18,6 +19,7 @@ from ..storage.linked_matches import keep_linked, kept_linked
 from ..storage.stored_map import find_maps, keep_refined
 from ..storage.vertex_maps import MapPair, StoredMaps
 from .job import MatchJob
+from .prepared_shapes import known_shapes
 from .stepped_job import SteppedJob
 from .transfer import Passage, TransferReport
 from .verdict import Verdict, advice_on
@@ -219,6 +221,7 @@ class TransferJob(SteppedJob):
         wanted = any(transfer.uses_rig for leg in self._legs for transfer in leg.transfers)
         self._rig: SourceRig | None = read_rig(source) if wanted else None
         self._view_layer = view_layer
+        self._known = known_shapes(shape_memory(context))
         super().__init__()
 
     def close(self) -> None:
@@ -345,7 +348,14 @@ class TransferJob(SteppedJob):
         refine = self._options.refine and not leg.refined
         there, back = passage.pair.source_to_target, passage.pair.target_to_source
         fitted = yield from fit_rig_steps(
-            self._mesh, leg.mesh, there, back, weights=rig.weights, skeleton=rig.skeleton, refine=refine
+            self._mesh,
+            leg.mesh,
+            there,
+            back,
+            weights=rig.weights,
+            skeleton=rig.skeleton,
+            refine=refine,
+            known=self._known,
         )
         if refine:
             leg.better = StoredMaps.of(fitted.source_to_target, fitted.target_to_source)

@@ -20,8 +20,9 @@ from ...runtime.arrays import Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, run, within
-from ...shapes.enclosing_surface import joined_steps
-from ...shapes.proxy import Proxy, proxy_steps
+from ...shapes.enclosing_surface import all_joined_steps
+from ...shapes.known_shapes import KnownShapes
+from ...shapes.proxy import MATCHED, Proxy, proxy_steps
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .digit_fit import with_digits
 from .fitted_rig import FittedRig
@@ -60,10 +61,11 @@ def fit_rig(
     weights: csr_array,
     skeleton: Skeleton,
     refine: bool = True,
+    known: KnownShapes | None = None,
 ) -> FittedRig:
     """Fit a rig into another body; see `fit_rig_steps`."""
     maps = source_to_target, target_to_source
-    return run(fit_rig_steps(source, target, *maps, weights=weights, skeleton=skeleton, refine=refine))
+    return run(fit_rig_steps(source, target, *maps, weights=weights, skeleton=skeleton, refine=refine, known=known))
 
 
 @can_go_beside
@@ -76,6 +78,7 @@ def fit_rig_steps(
     weights: csr_array,
     skeleton: Skeleton,
     refine: bool = True,
+    known: KnownShapes | None = None,
 ) -> Steps[FittedRig]:
     """Fit a rig into another body, in steps.
 
@@ -95,6 +98,8 @@ def fit_rig_steps(
         The source's bones, b.
     refine : bool
         Whether to make the maps better.  Maps that were refined before, or that are exact, should be kept.
+    known : KnownShapes, optional
+        What the meshes were prepared to when they were matched; the result is the same without it.
 
     Returns
     -------
@@ -108,8 +113,7 @@ def fit_rig_steps(
     """
     weights = _checked(weights, source, skeleton)
     yield Progress(0.0, "Cleaning")
-    x = yield from within(_cleaned_steps(source, "source"), 0.0, 0.02)
-    y = yield from within(_cleaned_steps(target, "target"), 0.02, 0.05)
+    x, y = yield from within(_cleaned_steps((source, target), known), 0.0, 0.05)
     body, there = x.mesh, _on_main(y, source_to_target, x)
     back = _on_main(x, target_to_source, y)
     moving = _of_main(x, weights)
@@ -136,11 +140,16 @@ def fit_rig_steps(
     )
 
 
-def _cleaned_steps(mesh: TriangleMesh, name: str) -> Steps[CleanSurface]:
-    """Clean a mesh, and put one surface around it if limbs are pieces of their own: bones move these, too."""
-    cleaned = clean(mesh, name)
-    joined = (yield from joined_steps(cleaned, name)) if cleaned.limbs.any() else None
-    return joined or cleaned
+def _cleaned_steps(meshes: tuple[TriangleMesh, TriangleMesh], known: KnownShapes | None) -> Steps[list[CleanSurface]]:
+    """Clean both meshes, and put one surface around each whose limbs are pieces of their own: bones move these, too."""
+    bodies = []
+    for mesh, name in zip(meshes, ("source", "target"), strict=True):
+        shape = None if known is None else known.find(mesh, name, None)
+        if shape is None:
+            bodies.append((clean(mesh, name), name, MATCHED))
+        else:
+            bodies.append(((shape.joined or shape).surface.cleaned, name, MATCHED))
+    return (yield from all_joined_steps(bodies))
 
 
 def _checked(weights: csr_array, source: TriangleMesh, skeleton: Skeleton) -> csr_array:

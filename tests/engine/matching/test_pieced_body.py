@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import SurfaceMap, SurfacePoints
-from engine.matching.pieced_body import PiecedBody, resized_share, torn_share, without_partner
+from engine.matching.pieced_body import PiecedBody, common_cut, resized_share, torn_share, without_partner
 from tests.limbs import modular_creature
 
 
@@ -30,6 +30,14 @@ def test_what_is_not_of_the_body_does_not_count(body):
     less = PiecedBody(body.mesh, np.where(body.pieces == 6, -1, body.pieces))
     assert less.unit == pytest.approx(body.unit * np.sqrt(1 - body.shares[6]))
     assert less.shares == pytest.approx(body.shares[:6] / (1 - body.shares[6]))
+
+
+def test_bodies_cut_alike_have_all_of_their_cut_in_common_whatever_their_order(body):
+    numbers = np.random.default_rng(1).permutation(len(body.shares))
+    other = PiecedBody(body.mesh, numbers[body.pieces])
+    assert common_cut(body, other) == pytest.approx(1)
+    uncut = PiecedBody(body.mesh, np.zeros_like(body.pieces))
+    assert common_cut(body, uncut) == common_cut(uncut, body) == pytest.approx(body.shares.max())
 
 
 def test_nothing_is_torn_or_resized_as_it_is(body):

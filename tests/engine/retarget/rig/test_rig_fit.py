@@ -3,8 +3,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from engine import ClosestPoints, RigError, Skeleton, SurfaceMap, TriangleMesh, fit_rig
+from engine import ClosestPoints, KnownShapes, RigError, Shape, Skeleton, SurfaceMap, TriangleMesh, fit_rig
 from engine.retarget.rig.bone_fit import skinned
+from engine.runtime.progress import run
+from engine.shapes.enclosing_surface import with_limbs_steps
 from tests.engine.retarget.rig.test_bone_fit import pose
 from tests.limbs import modular_creature
 from tests.shapes import creature, permuted
@@ -112,6 +114,21 @@ def test_limbs_that_are_pieces_of_their_own_are_fitted_as_well(in_pieces):
     images = pair.maps[0].positions
     assert np.linalg.norm(rig.registered - images, axis=1).mean() < 0.02
     assert np.linalg.norm(rig.posed - images, axis=1).mean() < 0.02
+
+
+def test_what_a_match_prepared_is_taken_over_and_the_result_is_the_same(monkeypatch):
+    cut = modular_creature(0.0, cuts=(0.45, 0.5, 0.8))
+    pair = PairInPieces(cut, modular_creature(0.0, 0.7, cuts=(0.45, 0.5, 0.8)))
+    maps, known = slid_along(pair, 0.03), KnownShapes()
+    for mesh, name in ((pair.source, "source"), (pair.target, "target")):
+        shape = Shape(mesh, name)
+        run(with_limbs_steps(shape, name, np.arange(mesh.vertex_count)))
+        known.keep(mesh, name, None, shape)
+    anew = pair.fitted(maps)
+    monkeypatch.setattr("engine.retarget.rig.rig_fit.clean", None)  # nothing is to be cleaned
+    taken_over = pair.fitted(maps, known=known)
+    assert np.array_equal(anew.heads, taken_over.heads)
+    assert np.array_equal(anew.target_to_source.positions, taken_over.target_to_source.positions)
 
 
 def test_it_is_the_same_each_time(pair):
