@@ -17,7 +17,7 @@ import numpy as np
 
 from ..geometry.best_distinct import best_distinct
 from ..runtime.arrays import Floats
-from ..runtime.progress import Steps, in_turn, within
+from ..runtime.progress import Steps, within
 from ..shapes.landmarks import Landmarks
 from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
@@ -128,7 +128,7 @@ def _limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
 def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
     """Propose long bodies turned back about their axes, and how else they might lie, for all that may be chosen."""
     chosen = contenders(contest, candidates)
-    ways = list(chain.from_iterable((yield from in_turn(map(contest.follow.rolled_back_steps, chosen)))))
+    ways = list(chain.from_iterable((yield from contest.follow.rolled_back_steps(chosen))))
     if len(ways) == len(chosen) and all(map(is_, ways, chosen)):
         return candidates
     others = [candidate for candidate in candidates if not any(candidate is c for c in chosen)]

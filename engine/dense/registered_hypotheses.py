@@ -108,6 +108,10 @@ class Candidate:
     isometry: float
 
 
+_Judged = tuple[Registration, float, float, float]
+"""All of a candidate but its hypothesis."""
+
+
 @dataclass(frozen=True, eq=False)
 class CloseFit:
     """A candidate, registered closely from either side.
@@ -189,25 +193,36 @@ class Follower:
         registration = yield from within(steps, 0.2, 1.0)
         return self._judged(hypothesis, registration)
 
-    def rolled_back_steps(self, candidate: Candidate) -> Steps[list[Candidate]]:
+    def rolled_back_steps(self, candidates: Sequence[Candidate]) -> Steps[list[list[Candidate]]]:
         """Turn a long body back where it is turned about its axis, and try how else it might lie as a whole.
 
-        Returned are all ways to lie, the most credible first, or the candidate alone.  What landmarks hold stays the
-        way round it is.
+        Returned are for each candidate all ways to lie, the most credible first, or the candidate alone.  What
+        landmarks hold stays the way round it is.
         """
         if self.ties is not None:
-            return [candidate]
-        best, ways = yield from within(self._turned_back_steps(candidate), 0.0, 0.4)
-        found = [best]
-        for number, way in enumerate(ways):
-            begin, end = (0.4 + 0.6 * (number + i) / len(ways) for i in (0, 1))
-            lying = yield from within(self._registered_again_steps(candidate, way), begin, (begin + end) / 2)
-            if lying.score < best.score + _WORTHWHILE:
-                lying, _ = yield from within(self._turned_back_steps(lying), (begin + end) / 2, end)
-            found.append(lying)
-        return sorted(found, key=lambda candidate: candidate.score)
+            return [[candidate] for candidate in candidates]
+        turned = yield from within(shared_steps(_turned_back_steps, self, candidates), 0.0, 0.4)
+        found = []
+        items: list[tuple[Candidate, Floats]] = []
+        for candidate, (judged, ways) in zip(candidates, turned, strict=True):
+            best = candidate if judged is None else Candidate(candidate.hypothesis, *judged)
+            found.append([best])
+            items += [(best, way) for way in ways]
+        lying = iter((yield from within(shared_steps(_lying_steps, self, items), 0.4, 1.0)))
+        for ways_to_lie, (_, ways) in zip(found, turned, strict=True):
+            hypothesis = ways_to_lie[0].hypothesis
+            ways_to_lie += [Candidate(hypothesis, *next(lying)) for _ in ways]
+            ways_to_lie.sort(key=lambda candidate: candidate.score)
+        return found
 
-    def _turned_back_steps(self, candidate: Candidate) -> Steps[tuple[Candidate, list[Floats]]]:
+    def lying_steps(self, best: Candidate, way: Floats) -> Steps[Candidate]:
+        """Register a long body as it might lie otherwise, and turn it back if that may be the better way."""
+        lying = yield from within(self._registered_again_steps(best, way), 0.0, 0.5)
+        if lying.score < best.score + _WORTHWHILE:
+            lying, _ = yield from within(self.turned_back_steps(lying), 0.5, 1.0)
+        return lying
+
+    def turned_back_steps(self, candidate: Candidate) -> Steps[tuple[Candidate, list[Floats]]]:
         """Turn parts of a long body back while that is more credible; and say how else all of it might be placed."""
         ways: list[Floats] = []
         for number in range(_ROLLS):
@@ -358,9 +373,24 @@ class Follower:
         return PointMaps(there, back)
 
 
-def _followed_steps(follow: Follower, hypothesis: MapHypothesis) -> Steps[tuple[Registration, float, float, float]]:
+def _followed_steps(follow: Follower, hypothesis: MapHypothesis) -> Steps[_Judged]:
     """Find what `Follower.steps` does, beside the hypothesis."""
-    found = yield from follow.steps(hypothesis)
+    return _judged((yield from follow.steps(hypothesis)))
+
+
+def _turned_back_steps(follow: Follower, candidate: Candidate) -> Steps[tuple[_Judged | None, list[Floats]]]:
+    """Find what `Follower.turned_back_steps` does, beside the hypothesis; None if nothing is turned."""
+    best, ways = yield from follow.turned_back_steps(candidate)
+    return None if best is candidate else _judged(best), ways
+
+
+def _lying_steps(follow: Follower, item: tuple[Candidate, Floats]) -> Steps[_Judged]:
+    """Find what `Follower.lying_steps` does, beside the hypothesis."""
+    return _judged((yield from follow.lying_steps(*item)))
+
+
+def _judged(found: Candidate) -> _Judged:
+    """Take what is sent of a candidate, the hypothesis of which is known."""
     return found.registration, found.score, found.likeness, found.isometry
 
 

@@ -95,7 +95,9 @@ MECHANISMS = {
     "rigid maps": [("engine.dense.dense_hypotheses.rigid_maps", lambda _: lambda *_given: [])],
     "matchings as they are": [(f"{Q}.unrefined_hypotheses_steps", lambda _: lambda *_given: returned([]))],
     "limb sides": [(f"{Q}.repaired_start_steps", lambda _: lambda *_given: returned(None))],
-    "rolling back": [(f"{R}.Follower.rolled_back_steps", lambda _: lambda _self, candidate: returned([candidate]))],
+    "rolling back": [
+        (f"{R}.Follower.rolled_back_steps", lambda _: lambda _self, candidates: returned([[c] for c in candidates]))
+    ],
     "untwisting": [
         (
             f"{R}.untwisted",
