@@ -8,9 +8,14 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ..common.access import layout_of, view_layer_of
-from ..properties.panel_state import state_of
+from ..common.errors import ObjectError
+from ..common.translated_text import translated
+from ..properties.panel_state import picked, state_of
+from ..scene.character import parts_of, side_of
+from ..scene.garments import bound_items, selected_items
 from ..transfers.options.wear import WearOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
+from .panel_text import draw_text
 from .progress_bar import draw_progress
 from .retarget_panels import draw_report
 
@@ -18,6 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 __all__ = ["HIERMATCH_PT_wear"]
+
+
+_SHOWN = 6
+"""Names of items in the panel, at most."""
 
 
 class HIERMATCH_PT_wear(bpy.types.Panel):
@@ -36,6 +45,7 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         active, state = view_layer_of(context).objects.active, state_of(context)
+        _draw_items(layout, context)
         if active is not None and active.type == "MESH" and active not in (state.source, state.target):
             box = layout.box().column()
             box.label(text=active.name, icon="MATCLOTH", translate=False)
@@ -52,3 +62,26 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         row.scale_y = 1.5
         copy_named(options, row.operator("hiermatch.wear", icon="MATCLOTH"), [*names, "refine"])
         draw_report(layout, context, options.report)
+
+
+def _draw_items(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw which objects will be fitted, once both bodies are picked."""
+    source, target = picked(state_of(context))
+    if source is None or target is None:
+        return
+    layer = view_layer_of(context)
+    try:
+        body, other = side_of(source, layer), side_of(target, layer)
+    except ObjectError:  # its sentence stands where the bodies are picked
+        return
+    names = selected_items(context, body, [other], named=True)
+    names = names or [obj.name for obj in bound_items(context, body) if obj not in parts_of(other)]
+    column = layout.box().column(align=True)
+    if not names:
+        draw_text(column, context, "Select the clothes of the source, or bind them to its armature.", "INFO")
+        return
+    column.label(text="Items")
+    for name in names[:_SHOWN]:
+        column.label(text=name, icon="MATCLOTH", translate=False)
+    if len(names) > _SHOWN:
+        column.label(text=translated(f"{len(names) - _SHOWN} more"), icon="BLANK1", translate=False)

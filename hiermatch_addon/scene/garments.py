@@ -20,7 +20,7 @@ from .pair import check_object
 from .shape_key_io import keys_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -38,11 +38,15 @@ __all__ = [
     "fitted_to",
     "made_copy",
     "meshes_of",
+    "selected_items",
     "undressed",
 ]
 
 ITEM, BODY = "hiermatch_item", "hiermatch_body"
 """Custom properties of a fitted copy: the names of the original, and of the body that it was fitted to."""
+
+_SHAPES = frozenset({"MESH", "CURVE", "CURVES", "SURFACE", "FONT", "META"})
+"""Types of objects that have a shape."""
 
 _SIZES = {"SOLIDIFY": ("thickness",), "BEVEL": ("width",), "DISPLACE": ("strength",)}
 """For each type of modifier the members that are lengths."""
@@ -64,6 +68,24 @@ def bound_items(context: bpy.types.Context, body: Side) -> list[bpy.types.Object
         and len(mesh_of(obj).polygons)
         and (armature in moving_armatures(obj) or obj.parent in (armature, *parts))
     ]
+
+
+def selected_items(context: bpy.types.Context, source: Side, targets: Sequence[Side], *, named: bool) -> list[str]:
+    """Return the names of the selected objects that are items, in order: not a body, an armature, or fitted itself.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where they are selected.
+    source, targets : bpy.types.Object or Character
+        The bodies.
+    named : bool
+        Whether the source is named or picked.  Then parts of it that are selected are its clothes, unless all are.
+    """
+    selected = set(view_layer_of(context).objects.selected)
+    own, theirs = set(parts_of(source)), {part for target in targets for part in parts_of(target)}
+    bodies = theirs if named and len(own) > 1 and not own <= selected else own | theirs
+    return sorted(obj.name for obj in selected - bodies if obj.type in _SHAPES and BODY not in cast("Any", obj))
 
 
 def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:

@@ -1571,6 +1571,10 @@ MESSAGES: Final[dict[str, str]] = {
     'Weights of {0} of "{1}" were mended for poses.': 'ポーズのために"{1}"の{0}のウェイトを直しました。',
     "1 item": "1個のアイテム",
     "{0} items": "{0}個のアイテム",
+    "{0} more": "ほか{0}個",
+    "Select the clothes of the source, or bind them to its armature.": (
+        "ソースの服を選択するか、そのアーマチュアにバインドしてください。"
+    ),
     "1 rigid part": "1個の硬いパーツ",
     "{0} rigid parts": "{0}個の硬いパーツ",
     "Clothes": "服",

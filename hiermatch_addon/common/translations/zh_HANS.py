@@ -1300,6 +1300,8 @@ MESSAGES: Final[dict[str, str]] = {
     'Weights of {0} of "{1}" were mended for poses.': '已为姿势修正"{1}"的{0}的权重。',
     "1 item": "1件物品",
     "{0} items": "{0}件物品",
+    "{0} more": "另有 {0} 个",
+    "Select the clothes of the source, or bind them to its armature.": "请选择源的服装，或将其绑定到源的骨架。",
     "1 rigid part": "1个刚性部件",
     "{0} rigid parts": "{0}个刚性部件",
     "Clothes": "服装",

@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ...common.access import view_layer_of
 from ...properties.panel_state import picked, state_of
-from ...scene.character import parts_of
-from ...scene.garments import BODY, meshes_of, undressed
+from ...scene.garments import meshes_of, selected_items, undressed
 from ...transfers.options.wear import WearOptions, wear_settings
 from ...transfers.wear import WearTransfer
 from .transfer_operator import TransferOperator
@@ -23,10 +21,6 @@ if TYPE_CHECKING:
     from ...transfers.motion.motion_job import MotionJob
 
 __all__ = ["HIERMATCH_OT_wear"]
-
-
-_SHAPES = frozenset({"MESH", "CURVE", "CURVES", "SURFACE", "FONT", "META"})
-"""Types of objects that have a shape."""
 
 
 class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
@@ -77,21 +71,10 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
         source, targets = super()._pick(context)
         if not self._chosen:
             self._left_out = ""
-            selected = set(view_layer_of(context).objects.selected)
-            own, theirs = set(parts_of(source)), {part for target in targets for part in parts_of(target)}
-            # Of a character that is named or picked, the parts that are selected are its clothes, unless all are.
             named = bool(self.source) or picked(state_of(context))[0] is not None
-            bodies = theirs if named and len(own) > 1 and not own <= selected else own | theirs
-            chosen = (obj.name for obj in selected - bodies if _can_be_worn(obj))
-            self._chosen = tuple(sorted(chosen))
+            self._chosen = tuple(selected_items(context, source, targets, named=named))
         return undressed(source, self._chosen, context.evaluated_depsgraph_get()), targets
 
     def _transfers(self) -> list[Transfer]:
         options: Any = self
         return [WearTransfer(wear_settings(options, self._chosen))]
-
-
-def _can_be_worn(obj: bpy.types.Object) -> bool:
-    """Tell whether an object that is selected is meant as an item: not an armature, and not fitted itself."""
-    marks: Any = obj
-    return obj.type in _SHAPES and BODY not in marks

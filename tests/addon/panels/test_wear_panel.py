@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panel for clothes says what it will take."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from hiermatch.hiermatch_addon.panels import wear_panel
+
+from tests.addon.garments import add_item
+from tests.addon.panels.test_panels import Layout
+from tests.addon.panels.test_panels import context as context  # noqa: PLC0414  (a fixture)
+from tests.addon.rigs import add_armature
+
+
+@pytest.fixture
+def bodies(dense_pair):
+    """A source and a target that are picked; nothing is selected."""
+    state = bpy.context.scene.hiermatch
+    state.source, state.target = dense_pair
+    bpy.ops.object.select_all(action="DESELECT")
+    return dense_pair
+
+
+def drawn_texts(context):
+    drawn = []
+    panel = SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_wear")
+    wear_panel.HIERMATCH_PT_wear.draw(panel, context)
+    return [entry[1] for entry in drawn if entry[0] == "label"]
+
+
+@pytest.mark.usefixtures("bodies")
+def test_without_bodies_no_items_are_named(context):
+    bpy.context.scene.hiermatch.target = None
+    assert "Items" not in drawn_texts(context)
+
+
+@pytest.mark.usefixtures("bodies")
+def test_without_clothes_it_says_what_to_do(context):
+    said = " ".join(drawn_texts(context))
+    assert "Items" not in said
+    assert "Select the clothes of the source" in said
+
+
+def test_what_is_selected_is_named_and_what_was_fitted_is_not(bodies, context):
+    shirt, coat = (add_item(bodies[0], name, 0.02) for name in ("Shirt", "Coat"))
+    fitted = add_item(bodies[1], "Shirt Fitted", 0.02)
+    fitted["hiermatch_body"] = bodies[1].name
+    for obj in (shirt, fitted, *bodies):
+        obj.select_set(state=True)
+    said = drawn_texts(context)
+    assert "Shirt" in said
+    assert not {coat.name, fitted.name, *(body.name for body in bodies)} & set(said[said.index("Items") :])
+
+
+def test_with_nothing_selected_all_that_hangs_on_the_rig_is_named_up_to_a_number(bodies, context):
+    rig = add_armature("Rig")
+    items = [add_item(bodies[0], f"Item {letter}", 0.02) for letter in "ABCDEFGH"]
+    for obj in (bodies[0], *items):
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+    bpy.ops.object.select_all(action="DESELECT")
+    said = drawn_texts(context)
+    named = [text for text in said if text.startswith("Item ")]
+    assert named == [f"Item {letter}" for letter in "ABCDEF"]
+    assert "2 more" in said
