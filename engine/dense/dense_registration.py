@@ -168,12 +168,9 @@ def registered_pair_steps(
         # Others are compared with what functional maps make of it, not with the rough map.
         best = yield from within(follow.refined_steps(best), 1.0, 1.0)
     rivals = _rivals(best, others, fits, () if as_they_are else untried, source.mass)
-    # With limbs put right, the hypothesis is another one than those that were sorted out by their scores.
-    margin = max(min(gap for gap, _ in rivals), 0.0) if rivals else None
+    margin, alternatives = yield from alternatives_steps(follow, rivals, closest)
     registered = closest.registration, closest.reverse, (best, *others)
-    pair = RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips)
-    alternatives = yield from _alternatives_steps(follow, rivals, closest.registration)
-    return replace(pair, alternatives=alternatives)
+    return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips, alternatives)
 
 
 def _preview(hypothesis: MapHypothesis, registration: Registration | None = None) -> Preview:
@@ -210,19 +207,41 @@ def _rivals(
     return rivals + [(hypothesis.score - best.hypothesis.score, hypothesis) for hypothesis in untried]
 
 
-def _alternatives_steps(
-    follow: Follower, rivals: list[tuple[float, Registration | MapHypothesis]], chosen: Registration
-) -> Steps[tuple[FoundPoints, ...]]:
-    """Choose the maps that are about as credible as the one that is taken, and differ from it and each other."""
-    close = sorted((rival for rival in rivals if not is_clear_choice(max(rival[0], 0.0))), key=itemgetter(0))
-    taken, found = [chosen.positions], []
-    for _, rival in close:
+def alternatives_steps(
+    follow: Follower, rivals: list[tuple[float, Registration | MapHypothesis]], chosen: CloseFit
+) -> Steps[tuple[float | None, tuple[FoundPoints, ...]]]:
+    """Choose the maps that are about as credible as the one that is taken, and differ from it and each other.
+
+    Where neither of two maps finds a partner, as for a hat if the other body has none, it says nothing that they lead
+    elsewhere.
+
+    Returns
+    -------
+    margin : float or None
+        By how much the best map that differs is less credible; None if there is none.
+    alternatives : tuple of FoundPoints
+        Those about as credible.
+    """
+    partnered = follow.partnered(chosen.registration.on_target, chosen.reverse.on_target)
+    taken = [chosen.registration.positions]
+    found: list[FoundPoints] = []
+    margin = None
+    for gap, rival in sorted(rivals, key=itemgetter(0)):
+        # With limbs put right, the hypothesis is another one than those that were sorted out by their scores.
+        distance = max(gap, 0.0)
+        if is_clear_choice(distance):
+            return distance if margin is None else margin, tuple(found)
         if isinstance(rival, MapHypothesis):
             images = yield from within(rival.images_steps(), 1.0, 1.0)
             positions, points = follow.start(images), at_vertices(follow.target, images.on_y)
+            back = at_vertices(follow.source, images.on_x)
         else:
-            positions, points = rival.positions, rival.on_target
-        if all(are_distinct(positions, other, follow.source.mass) for other in taken):
+            positions, points, back = rival.positions, rival.on_target, rival.on_source
+        areas = follow.source.mass * (partnered | follow.partnered(points, back))
+        distinct = [are_distinct(positions, other, areas) for other in taken]
+        if distinct[0] and margin is None:
+            margin = distance
+        if all(distinct):
             taken.append(positions)
             found.append(points)
-    return tuple(found)
+    return margin, tuple(found)

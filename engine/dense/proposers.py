@@ -71,8 +71,8 @@ def are_distinct(first: Floats, second: Floats, areas: Floats) -> bool:
         Areas of these vertices, in any unit.
     """
     apart = np.linalg.norm(first - second, axis=1)
-    elsewhere = areas[apart > _ELSEWHERE].sum() / areas.sum()
-    return bool(apart.mean() > _DISTINCT or elsewhere > _LIMB)
+    mean, elsewhere = np.average(np.stack([apart, apart > _ELSEWHERE]), axis=1, weights=areas)
+    return bool(mean > _DISTINCT or elsewhere > _LIMB)
 
 
 def contenders(contest: Contest, candidates: list[Candidate]) -> list[Candidate]:

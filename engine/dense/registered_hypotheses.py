@@ -30,13 +30,14 @@ from ..registration.registration import (
     restarted_steps,
     smooth_start,
 )
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
 from ..shapes.shape import Shape
 from .credibility import likeness, registered_score
 from .dense_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
 from .functional_maps import PointMaps
+from .missing_parts import with_partner
 
 Trips = tuple[Floats, Floats]
 
@@ -312,6 +313,12 @@ class Follower:
             returned = points_at(there.on_target, end.triangles, images)
             trips.append(np.linalg.norm(returned - start.vertices, axis=1))
         return trips[0], trips[1]
+
+    def partnered(self, there: FoundPoints, back: FoundPoints) -> Bools:
+        """Tell which vertices of the source have a partner by a pair of maps, (n_x,), see `with_partner`."""
+        meshes = self.source.mesh, self.target.mesh
+        ways = zip(meshes[::-1], (there, back), strict=True)
+        return with_partner(*meshes, *(SurfacePoints.from_barycentric(m, f.triangles, f.barycentric) for m, f in ways))
 
     def _length(self, trips: Trips) -> float:
         """Mean length from where it is shorter: what only one of the surfaces has leads elsewhere anyhow."""

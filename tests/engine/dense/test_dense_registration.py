@@ -2,6 +2,7 @@
 """The choice among hypotheses, and the registration of the best."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -497,3 +498,28 @@ def test_surfaces_that_are_less_alike_than_asked_for_are_given_up_before_close_r
     with pytest.raises(MatchError, match="not enough alike"):
         run(registered_pair_steps(x, y, both_starts, selection=replace(BOTH, least=np.inf)))
     assert not closely
+
+
+@pytest.mark.parametrize(
+    ("moved", "seen", "distinct"),
+    [
+        ("hat", "body", False),  # neither finds a partner for it
+        ("hat", "all", True),  # the other map does
+        ("arm", "body", True),
+    ],
+)
+def test_maps_that_differ_only_where_neither_finds_a_partner_are_one_answer(moved, seen, distinct):
+    parts = np.repeat(["body", "arm", "hat"], [80, 10, 10])
+    at_rest = np.zeros((100, 3))
+    known = {"body": parts != "hat", "all": np.ones(100, bool)}
+
+    def registered(positions, partnered):
+        return SimpleNamespace(positions=positions, on_target=partnered, on_source=None)
+
+    rival = registered(at_rest + 0.5 * (parts == moved)[:, None], known[seen])
+    chosen = SimpleNamespace(registration=registered(at_rest, known["body"]), reverse=SimpleNamespace(on_target=None))
+    follow = SimpleNamespace(source=SimpleNamespace(mass=np.ones(100)), partnered=lambda there, _: there)
+    far = 50.0
+    margin, found = run(dense_map.alternatives_steps(follow, [(far, rival), (0.1, rival)], chosen))
+    assert margin == (0.1 if distinct else far)
+    assert len(found) == distinct
