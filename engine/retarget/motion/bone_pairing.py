@@ -40,7 +40,8 @@ _LEAST_PLACE = 0.5
 """How near the joints of two bones have to lie that move nothing by themselves."""
 
 _ROOT_REACH = 0.1
-"""How far the joints of such bones may be apart, in units of the body's largest extent."""
+"""How far the joints of such bones may be apart, and what hangs on others may be carried astray, in units of the body's
+largest extent."""
 
 _FIXED = 10.0
 """What a pair is worth that is given: more than any other choice may gain."""
@@ -155,6 +156,7 @@ def pair_bones(
     gains = _gains(found.scores, fixed, alone)
     trees = rig.skeleton, skeleton
     chosen = _chosen(gains, found, trees, {target: source for source, target in fixed})
+    chosen = _without_misplaced(chosen, (type(skeleton)(*joints), skeleton), fixed, target)
     upright = _upright(rig, source, frames)
     sources, targets = chosen.T
     worth = found.scores[targets, sources]
@@ -315,6 +317,38 @@ def _in_chain(
     if lower < 0:
         return False
     return any(lower in _ancestors(tree, each[side]) and each[1 - side] != pair[1 - side] for each in pairs)
+
+
+def _without_misplaced(
+    chosen: Ints, trees: tuple[Skeleton, Skeleton], fixed: Sequence[tuple[int, int]], target: TriangleMesh
+) -> Ints:
+    """Leave out bones, all in the target, that would carry what hangs on them astray.
+
+    A bone that turns around a joint at the hip is no partner for one that reaches from the back to there, though both
+    carry the same leg: it would swing the hip itself.  Where that is more than what is lost without the pair, the leg
+    alone turns, which turns as much.
+    """
+    given = {(int(a), int(b)) for a, b in fixed}
+    least = _ROOT_REACH * np.ptp(target.vertices, axis=0).max()
+    while len(chosen):
+        parts = Segments.of(*chosen.T, *trees)
+        worst, excess = -1, 1.0
+        for part in np.flatnonzero(parts.parents >= 0):
+            below = parts.below(part)
+            rows = np.concatenate([parts.rows[part], *(parts.rows[each] for each in below)])
+            if len(below) != 1 or given & {(int(a), int(b)) for a, b in chosen[rows]}:
+                continue
+            mine, other = (
+                tree.heads[ends[below[0]][0]] - tree.heads[ends[part][0]]
+                for tree, ends in zip(trees, (parts.sources, parts.targets), strict=True)
+            )
+            astray, lost = np.linalg.norm(other - mine), np.linalg.norm(mine)
+            if astray > max(least, excess * lost):
+                worst, excess = int(part), astray / max(lost, np.finfo(float).tiny)
+        if worst < 0:
+            break
+        chosen = np.delete(chosen, parts.rows[worst], axis=0)
+    return chosen
 
 
 def _ancestors(tree: Skeleton, bone: int) -> set[int]:
