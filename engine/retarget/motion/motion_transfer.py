@@ -201,7 +201,7 @@ class _Body:
                 self._holders[self.tops[part]] = self.segments.targets[above][-1] if above >= 0 else -1
         self._order = self._in_order()
         self.limbs = limbs_of(self.segments, self.source, target, ups)
-        self._rotations = posed_rotations(pairing, self.segments, self.limbs, self.source, target)
+        self._rotations = posed_rotations(pairing, self.segments, self.limbs, (self.source, target), ups[1])
         self.scale = self._scale()
         self._rise = 0.0
         # In the pose in which the source rests the target's feet are to be as high as they are in its own.
