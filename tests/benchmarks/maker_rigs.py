@@ -102,7 +102,8 @@ def action_of(rig):
 def walk(rig):
     """Let arms and legs swing as in a walk, by the names of their bones."""
     swings = {"upper_arm": (-0.5, 0.0), "lower_arm": (0.0, -0.5), "upper_leg": (0.5, 0.0), "lower_leg": (0.0, 0.45)}
-    across = rig.matrix_world.to_3x3().inverted() @ Vector((1, 0, 0))
+    turn = facing(rig)
+    across = rig.matrix_world.to_3x3().inverted() @ Vector((np.cos(turn), np.sin(turn), 0))
     for bone in rig.pose.bones:
         what = limb(bone.name, LIMBS)
         if what is None or what[0] not in swings:

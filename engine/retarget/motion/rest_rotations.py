@@ -51,21 +51,28 @@ def posed_rotations(
     (k, 3, 3) array of float
         As `pairing.rotations`; but as `pairing.upright` where the trunk, which carries half of the limbs, and feet are
         turned against that by less than it takes to lie or hang; feet however far around the axis on which they stand,
-        because none stands backwards: only the map of a thin leg may be turned around it.  Toes rest as their feet do,
-        and fingers are bent against their hands but not twisted.
+        because none stands backwards: only the map of a thin leg may be turned around it.  So legs that stand are bent
+        but not twisted.  Toes rest as their feet do, and fingers are bent against their hands but not twisted.
     """
     rotations = pairing.rotations.copy()
     cosines = (np.einsum("kij,ij->k", rotations, pairing.upright) - 1) / 2
     tilts = rotations @ pairing.upright.T @ up @ up
     above = [segments.above(part) for part in range(len(segments))]
     ends = {limb.parts[1]: limb.foot for limb in limbs}
+    carriers = [sum(part in above[limb.parts[0]] for limb in limbs) for part in range(len(segments))]
+    legs = {part for limb in limbs if limb.foot for part in (*limb.parts, *above[limb.parts[0]]) if carriers[part] < 2}
     for part in sorted(range(len(segments)), key=lambda part: len(above[part])):
-        rows, carried = segments.rows[part], sum(part in above[limb.parts[0]] for limb in limbs)
+        rows, carried = segments.rows[part], carriers[part]
         standing = [ends[each] for each in above[part] if each in ends][:1]
         is_trunk = carried > 1 and 2 * carried >= len(limbs)
         if is_trunk or standing == [True]:
             turned = cosines if is_trunk else tilts
             rotations[rows[turned[rows] > np.cos(_BUILT)]] = pairing.upright
+        if part in legs and not is_trunk:
+            along = _next_joints(trees[0], pairing.sources[rows])
+            told = along.any(axis=1)
+            goals = np.einsum("kij,kj->ki", rotations[rows], along)
+            rotations[rows[told]] = least_turns(along[told] @ pairing.upright.T, goals[told]) @ pairing.upright
         if set(above[part][1:]) & set(ends):
             held = rotations[segments.rows[above[part][0]][0]]
             starts = _next_joints(trees[0], pairing.sources[rows]) @ held.T
