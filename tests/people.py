@@ -302,3 +302,16 @@ def coarse_rig(person):
                 draft.merge(f"{finger}2.{side}", f"{finger}1.{side}")
     draft.rechain(["spine1", "spine2", "spine3"], 2, points)
     return draft.done("Y_")
+
+
+def haunched_rig(person, reach):
+    """The person's rig with a bone above each thigh that carries it and moves the upper part of it, reach above it."""
+    draft, points = _Draft(person.rig), person.mesh.vertices
+    for side in "LR":
+        head, tail = draft.ends[f"thigh.{side}"]
+        place = ((points - head) @ (tail - head) / np.square(tail - head).sum()).clip(0, 1)
+        column = draft.columns[f"thigh.{side}"] * (1 - place) / 2
+        draft.columns[f"thigh.{side}"] = draft.columns[f"thigh.{side}"] - column
+        draft.add(f"haunch.{side}", "hips", (head + np.array([0, 0, reach]), head), column)
+        draft.parents[f"thigh.{side}"] = f"haunch.{side}"
+    return draft.done("Z_")

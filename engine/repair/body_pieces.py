@@ -15,7 +15,7 @@ from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats
 
-_BESIDE = 0.02
+BESIDE = 0.02
 """How far from what is known already, in sqrt(area), a piece goes on beyond it: eyes, teeth and clothes do not."""
 
 _BEYOND, _WITHIN = 0.25, -0.5
@@ -51,7 +51,7 @@ def body_pieces(pieces: Sequence[TriangleMesh]) -> Bools:
     of_body = np.arange(len(pieces)) == 0
     if areas[1:].sum() <= least:
         return of_body
-    far = _BESIDE * np.sqrt(areas.sum())
+    far = BESIDE * np.sqrt(areas.sum())
     places, normals = _seen(pieces[0], areas.sum() / SAMPLES)
     for number in range(1, len(pieces)):
         own, its = _seen(pieces[number], min(areas.sum() / SAMPLES, areas[number] / _LEAST_SAMPLES))

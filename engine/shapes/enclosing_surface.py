@@ -16,7 +16,7 @@ from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.triangle_mesh import TriangleMesh
-from ..repair.body_pieces import LEAST_MORE, SAMPLES
+from ..repair.body_pieces import BESIDE, LEAST_MORE, SAMPLES
 from ..repair.clean_surface import CleanSurface, StandIn, SurfacePart
 from ..repair.cleaning import clean
 from ..repair.cleaning_notes import cleaning_notes
@@ -173,24 +173,20 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
     between them are bridged.  The surface is where that begins.  What is finer than the grid, such as fingers that
     touch, is one there.
     """
-    taken = [piece for piece, takes in zip(cleaned.pieces, cleaned.of_body, strict=True) if takes]
-    body = _Body.of(taken)
-    unit, count = float(np.sqrt(body.mesh.area)), sum(piece.mesh.vertex_count for piece in taken)
-    yield Progress(0.0, _LABEL)
-    solid = solid_indicator(body.solid, _SPACING * unit)
-    yield Progress(0.3, _LABEL)
-    values = bridged(solid.values, _LEVEL, _WIDEST * unit / solid.spacing)
-    yield Progress(0.5, _LABEL)
-    places, triangles = surface_net(values, _LEVEL)
-    if not len(triangles):
-        return None
-    try:
-        skin = clean(TriangleMesh(places * solid.spacing + solid.origin, triangles)).mesh
-    except MeshError:
+    pieces, taking_part = cleaned.pieces, cleaned.of_body.copy()
+    count = sum(piece.mesh.vertex_count for piece, takes in zip(pieces, taking_part, strict=True) if takes)
+    skin = yield from within(_skin_steps(pieces, taking_part), 0.0, 0.5, _LABEL)
+    lying = _lying_on(skin, pieces) if skin is not None else taking_part
+    between = _between(pieces, taking_part & lying, taking_part & ~lying) & ~taking_part
+    if between.any():
+        taking_part |= between
+        skin = yield from within(_skin_steps(pieces, taking_part), 0.5, 0.6, _LABEL)
+        lying = _lying_on(skin, pieces) if skin is not None else taking_part
+    if skin is None:
         return None
     coarse = yield from within(proxy_steps(skin, min(most, _FINER * count)), 0.6, 0.9, _LABEL)
     # What is too far away from all else was not reached.
-    taking_part = cleaned.of_body & _lying_on(skin, cleaned.pieces)
+    taking_part &= lying
     if not taking_part[0] or taking_part.sum() == 1:
         return None
     body = _Body.of([piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if takes])
@@ -211,6 +207,37 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
         notes=cleaning_notes(name, counts),
         counts=counts,
     )
+
+
+def _skin_steps(pieces: tuple[SurfacePart, ...], taking_part: Bools) -> Steps[TriangleMesh | None]:
+    """Find the surface around those pieces (p,) that take part; None if they have no inside."""
+    body = _Body.of([piece for piece, takes in zip(pieces, taking_part, strict=True) if takes])
+    unit = float(np.sqrt(body.mesh.area))
+    yield Progress(0.0, _LABEL)
+    solid = solid_indicator(body.solid, _SPACING * unit)
+    yield Progress(0.6, _LABEL)
+    values = bridged(solid.values, _LEVEL, _WIDEST * unit / solid.spacing)
+    yield Progress(0.9, _LABEL)
+    places, triangles = surface_net(values, _LEVEL)
+    if not len(triangles):
+        return None
+    try:
+        return clean(TriangleMesh(places * solid.spacing + solid.origin, triangles)).mesh
+    except MeshError:
+        return None
+
+
+def _between(pieces: tuple[SurfacePart, ...], reached: Bools, lost: Bools) -> Bools:
+    """Tell which pieces (p,) touch some that were reached as well as some that were not, and so hold them together."""
+    if not (reached.any() and lost.any()):
+        return np.zeros(len(pieces), bool)
+    area = sum(piece.mesh.area for piece in pieces)
+    samples = [even_samples(piece.mesh, area / SAMPLES).positions for piece in pieces]
+    touching = []
+    for side in (reached, lost):
+        tree = cKDTree(np.concatenate([samples[number] for number in np.flatnonzero(side)]))
+        touching.append([tree.query(own)[0].min() < BESIDE * np.sqrt(area) for own in samples])
+    return np.all(touching, axis=0)
 
 
 def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> Bools:

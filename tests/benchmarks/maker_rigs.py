@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pair the bones of characters of several makers, and let one walk as the other does.
 
-    python -m tests.benchmarks.maker_rigs --data FOLDER [--only SOURCE:TARGET,...] [--save FOLDER]
+    python -m tests.benchmarks.maker_rigs --data FOLDER [--only SOURCE:TARGET,...] [--feet] [--save FOLDER]
+                                         [--strips FOLDER]
 
 FOLDER holds rigged characters as .glb or .vrm files. Without --only these are all pairs of people of different makers,
 and of four-legged animals, that are named in `PEOPLE` and `ANIMALS`, each once. Everything goes through the buttons:
@@ -12,7 +13,8 @@ source has as well, told by names; how many are paired with the other side; the 
 upper and lower limbs of source and target over the action, each as seen from its own front, in degrees (not for
 animals, whose legs are built in other pieces); how far the lowest point of the target is below the ground at most, and
 how far the source is below its own, both in % of the height; and the seconds of one core that pairing, match included,
-and the motion took. --save keeps a .blend of each pair, to look at.
+and the motion took. --feet is *Feet on Ground*. --save keeps a .blend of each pair, and
+--strips a strip of frames of both, to look at.
 """
 
 import argparse
@@ -30,6 +32,7 @@ import bpy
 import numpy as np
 from mathutils import Quaternion, Vector
 
+from tests.benchmarks.action_strip import draw_strip
 from tools.source_extension import registered_extension
 
 PEOPLE = {
@@ -60,6 +63,7 @@ LEGS = {"front": r"(ik)?front_?(leg|shoulder|upper|lower).*|ff", "back": r"(ik)?
 
 AFTER = {"upper_arm": "lower_arm", "lower_arm": "hand", "upper_leg": "lower_leg", "lower_leg": "foot"}
 FRAMES = 9
+SHOWN = 8
 
 
 def limb(name, table=None):
@@ -98,7 +102,8 @@ def action_of(rig):
 def walk(rig):
     """Let arms and legs swing as in a walk, by the names of their bones."""
     swings = {"upper_arm": (-0.5, 0.0), "lower_arm": (0.0, -0.5), "upper_leg": (0.5, 0.0), "lower_leg": (0.0, 0.45)}
-    across = rig.matrix_world.to_3x3().inverted() @ Vector((1, 0, 0))
+    turn = facing(rig)
+    across = rig.matrix_world.to_3x3().inverted() @ Vector((np.cos(turn), np.sin(turn), 0))
     for bone in rig.pose.bones:
         what = limb(bone.name, LIMBS)
         if what is None or what[0] not in swings:
@@ -186,7 +191,7 @@ def paired(rows, source, target):
     return right, right + wrong, crossed, said
 
 
-def row(folder, names, save):
+def row(folder, names, options):
     """Return the numbers of one pair, and what was paired wrong."""
     bpy.ops.wm.read_homefile(use_empty=True)
     (source, its), (target, others) = (added(folder / name) for name in names)
@@ -201,7 +206,9 @@ def row(folder, names, save):
     begin = time.process_time()
     bpy.ops.hiermatch.pair_bones(source=source.name, target=target.name, accept_doubtful=True)
     between = time.process_time()
-    bpy.ops.hiermatch.retarget_action(source=source.name, target=target.name, action=action.name)
+    bpy.ops.hiermatch.retarget_action(
+        source=source.name, target=target.name, action=action.name, keep_feet=options.feet
+    )
     end = time.process_time()
     confidence = 100 * bpy.context.scene.hiermatch.summary.confidence
     right, count, crossed, said = paired(bpy.context.scene.hiermatch_bone_pairs, source, target)
@@ -213,8 +220,13 @@ def row(folder, names, save):
         angles += [np.degrees((turn @ way).angle(other[what])) for what, way in mine.items() if what in other]
         for number, (meshes, (low, high)) in enumerate(zip((others, its), rests[::-1], strict=True)):
             depths[number] = max(depths[number], 100 * (low - heights(meshes)[0]) / (high - low))
-    if save is not None:
-        bpy.ops.wm.save_as_mainfile(filepath=str(save / f"{'-'.join(Path(name).stem for name in names)}.blend"))
+    stem = "-".join(Path(name).stem for name in names)
+    if options.save is not None:
+        bpy.ops.wm.save_as_mainfile(filepath=str(options.save / f"{stem}.blend"))
+    if options.strips is not None:
+        shown = np.linspace(*action.frame_range, SHOWN)
+        grounds, turns = [low for low, _ in rests], [facing(rig) for rig in (source, target)]
+        draw_strip(options.strips / f"{stem}.png", [its, others], turns, grounds, shown)
     bends = f"{np.mean(angles):5.1f} {np.max(angles):5.1f}" if angles else f"{'':5} {'':5}"
     title = " -> ".join(Path(name).stem for name in names)
     return (
@@ -234,12 +246,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True, help="folder with the characters")
     parser.add_argument("--only", help="pairs of files, SOURCE:TARGET,... (default: all of other makers)")
+    parser.add_argument("--feet", action="store_true", help="keep feet on the ground")
     parser.add_argument("--save", type=Path, help="folder for a .blend of each pair")
+    parser.add_argument("--strips", type=Path, help="folder for a picture of each pair")
     options = parser.parse_args()
     registered_extension()
     wanted = [tuple(pair.split(":")) for pair in options.only.split(",")] if options.only else pairs()
     for names in wanted:
-        line, said = row(options.data, names, options.save)
+        line, said = row(options.data, names, options)
         print("ROW", line, *said, sep="\n    " if said else " ", flush=True)
 
 

@@ -19,6 +19,7 @@ from ..rig.fitted_rig import FittedRig
 from ..rig.joint_placement import least_turns, place_joints, standing
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import carried, row_sums
+from .mirrored_bones import mirrored_bones
 from .segments import Segments
 from .tree_alignment import aligned
 
@@ -40,7 +41,8 @@ _LEAST_PLACE = 0.5
 """How near the joints of two bones have to lie that move nothing by themselves."""
 
 _ROOT_REACH = 0.1
-"""How far the joints of such bones may be apart, in units of the body's largest extent."""
+"""How far the joints of such bones may be apart, and what hangs on others may be carried astray, in units of the body's
+largest extent."""
 
 _FIXED = 10.0
 """What a pair is worth that is given: more than any other choice may gain."""
@@ -151,10 +153,12 @@ def pair_bones(
     placed = place_joints(rig, source, _any_normals(rig.skeleton))
     there = carried(rig.weights, rig.target_to_source)
     joints = rig.skeleton.parents, placed.heads, placed.tails
-    found = _compared(there, weights, target, (type(skeleton)(*joints), skeleton))
+    mirrors = mirrored_bones(rig.skeleton), mirrored_bones(skeleton)
+    found = _compared(there, weights, target, (type(skeleton)(*joints), skeleton), mirrors)
     gains = _gains(found.scores, fixed, alone)
     trees = rig.skeleton, skeleton
     chosen = _chosen(gains, found, trees, {target: source for source, target in fixed})
+    chosen = _without_misplaced(chosen, (type(skeleton)(*joints), skeleton), fixed, target)
     upright = _upright(rig, source, frames)
     sources, targets = chosen.T
     worth = found.scores[targets, sources]
@@ -189,9 +193,13 @@ class _Comparison:
 
 
 def _compared(
-    there: csr_array, weights: csr_array, target: TriangleMesh, trees: tuple[Skeleton, Skeleton]
+    there: csr_array,
+    weights: csr_array,
+    target: TriangleMesh,
+    trees: tuple[Skeleton, Skeleton],
+    mirrors: tuple[Ints, Ints],
 ) -> _Comparison:
-    """Compare all bones: source and target, both as they lie in the target."""
+    """Compare all bones: source and target, both as they lie in the target, and what is on the other side of each."""
     sums = [row_sums(each) for each in (there, weights)]
     areas = np.where((sums[0] > 0) & (sums[1] > 0), target.vertex_areas, 0.0)
     shares = [
@@ -201,16 +209,16 @@ def _compared(
     subtrees = [csr_array(each @ _below(tree)) for each, tree in zip(shares, trees, strict=True)]
     masses, totals = ([areas @ each for each in pair] for pair in (shares, subtrees))
     common = _common(shares[1], shares[0], areas)
-    own = _part(common, masses[1][:, None] + masses[0] - common)
-    inside = _part(common, np.minimum(masses[1][:, None], masses[0]))
+    own = _even(_part(common, masses[1][:, None] + masses[0] - common), mirrors)
+    inside = _even(_part(common, np.minimum(masses[1][:, None], masses[0])), mirrors)
     shared = (subtrees[1].T @ (diags_array(areas) @ subtrees[0])).toarray()
     squares = [areas @ each.power(2) for each in subtrees]
-    whole = _part(shared, squares[1][:, None] + squares[0] - shared)
+    whole = _even(_part(shared, squares[1][:, None] + squares[0] - shared), mirrors)
     extent = np.ptp(target.vertices, axis=0).max()
     lengths = [np.linalg.norm(tree.tails - tree.heads, axis=1) for tree in trees]
     reach = np.maximum((lengths[1][:, None] + lengths[0]) / 2, 0.01 * extent)
     apart = np.linalg.norm(trees[1].heads[:, None] - trees[0].heads, axis=2)
-    place = np.exp(-((apart / reach) ** 2))
+    place = _even(np.exp(-((apart / reach) ** 2)), mirrors)
     scores = _SHARES["subtree"] * whole + _SHARES["own"] * own + _SHARES["place"] * place
     scores[inside < _LEAST_INSIDE] = -np.inf
     # Two bones that move nothing by themselves, but something hangs on them: roots.
@@ -220,6 +228,15 @@ def _compared(
     idle = [~mover & (total > 0) for mover, total in zip(moving, totals, strict=True)]
     both_idle = idle[1][:, None] & idle[0] & (near >= _LEAST_PLACE)
     return _Comparison(np.where(both_idle, roots, scores), inside, moving)
+
+
+def _even(values: Floats, mirrors: tuple[Ints, Ints]) -> Floats:
+    """Average values of pairs (b, a) with those of the same pairs on the other side: a map is not as sure of both."""
+    result = values.copy()
+    mine, other = (np.flatnonzero(each >= 0) for each in mirrors)
+    images = values[np.ix_(mirrors[1][other], mirrors[0][mine])]
+    result[np.ix_(other, mine)] = (values[np.ix_(other, mine)] + images) / 2
+    return result
 
 
 def _below(tree: Skeleton) -> csr_array:
@@ -315,6 +332,41 @@ def _in_chain(
     if lower < 0:
         return False
     return any(lower in _ancestors(tree, each[side]) and each[1 - side] != pair[1 - side] for each in pairs)
+
+
+def _without_misplaced(
+    chosen: Ints, trees: tuple[Skeleton, Skeleton], fixed: Sequence[tuple[int, int]], target: TriangleMesh
+) -> Ints:
+    """Leave out bones, all in the target, that would carry what hangs on them astray.
+
+    A bone that turns around a joint at the hip is no partner for one that reaches from the back to there, though both
+    carry the same leg: it would swing the hip itself.  Where that is more than what is lost without the pair, the leg
+    alone turns, which turns as much.
+    """
+    given = {(int(a), int(b)) for a, b in fixed}
+    least = _ROOT_REACH * np.ptp(target.vertices, axis=0).max()
+    while len(chosen):
+        parts = Segments.of(*chosen.T, *trees)
+        worst, excess = -1, 1.0
+        for part in np.flatnonzero(parts.parents >= 0):
+            below = parts.below(part)
+            rows = np.concatenate([parts.rows[part], *(parts.rows[each] for each in below)])
+            if len(below) != 1 or given & {(int(a), int(b)) for a, b in chosen[rows]}:
+                continue
+            starts, nexts = (
+                [tree.heads[ends[each][0]] for tree, ends in zip(trees, (parts.sources, parts.targets), strict=True)]
+                for each in (part, below[0])
+            )
+            mine, other = nexts[0] - starts[0], nexts[1] - starts[1]
+            astray, lost = np.linalg.norm(other - mine), np.linalg.norm(mine)
+            if np.linalg.norm(starts[1] - starts[0]) <= least:
+                continue
+            if astray > max(least, excess * lost):
+                worst, excess = int(part), astray / max(lost, np.finfo(float).tiny)
+        if worst < 0:
+            break
+        chosen = np.delete(chosen, parts.rows[worst], axis=0)
+    return chosen
 
 
 def _ancestors(tree: Skeleton, bone: int) -> set[int]:

@@ -122,7 +122,8 @@ def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: Floats
         pairs = [number for number in range(len(way) - 2) if branches[way[number + 1]] == 1 and all(free[: number + 1])]
         if not pairs:
             continue
-        low = max(pairs, key=lambda number: (lengths[:, number] + lengths[:, number + 1]).sum())
+        shares = lengths / np.maximum(np.array(extents), np.finfo(float).tiny)[:, None]
+        low = max(pairs, key=lambda number: (shares[:, number] + shares[:, number + 1]).sum())
         last = min(low, 2)
         long = lengths[:, last : low + 2].sum(axis=1)
         key = way[low + 1], way[low]

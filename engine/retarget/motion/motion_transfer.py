@@ -148,6 +148,10 @@ def transfer_motion_steps(
     paths = body.paths(motion.heads, turns, settings.stride)
     posed = body.posed(turns, paths)
     feet = [limb for limb in body.limbs if limb.foot]
+    if feet:
+        lifts = _carried_lifts(body, motion, posed, feet)
+        paths = {part: path + lifts[:, None, None] * ups[1] for part, path in paths.items()}
+        posed = body.posed(turns, paths)
     if settings.feet and feet and len(motion) > 1:
         yield Progress(0.5, "Keeping the feet")
         goals, drop = _with_feet(body, motion, posed, feet, settings)
@@ -197,7 +201,7 @@ class _Body:
                 self._holders[self.tops[part]] = self.segments.targets[above][-1] if above >= 0 else -1
         self._order = self._in_order()
         self.limbs = limbs_of(self.segments, self.source, target, ups)
-        self._rotations = posed_rotations(pairing, self.segments, self.limbs, self.source, target)
+        self._rotations = posed_rotations(pairing, self.segments, self.limbs, (self.source, target), ups[1])
         self.scale = self._scale()
         self._rise = 0.0
         # In the pose in which the source rests the target's feet are to be as high as they are in its own.
@@ -324,6 +328,16 @@ def _with_feet(
         goals.append(limb.joints(posed)[:, 2] + shifts + lifts[:, None] * body.ups[1])
     drops = [needed_drop(limb.joints(posed), goal, body.ups[1]) for limb, goal in zip(feet, goals, strict=True)]
     return goals, _smoothed(np.max(drops, axis=0), settings.rate)
+
+
+def _carried_lifts(body: _Body, motion: Motion, posed: Motion, feet: list[Limb]) -> Floats:
+    """Find how far the body has to be lifted in each pose, (f,), for the feet that carry it to be on the ground."""
+    up, length = body.ups[0], float(np.mean([limb.source_length for limb in feet]))
+    levels = np.concatenate([limb.target_points(body.target) for limb in feet]) @ body.ups[1]
+    rises = [(limb.source_points(motion) - limb.source_points(body.source)) @ up for limb in feet]
+    wanted = levels + body.scale * np.concatenate(rises, axis=1)
+    heights = np.concatenate([limb.target_points(posed) for limb in feet], axis=1) @ body.ups[1]
+    return grounded_lifts(heights, wanted, levels, body.scale * length)
 
 
 def _smoothed(drops: Floats, rate: float) -> Floats:

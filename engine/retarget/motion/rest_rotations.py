@@ -21,7 +21,11 @@ by strips of walks and runs, horse to cow, and fox to dog and cat, whose paws ar
 
 
 def posed_rotations(
-    pairing: BonePairing, segments: Segments, limbs: Sequence[Limb], source: Skeleton, target: Skeleton
+    pairing: BonePairing,
+    segments: Segments,
+    limbs: Sequence[Limb],
+    trees: tuple[Skeleton, Skeleton],
+    up: Floats,
 ) -> Floats:
     """Rotations by which the rest poses of two rigs differ, without those that come from how the bodies are built.
 
@@ -37,30 +41,42 @@ def posed_rotations(
         What stands for what.
     limbs : sequence of Limb
         Legs and arms among them.
-    source, target : Skeleton
-        The bones at rest.
+    trees : pair of Skeleton
+        The source's and the target's bones at rest.
+    up : (3,) array of float
+        Direction away from the ground in the target's space, of length one.
 
     Returns
     -------
     (k, 3, 3) array of float
         As `pairing.rotations`; but as `pairing.upright` where the trunk, which carries half of the limbs, and feet are
-        turned against that by less than it takes to lie or hang.  Toes rest as their feet do, and fingers are bent
-        against their hands but not twisted.
+        turned against that by less than it takes to lie or hang; feet however far around the axis on which they stand,
+        because none stands backwards: only the map of a thin leg may be turned around it.  So legs that stand are bent
+        but not twisted.  Toes rest as their feet do, and fingers are bent against their hands but not twisted.
     """
     rotations = pairing.rotations.copy()
     cosines = (np.einsum("kij,ij->k", rotations, pairing.upright) - 1) / 2
+    tilts = rotations @ pairing.upright.T @ up @ up
     above = [segments.above(part) for part in range(len(segments))]
     ends = {limb.parts[1]: limb.foot for limb in limbs}
+    carriers = [sum(part in above[limb.parts[0]] for limb in limbs) for part in range(len(segments))]
+    legs = {part for limb in limbs if limb.foot for part in (*limb.parts, *above[limb.parts[0]]) if carriers[part] < 2}
     for part in sorted(range(len(segments)), key=lambda part: len(above[part])):
-        rows, carried = segments.rows[part], sum(part in above[limb.parts[0]] for limb in limbs)
+        rows, carried = segments.rows[part], carriers[part]
         standing = [ends[each] for each in above[part] if each in ends][:1]
         is_trunk = carried > 1 and 2 * carried >= len(limbs)
         if is_trunk or standing == [True]:
-            rotations[rows[cosines[rows] > np.cos(_BUILT)]] = pairing.upright
+            turned = cosines if is_trunk else tilts
+            rotations[rows[turned[rows] > np.cos(_BUILT)]] = pairing.upright
+        if part in legs and not is_trunk:
+            along = _next_joints(trees[0], pairing.sources[rows])
+            told = along.any(axis=1)
+            goals = np.einsum("kij,kj->ki", rotations[rows], along)
+            rotations[rows[told]] = least_turns(along[told] @ pairing.upright.T, goals[told]) @ pairing.upright
         if set(above[part][1:]) & set(ends):
             held = rotations[segments.rows[above[part][0]][0]]
-            starts = _next_joints(source, pairing.sources[rows]) @ held.T
-            goals = _next_joints(target, pairing.targets[rows])
+            starts = _next_joints(trees[0], pairing.sources[rows]) @ held.T
+            goals = _next_joints(trees[1], pairing.targets[rows])
             told = starts.any(axis=1) & goals.any(axis=1)
             rotations[rows] = held
             if standing == [False]:

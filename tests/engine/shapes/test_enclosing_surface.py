@@ -195,3 +195,17 @@ def test_scattered_pieces_are_not_joined(body):
     vertices = body.mesh.vertices + np.arange(7)[body.pieces, None] * [0.0, 0.0, 3.0]
     shape = Shape(TriangleMesh(vertices, body.mesh.triangles))
     assert run(with_limbs_steps(shape, "source", np.arange(len(vertices)))) is shape
+
+
+def test_what_holds_two_parts_of_a_body_together_belongs_to_it_though_most_of_it_lies_in_them():
+    ball, faces = icosphere(12)
+    box = ball / np.abs(ball).max(axis=1, keepdims=True)
+    halves = [(box * [1, 1, 1.5] + [0, 0, 1.79 * side], faces) for side in (-1, 1)]  # farther apart than is bridged
+    waist = box * [0.9, 0.9, 0.39], faces
+    mesh = TriangleMesh(*together(*halves, waist))
+    assert not clean(mesh).limbs[-1]
+    found = joined(mesh)
+    assert found.mesh.component_count == 1
+    assert (found.cleaned.vertex_parts == 0).all()
+    # Without it they stay apart.
+    assert (joined(TriangleMesh(*together(*halves))).cleaned.vertex_parts > 0).any()

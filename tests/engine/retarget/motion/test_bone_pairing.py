@@ -6,7 +6,7 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import BonePairing, RigError, Skeleton, SurfaceMap, TriangleMesh, fit_rig, pair_bones
-from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, renamed
+from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, haunched_rig, renamed
 from tests.shapes import rotation
 
 
@@ -71,6 +71,20 @@ def test_where_tails_point_does_not_matter(someone):
     pairing = pair_bones(fitted, someone.mesh, someone.mesh, tree, someone.rig.weights)
     check_right(pairing, someone.rig, someone.rig)
     assert np.allclose(pairing.rotations, np.eye(3), atol=1e-3)
+
+
+@pytest.mark.parametrize("reaches", [(0.03, 0.4), (0.03, 0.03), (0.4, 0.4)])
+def test_a_bone_that_swings_from_another_joint_is_no_partner_though_both_carry_the_same_leg(someone, reaches):
+    # The hip of an animal turns at the hip in one rig, and reaches there from the middle of the back in the other.
+    source, target = (haunched_rig(someone, reach) for reach in reaches)
+    same = SurfaceMap.identity(someone.mesh)
+    named = {"weights": source.weights, "skeleton": source.skeleton, "refine": False}
+    fitted = fit_rig(someone.mesh, someone.mesh, same, same, **named)
+    pairing = pair_bones(fitted, someone.mesh, someone.mesh, target.skeleton, target.weights)
+    pairs = {(source.names[a], target.names[b]) for a, b in zip(pairing.sources, pairing.targets, strict=True)}
+    for side in "LR":
+        assert (f"Z_thigh.{side}", f"Z_thigh.{side}") in pairs
+        assert ((f"Z_haunch.{side}", f"Z_haunch.{side}") in pairs) == (reaches[0] == reaches[1])
 
 
 def test_given_pairs_and_bones_left_alone_are_respected(someone, paired):

@@ -47,3 +47,21 @@ def test_a_back_that_bears_legs_is_no_limb_and_a_leg_of_four_reaches_the_ground(
     assert sorted(limb.parts for limb in legs) == [(3, 4), (7, 8), (11, 12), (15, 16)]
     assert all((0, False) not in limb.source_joints and not {0, 1, 2} & set(limb.parts) for limb in limbs)
     assert np.allclose(legs[0].source_points(bones), points[[5, 6]])
+
+
+@pytest.mark.parametrize("unit", [0.001, 1.0, 1000.0])
+def test_the_two_parts_of_a_limb_do_not_depend_on_units(unit):
+    # Two legs of three parts, of which one rig has the upper two longest, and the other the lower two.
+    def rig(knee, ankle):
+        joints = [(0.0, 0, 1.0)]
+        for side in (-0.2, 0.2):
+            joints += [(0, side, 0.9), (0.05, side, knee), (-0.05, side, ankle), (0, side, 0.05)]
+        return np.array(joints)
+
+    parents = np.array([-1, 0, 1, 2, 3, 0, 5, 6, 7])
+    high, low = rig(0.6, 0.25), rig(0.75, 0.5)
+    source = Skeleton(parents, unit * high, unit * (high + np.array([0.05, 0, 0])))
+    target = Skeleton(parents, low, low + np.array([0.05, 0, 0]))
+    numbers = np.arange(len(parents))
+    limbs = limbs_of(Segments.of(numbers, numbers, source, target), source, target, UPS)
+    assert sorted(limb.parts for limb in limbs) == [(2, 3), (6, 7)]

@@ -94,6 +94,26 @@ def test_feet_do_not_slide_on_longer_legs(someone):
     assert np.allclose(np.linalg.norm(held.motion.tails - held.motion.heads, axis=2), lengths)
 
 
+def test_the_foot_that_carries_is_on_the_ground_whatever_the_legs_are_like(someone):
+    motion, sides = walk(someone)
+    tree, numbers = someone.rig.skeleton, np.arange(len(someone.rig.names))
+    knees = [0.0, 0.1, 0.5, 0.92, 2.0], [0.0, 0.1, 0.25, 0.92, 2.0]  # heights of soles, ankles, knees, hips, heads
+    ends = [np.c_[points[:, :2], np.interp(points[:, 2], *knees)] for points in (tree.heads, tree.tails)]
+    target = Skeleton(tree.parents, *ends)
+    same = np.tile(np.eye(3), (len(tree), 1, 1))
+    pairing = BonePairing(numbers, numbers, np.ones(len(tree)), same, target.heads, np.eye(3))
+    standing = np.array([someone.rig.names.index(f"toe.{side}") for side in sides])
+    found = transfer_motion(motion, pairing, target)
+    toes = found.motion.heads[np.arange(len(motion)), standing, 2]
+    assert np.abs(toes - target.heads[standing, 2]).max() < 0.01
+    # Far above the ground there is nothing to stand on.
+    plain, above = (
+        transfer_motion(Motion(tree, motion.turns, motion.heads + up), pairing, target).motion.heads
+        for up in np.array([[0, 0, 1], [0, 0, 2]])
+    )
+    assert np.allclose(above - plain, [0, 0, found.scale])
+
+
 def test_feet_that_stand_already_are_left_alone(someone):
     motion, _ = walk(someone)
     _, pairing = stretched(someone, 1.0)

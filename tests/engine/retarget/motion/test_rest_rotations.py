@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from engine import BonePairing
 from engine.retarget.motion.limbs import limbs_of
@@ -30,7 +31,7 @@ def posed(rig, seen, upright=None):
     pairing = BonePairing(numbers, numbers, np.ones(len(numbers)), turns, tree.heads, upright)
     segments = Segments.of(numbers, numbers, rig.skeleton, tree)
     limbs = limbs_of(segments, rig.skeleton, tree, UPS)
-    found = posed_rotations(pairing, segments, limbs, rig.skeleton, tree)
+    found = posed_rotations(pairing, segments, limbs, (rig.skeleton, tree), UPS[1])
     return turns, dict(zip(rig.names, found, strict=True))
 
 
@@ -40,6 +41,23 @@ def test_a_trunk_and_feet_that_are_a_little_tilted_rest_as_they_are_built(rig):
     _, found = posed(rig, tilted, turn)
     for name in tilted:
         assert np.allclose(found[name], turn)
+
+
+def test_no_foot_stands_backwards_but_it_may_hang(rig):
+    # The map of a thin leg may be turned around it; a foot that hangs is tilted.
+    turns, found = posed(rig, {"foot.L": (0, 0, 3.0), "foot.R": (1.5, 0, 0)})
+    assert np.allclose(found["foot.L"], np.eye(3))
+    assert np.allclose(found["foot.R"], turns[rig.names.index("foot.R")])
+
+
+def test_a_leg_that_stands_is_bent_but_not_twisted(rig):
+    tree, shin = rig.skeleton, rig.names.index("shin.L")
+    axis = tree.heads[rig.names.index("foot.L")] - tree.heads[shin]
+    bend, twist = rotation([1, 0, 0], 0.4), rotation(axis, 0.9)
+    turns, found = posed(rig, {"shin.L": Rotation.from_matrix(bend @ twist).as_rotvec(), "forearm.L": (0.9, 0, 0)})
+    assert np.allclose(found["shin.L"] @ axis, bend @ axis)
+    assert Rotation.from_matrix(found["shin.L"]).magnitude() < 0.41
+    assert np.allclose(found["forearm.L"], turns[rig.names.index("forearm.L")])  # palms may look elsewhere
 
 
 def test_limbs_that_rest_in_another_pose_and_a_body_that_lies_are_seen(rig):
