@@ -122,7 +122,7 @@ def surface_frames(
     columns = np.concatenate([jacobians.reshape(-1, 9), stretches[:, None]], axis=1) * areas[:, None]
     sums = np.stack([mesh.sum_at_vertices(column) for column in (columns / 3).T], axis=1)
     spread = _spread(mesh, sums, radius)
-    spread = spread[_bearers(mesh)]
+    spread = spread[bearers(mesh)]
     rotations = _orthogonal(spread[:, :9].reshape(-1, 3, 3), -1.0 if mirrored else 1.0)
     return LocalFrames(rotations, _bounded(spread[:, 9]), overall)
 
@@ -189,7 +189,7 @@ def evened_frames(mesh: TriangleMesh, frames: LocalFrames) -> LocalFrames:
     for chosen in _unlike(flat):
         alike = np.exp(-np.square(flat - flat[chosen]).sum(axis=1) / (2 * _ALIKE**2))[:, None]
         sums += alike * spread.solve(alike * columns)
-    evened = (sums[:, :9] / sums[:, 9:])[_bearers(mesh)].reshape(-1, 3, 3)
+    evened = (sums[:, :9] / sums[:, 9:])[bearers(mesh)].reshape(-1, 3, 3)
     return replace(frames, rotations=_orthogonal(evened, float(np.sign(np.linalg.det(frames.rotations[0])))))
 
 
@@ -203,7 +203,7 @@ def _unlike(rotations: Floats) -> list[int]:
     return chosen
 
 
-def _bearers(mesh: TriangleMesh) -> Ints:
+def bearers(mesh: TriangleMesh) -> Ints:
     """For each vertex of a small piece, such as a lash, the nearest of what it lies on; for others themselves, (n,)."""
     bearers = np.arange(mesh.vertex_count)
     parts = WeldedParts.of(mesh)
