@@ -119,7 +119,7 @@ and lips first, which differ from face to face by more than their surroundings."
 
 POLISHED = Stage((10_240,), 0.03, 0.0, normal_radius=0.01)
 """And at last to rest.  Of both, weights of a quarter and normals that count .05 and are not averaged slide by half as
-much again on lids (`faces` of the benchmarks), and are worse on two of three scenes of `artist_scenes`."""
+much again on lids (`faces` of the benchmarks), and are worse on S3 and S5 of `artist_scenes`."""
 
 
 @dataclass(frozen=True, eq=False)
