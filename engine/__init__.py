@@ -34,6 +34,7 @@ from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
 from .retarget.rig.skeleton import Skeleton
 from .retarget.rig.standing_rig import carry_standing_rig, carry_standing_rig_steps, moved_into, standing_share
 from .retarget.values.attribute_transfer import CarriedValues, Crossing, Domain, carry_values_steps
+from .retarget.values.closings import closings_kept_steps
 from .retarget.values.corner_transfer import carry_normals, turned_normals
 from .retarget.values.deformation_gradients import LocalFrames, bone_frames, evened_frames, surface_frames
 from .retarget.values.face_correspondence import FacePlaces
@@ -130,6 +131,7 @@ __all__ = [
     "carry_weights",
     "carry_weights_steps",
     "close_helpers",
+    "closings_kept_steps",
     "continues_body",
     "densify",
     "densify_steps",

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import SuperLU
 
 from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.symmetric_factor import symmetric_factor
@@ -62,6 +64,11 @@ class DeformableSurface:
         self.triangles = mesh.triangles
         self.normals = mesh.vertex_normals
         self.mass = laplace.mass / laplace.area
+        self._spreaders: dict[float, SuperLU] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out the factors, which cannot be sent to another process."""
+        return {**self.__dict__, "_spreaders": {}}
 
     @cached_property
     def search(self) -> ClosestPoints:
@@ -98,6 +105,28 @@ class DeformableSurface:
     def in_unit_size(self, positions: Floats) -> Floats:
         """Turn coordinates of its mesh (k, 3) into positions around the unit surface."""
         return (positions - self._centre) / self._scale
+
+    def averaged(self, values: Floats, radius: float) -> Floats:
+        """Average values (n, k) over a neighbourhood that heat spreads over, of such a radius in sqrt(area).
+
+        Parameters
+        ----------
+        values : (n, k) array of float
+            One row for each vertex.
+        radius : float
+            Root mean square way of the heat; with 0 the values stay as they are.
+
+        Returns
+        -------
+        (n, k) array of float
+            The means.
+        """
+        if radius <= 0:
+            return values
+        if radius not in self._spreaders:
+            mass = diags_array(np.maximum(self.mass, np.finfo(float).tiny))
+            self._spreaders[radius] = symmetric_factor(mass + radius**2 / 4 * self._laplace.stiffness)
+        return self._spreaders[radius].solve(self.mass[:, None] * values)
 
     @cached_property
     def curvatures(self) -> Floats:

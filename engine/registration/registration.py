@@ -44,6 +44,9 @@ class Stage:
     normal_length, curvature_length : float
         How many units of length (in sqrt(area)) a unit of difference of the normals, and of the curvatures, counts when
         points are matched.
+    normal_radius : float
+        Over what distance normals are averaged before they are compared, in sqrt(area).  Around a thin fold, such as
+        the rim of an eyelid, normals depend on where the mesh has its vertices; averaged, they say less there.
     rotation_radius : float
         Over what distance the rotations are averaged, in sqrt(area), if not more because bodies are unlike.
     matched : str
@@ -74,6 +77,7 @@ class Stage:
     weights: tuple[float, ...]
     normal_length: float
     curvature_length: float
+    normal_radius: float = 0.0
     rotation_radius: float = 0.03
     matched: Literal["vertices", "around", "anywhere"] = "anywhere"
     lead: float = 0.0
@@ -81,6 +85,10 @@ class Stage:
     momentum: float = 0.0
     softened: tuple[float, float] = (0.0, 0.0)
     further: int = 0
+
+    def stiffer(self, factor: float) -> Stage:
+        """Let distances count less by a factor, so that the surface is stiffer beside them."""
+        return replace(self, weights=tuple(weight / factor for weight in self.weights))
 
 
 GUIDED = Stage((5, 5, 10, 10, 20, 20, 40, 40), 0.2, 0.2, matched="vertices", guide_length=0.05)
@@ -105,8 +113,13 @@ CLOSE = Stage(
 LAST = Stage((2560,), 0.05, 0.0)
 """At last to rest, from exact matches, which turn fewer triangles over."""
 
-POLISH = Stage((320, 640, 1280), 0.05, 0.0, matched="around", lead=0.5)
-"""From a registration of coarser meshes: a stiffer surface would slide away again from where that brought it."""
+POLISH = Stage((1280, 2560, 5120), 0.03, 0.0, normal_radius=0.01, matched="around", lead=0.5)
+"""From a registration of coarser meshes: a stiffer surface would slide away again from where that brought it, at lids
+and lips first, which differ from face to face by more than their surroundings."""
+
+POLISHED = Stage((10_240,), 0.03, 0.0, normal_radius=0.01)
+"""And at last to rest.  Of both, weights of a quarter and normals that count .05 and are not averaged slide by half as
+much again on lids (`faces` of the benchmarks), and are worse on S3 and S5 of `artist_scenes`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +168,7 @@ _EVENER = 0.04
 """What is added to the radius that rotations are averaged over between bodies of unlike build: these bend at joints, as
 poses do, but for the rest they differ everywhere, and gently."""
 
-_COARSE = 2000
+COARSE = 2000
 """Below so many vertices, those of a surface are too far apart for it to slide from one to the next; and any search is
 fast."""
 
@@ -185,7 +198,7 @@ class _Matcher:
         # What does not change as the source is deformed.
         self._source_features, target_features = (np.concatenate(part, axis=1) for part in parts)
         self.target_features = np.concatenate(
-            [target.vertices, stage.normal_length * target.normals, target_features], axis=1
+            [target.vertices, self._normal_features(target, target.normals), target_features], axis=1
         )
 
     @cached_property
@@ -196,8 +209,12 @@ class _Matcher:
     def source_search(self, positions: Floats) -> tuple[ClosestPoints, Floats]:
         """Search on the deformed source by features, and its normals (n_x, 3)."""
         normals = self.source.search.moved(positions).vertex_normals
-        features = np.concatenate([positions, self.stage.normal_length * normals, self._source_features], axis=1)
-        return self.source.search.moved(features), normals
+        seen = self._normal_features(self.source, normals)
+        return self.source.search.moved(np.concatenate([positions, seen, self._source_features], axis=1)), normals
+
+    def _normal_features(self, surface: DeformableSurface, normals: Floats) -> Floats:
+        """By what normals (n, 3) of a surface are compared."""
+        return self.stage.normal_length * surface.averaged(normals, self.stage.normal_radius)
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out the search, which is hardly ever used elsewhere."""
@@ -233,7 +250,7 @@ def _matched_back_steps(common: tuple[_Matcher, Find], positions: Floats) -> Ste
 
 def _are_coarse(source: DeformableSurface, target: DeformableSurface) -> bool:
     """Say whether one of two surfaces has so few vertices that what is between them counts."""
-    return min(len(source.vertices), len(target.vertices)) < _COARSE
+    return min(len(source.vertices), len(target.vertices)) < COARSE
 
 
 def _nearest_vertices(search: ClosestPoints, points: Floats) -> FoundPoints:

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import bone_frames, called_steps, carry_offsets_steps, evened_frames, surface_frames, within
+from ...engine import (
+    bone_frames,
+    called_steps,
+    carry_offsets_steps,
+    closings_kept_steps,
+    evened_frames,
+    surface_frames,
+    within,
+)
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
@@ -119,7 +127,10 @@ class ShapeKeyTransfer:
             scaling=self._settings.scaling,
             threshold=self._settings.threshold,
         )
-        self._carried = yield from within(steps, 0.2, 1.0)
+        carried = yield from within(steps, 0.2, 0.6)
+        maps = pair.source_to_target, pair.target_to_source
+        steps = closings_kept_steps(pair.source, self._offsets, maps, pair.target, carried)
+        self._carried = yield from within(steps, 0.6, 1.0)
 
     def write(self, _context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write keys and drivers: of several parts, each gets the keys that move it."""

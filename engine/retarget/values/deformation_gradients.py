@@ -37,6 +37,10 @@ _SMALL, _NEAR = 0.02, 0.02
 """Pieces up to this part of the area, of which on the mean no place is so far from the rest, in sqrt(area), turn as
 what they lie on does: they have no surroundings of their own to average over."""
 
+_ROOTED = 0.2
+"""How much farther from what it lies on than the nearest one, in radii of their piece, vertices are that belong to its
+root."""
+
 _MOST_AREA = 3.0
 """How much more than at the median the area of a mapped triangle may count, per area of its own."""
 
@@ -122,7 +126,7 @@ def surface_frames(
     columns = np.concatenate([jacobians.reshape(-1, 9), stretches[:, None]], axis=1) * areas[:, None]
     sums = np.stack([mesh.sum_at_vertices(column) for column in (columns / 3).T], axis=1)
     spread = _spread(mesh, sums, radius)
-    spread = spread[_bearers(mesh)]
+    spread = spread[bearers(mesh)]
     rotations = _orthogonal(spread[:, :9].reshape(-1, 3, 3), -1.0 if mirrored else 1.0)
     return LocalFrames(rotations, _bounded(spread[:, 9]), overall)
 
@@ -189,7 +193,7 @@ def evened_frames(mesh: TriangleMesh, frames: LocalFrames) -> LocalFrames:
     for chosen in _unlike(flat):
         alike = np.exp(-np.square(flat - flat[chosen]).sum(axis=1) / (2 * _ALIKE**2))[:, None]
         sums += alike * spread.solve(alike * columns)
-    evened = (sums[:, :9] / sums[:, 9:])[_bearers(mesh)].reshape(-1, 3, 3)
+    evened = (sums[:, :9] / sums[:, 9:])[bearers(mesh)].reshape(-1, 3, 3)
     return replace(frames, rotations=_orthogonal(evened, float(np.sign(np.linalg.det(frames.rotations[0])))))
 
 
@@ -203,8 +207,12 @@ def _unlike(rotations: Floats) -> list[int]:
     return chosen
 
 
-def _bearers(mesh: TriangleMesh) -> Ints:
-    """For each vertex of a small piece, such as a lash, the nearest of what it lies on; for others themselves, (n,)."""
+def bearers(mesh: TriangleMesh) -> Ints:
+    """For each vertex of a small piece, such as a lash, that of what it lies on which its root is nearest to, (n,).
+
+    The root is the nearest part of the piece: tips of lashes may be near to the fold above the lid.  For all other
+    vertices themselves.
+    """
     bearers = np.arange(mesh.vertex_count)
     parts = WeldedParts.of(mesh)
     if parts.part_count == 1:
@@ -218,8 +226,13 @@ def _bearers(mesh: TriangleMesh) -> Ints:
     distances, nearest = cKDTree(mesh.vertices[rest]).query(mesh.vertices[chosen])
     counts = np.bincount(labels[chosen], minlength=parts.part_count)
     away = np.bincount(labels[chosen], distances, parts.part_count) / np.maximum(counts, 1)
-    lying = away[labels[chosen]] <= _NEAR * np.sqrt(mesh.area)
-    bearers[chosen[lying]] = rest[nearest[lying]]
+    for part in np.flatnonzero((counts > 0) & (away <= _NEAR * np.sqrt(mesh.area))):
+        own = np.flatnonzero(labels[chosen] == part)
+        places = mesh.vertices[chosen[own]]
+        radius = np.sqrt(np.square(places - places.mean(axis=0)).sum(axis=1).mean())
+        rooted = own[distances[own] <= distances[own].min() + _ROOTED * radius]
+        roots = rooted[cKDTree(mesh.vertices[chosen[rooted]]).query(places)[1]]
+        bearers[chosen[own]] = rest[nearest[roots]]
     return bearers
 
 

@@ -341,7 +341,7 @@ def test_confidence_is_lower_where_the_maps_were_apart(bodies, starts):
     ("few", "expected"), [(0, ([0.375, 0.625] * 2, 0.5)), (10**9, ([0.5] * 2, 0.0))], ids=["fine", "coarse"]
 )
 def test_strain_is_taken_for_as_sparse_and_directed_as_bodies_are_alike(few, expected, bodies, starts, monkeypatch):
-    monkeypatch.setattr("engine.registration.registration._COARSE", few)
+    monkeypatch.setattr("engine.registration.registration.COARSE", few)
     x, y = bodies[:2]
     pair = run(registered_pair_steps(x, y, starts[:1], search=False))
     follow, candidate = Follower(x, y, pair.source, pair.target), pair.candidates[0]

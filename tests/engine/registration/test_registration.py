@@ -249,7 +249,7 @@ def test_progress_counts_the_rounds(bodies, near_truth, functions):
 @pytest.mark.parametrize(("few", "rounds"), [(0, 5), (10**9, 2)], ids=["fine", "coarse"])
 def test_only_surfaces_of_many_vertices_go_on_further(few, rounds, bodies, near_truth, monkeypatch):
     """They do so as in the last round: it is the same as asking for these rounds."""
-    monkeypatch.setattr("engine.registration.registration._COARSE", few)
+    monkeypatch.setattr("engine.registration.registration.COARSE", few)
     source, target = bodies[:2]
     start = target.vertices[near_truth]
     stage = Stage((40, 1000), 0.1, 0.05, momentum=0.5)

@@ -6,8 +6,14 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import FittedRig, MeshError, Skeleton, SurfaceMap, TriangleMesh
-from engine.retarget.values.deformation_gradients import LocalFrames, bone_frames, evened_frames, surface_frames
-from tests.shapes import creature, icosphere, irregular, permuted, rotation
+from engine.retarget.values.deformation_gradients import (
+    LocalFrames,
+    bearers,
+    bone_frames,
+    evened_frames,
+    surface_frames,
+)
+from tests.shapes import creature, icosphere, irregular, permuted, plane, rotation
 
 TURN = rotation([1.0, 2.0, -1.0], 2.0)
 
@@ -148,3 +154,20 @@ def test_bones_turn_what_they_move(mesh):
     assert frames.overall == 1.1
     with pytest.raises(MeshError, match="The rig moves"):
         bone_frames(rig(mesh, weights), LocalFrames(otherwise.rotations[1:], otherwise.scales[1:], 1.0))
+
+
+def test_the_tip_of_a_lash_is_borne_by_what_its_root_lies_on():
+    """The lash grows from the one of two planes, and its tip is nearer to the other one."""
+    vertices, triangles = plane(41, size=20.0)
+    brow = vertices + np.array([0.0, 0.0, 0.5])
+    z = np.linspace(0.01, 0.4, 9)
+    strip = np.concatenate([np.stack([0 * z + 10 + side, 0 * z + 10, z], axis=1) for side in (0.0, 0.5)])
+    faces = [(i, i + 1, i + 9) for i in range(8)] + [(i + 1, i + 10, i + 9) for i in range(8)]
+    count = len(vertices)
+    mesh = TriangleMesh(
+        np.concatenate([vertices, brow, strip]),
+        np.concatenate([triangles, triangles + count, np.add(faces, 2 * count)]),
+    )
+    found = bearers(mesh)
+    np.testing.assert_array_equal(found[: 2 * count], np.arange(2 * count))
+    assert (found[2 * count :] < count).all()

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keys that close an eye or a mouth, on heads whose openings are wider or narrower."""
+
+import numpy as np
+import pytest
+
+from engine import MatchError, SurfaceMap, TriangleMesh, closings_kept_steps, run
+from engine.repair.surface_nets import surface_net
+
+WIDTH, DEPTH, STEP = 0.5, 0.2, 0.05
+
+
+def smooth(values):
+    values = np.clip(values, 0, 1)
+    return values * values * (3 - 2 * values)
+
+
+@pytest.fixture(scope="module")
+def head():
+    """A ball with a slot at the front (x > 0), and a lash on the upper lid: the mesh, and what is the lash."""
+    axis = np.arange(-1.2, 1.2 + STEP, STEP)
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    slot = np.maximum.reduce([np.abs(y + 0.001) - WIDTH / 2, DEPTH - x, np.abs(z) - 0.5])
+    points, triangles = surface_net(-np.maximum(np.sqrt(x * x + y * y + z * z) - 1, -slot).astype(np.float32), 0.0)
+    points = points * STEP + axis[0]
+    ball = TriangleMesh(points, triangles)
+    if np.einsum("md,md->", ball.vertices[triangles[:, 0]], ball.triangle_normals * ball.triangle_areas[:, None]) < 0:
+        triangles = triangles[:, ::-1]
+    lash = np.array([[0.97, WIDTH / 2, z] for z in np.linspace(-0.2, 0.2, 9)])
+    lash = np.concatenate([lash, lash + np.array([0.04, 0.0, 0.0])])
+    strip = [(i, i + 1, i + 9) for i in range(8)] + [(i + 1, i + 10, i + 9) for i in range(8)]
+    mesh = TriangleMesh(np.concatenate([points, lash]), np.concatenate([triangles, np.array(strip) + len(points)]))
+    return mesh, np.arange(mesh.vertex_count) >= len(points)
+
+
+@pytest.fixture(scope="module")
+def blink(head):
+    """A key by which the upper lid comes down, but for a twentieth of the opening."""
+    x, y, _ = head[0].vertices.T
+    down = 0.95 * WIDTH * smooth((x - DEPTH) / 0.6) * smooth((0.8 - y) / 0.5) * (y > 0)
+    return np.stack([0 * x, -down, 0 * x], axis=1)
+
+
+def wider(head, by):
+    """The same head with another opening, and the maps between both."""
+    x, y, z = head[0].vertices.T
+    stretched = np.sign(y) * (by - 1) * WIDTH / 2 * smooth((1 - np.abs(y)) / 0.7)
+    target = TriangleMesh(np.stack([x, y + stretched, z], axis=1), head[0].triangles)
+    return target, (SurfaceMap.identity(target), SurfaceMap.identity(head[0]))
+
+
+def gaps(head, moved):
+    """How far the lids are apart where they are closed in the source: the lower edge of the upper from the lower."""
+    x, y, z = head[0].vertices.T
+    lids = (np.abs(np.abs(y) - WIDTH / 2) < 0.6 * STEP) & (x > 0.85) & (np.abs(z) < 0.35) & ~head[1]
+    upper, lower = (np.flatnonzero(lids & side) for side in (y > 0, y < 0))
+    found = []
+    for vertex in upper:
+        below = lower[np.hypot(x[lower] - x[vertex], z[lower] - z[vertex]) < 0.3 * STEP]
+        found.extend(moved[vertex, 1] - moved[below, 1])
+    assert len(found) > 10
+    return np.array(found)
+
+
+@pytest.mark.parametrize("by", [0.8, 1.3])
+def test_lids_meet_on_an_eye_of_another_height(head, blink, by):
+    target, maps = wider(head, by)
+    height = np.mean(gaps(head, target.vertices))
+    np.testing.assert_allclose(height, by * WIDTH, rtol=0.1)
+    left = np.mean(gaps(head, head[0].vertices + blink)) / WIDTH
+    before = gaps(head, target.vertices + blink) / height - left
+    assert np.abs(before).mean() > 0.2
+    (kept,) = run(closings_kept_steps(head[0], [blink], maps, target, [blink]))
+    after = gaps(head, target.vertices + kept) / height - gaps(head, head[0].vertices + blink) / WIDTH
+    assert np.abs(after).max() < 0.05
+    still = ~blink.any(axis=1)
+    assert not kept[still].any()
+
+
+def test_a_lash_goes_as_far_as_its_lid(head, blink):
+    target, maps = wider(head, 1.3)
+    (kept,) = run(closings_kept_steps(head[0], [blink], maps, target, [blink]))
+    farther = kept[:, 1] / np.where(blink[:, 1] < 0, blink[:, 1], 1)
+    lid = (np.linalg.norm(head[0].vertices - [0.97, WIDTH / 2, 0], axis=1) < 0.1) & ~head[1] & (blink[:, 1] < 0)
+    assert farther[lid].mean() > 1.15
+    np.testing.assert_allclose(farther[head[1]].mean(), farther[lid].mean(), rtol=0.03)
+
+
+def test_on_the_same_head_nothing_changes(head, blink):
+    maps = (SurfaceMap.identity(head[0]),) * 2
+    np.testing.assert_allclose(run(closings_kept_steps(head[0], [blink], maps, head[0], [blink]))[0], blink, atol=1e-9)
+
+
+def test_keys_that_close_nothing_stay_as_they_are(head, blink):
+    target, maps = wider(head, 1.3)
+    flat = -0.9 * head[0].vertices * [0, 0, 1]  # brings skin together, with the head between
+    keys = np.stack([-blink, 0.3 * blink, flat, 0 * blink])
+    np.testing.assert_array_equal(run(closings_kept_steps(head[0], keys, maps, target, keys)), keys)
+
+
+def test_what_does_not_belong_together_is_refused(head, blink):
+    target, maps = wider(head, 1.3)
+    few = TriangleMesh(np.eye(3), [[0, 1, 2]])
+    with pytest.raises(MatchError, match="should have the shapes"):
+        run(closings_kept_steps(head[0], [blink], maps, target, [blink[1:]]))
+    with pytest.raises(MatchError, match="do not belong together"):
+        run(closings_kept_steps(head[0], [blink], (maps[0], SurfaceMap.identity(few)), target, [blink]))
