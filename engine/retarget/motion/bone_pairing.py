@@ -346,7 +346,7 @@ def _without_misplaced(
     given = {(int(a), int(b)) for a, b in fixed}
     least = _ROOT_REACH * np.ptp(target.vertices, axis=0).max()
     while len(chosen):
-        parts = Segments.of(*chosen.T, *trees)
+        parts = Segments.of(chosen[:, 0], chosen[:, 1], *trees)
         worst, excess = -1, 1.0
         for part in np.flatnonzero(parts.parents >= 0):
             below = parts.below(part)
@@ -358,11 +358,11 @@ def _without_misplaced(
                 for each in (part, below[0])
             )
             mine, other = nexts[0] - starts[0], nexts[1] - starts[1]
-            astray, lost = np.linalg.norm(other - mine), np.linalg.norm(mine)
+            astray, lost = float(np.linalg.norm(other - mine)), float(np.linalg.norm(mine))
             if np.linalg.norm(starts[1] - starts[0]) <= least:
                 continue
             if astray > max(least, excess * lost):
-                worst, excess = int(part), astray / max(lost, np.finfo(float).tiny)
+                worst, excess = int(part), astray / max(lost, float(np.finfo(float).tiny))
         if worst < 0:
             break
         chosen = np.delete(chosen, parts.rows[worst], axis=0)
