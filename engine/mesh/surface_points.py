@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
@@ -118,3 +119,19 @@ class SurfacePoints:
             Values at the points.
         """
         return np.einsum("kc,kc...->k...", self.barycentric, values[self.corners])
+
+
+def interpolation_matrix(barycentric: Floats, corners: Ints, count: int) -> csr_array:
+    """Make the matrix (k, count) that interpolates values at the vertices of a mesh at points.
+
+    Parameters
+    ----------
+    barycentric : (k, 3) array of float
+        Barycentric coordinates of the points.
+    corners : (k, 3) array of int
+        The vertices that they belong to.
+    count : int
+        How many vertices the mesh has.
+    """
+    rows = np.repeat(np.arange(len(corners)), 3)
+    return csr_array((barycentric.ravel(), (rows, corners.ravel())), shape=(len(corners), count))

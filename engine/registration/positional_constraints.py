@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..geometry.geodesic_ball import distances_to_others, vicinity
-from ..mesh.surface_points import SurfacePoints
+from ..mesh.surface_points import SurfacePoints, interpolation_matrix
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats
 from ..shapes.landmarks import LandmarkPlaces
@@ -53,12 +53,10 @@ class Ties:
     @classmethod
     def at(cls, mesh: TriangleMesh, points: SurfacePoints, places: Floats) -> Ties:
         """Tie points (k,) of a mesh to places (k, 3)."""
-        k, n = len(points), mesh.vertex_count
-        rows = np.repeat(np.arange(k), 3)
-        evaluate = csr_array((points.barycentric.ravel(), (rows, points.corners.ravel())), shape=(k, n))
+        evaluate = interpolation_matrix(points.barycentric, points.corners, mesh.vertex_count)
         radii = np.minimum(_SPREAD * np.sqrt(mesh.area), _ALONE * distances_to_others(points.positions))
         radii = np.maximum(radii, np.finfo(float).tiny)  # where two are projected to the same place
-        forces = np.zeros((n, k))
+        forces = np.zeros((mesh.vertex_count, len(points)))
         for i, vertex in enumerate(points.nearest_vertices):
             near, distances = vicinity(mesh, int(vertex), radii[i])
             forces[near, i] = mesh.vertex_areas[near] * np.square(1 - np.square(distances / radii[i]))

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array, eye_array, vstack
 from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...mesh.unit_vectors import unit_vectors
 from ...registration.elastic import ElasticSurface
@@ -131,8 +132,7 @@ class PosedRegistration:
         """Collect what both surfaces ask of one another."""
         target, count = self._target, len(now)
         corners = self._body.triangles[matches.triangles]
-        rows = np.repeat(np.arange(len(corners)), 3)
-        there = csr_array((matches.barycentric.ravel(), (rows, corners.ravel())), shape=(len(corners), count))
+        there = interpolation_matrix(matches.barycentric, corners, count)
         first = _Planes(there, target.points, target.normals, target.shares)
         normals = self._search.moved(now).vertex_normals
         found = facing(self._target_search, now, normals, 1.0)

@@ -12,7 +12,7 @@ from ...dense.components.extended_maps import whole_maps_steps
 from ...geometry.laplacian import laplace_beltrami
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
 from ...mesh.surface_map import SurfaceMap
-from ...mesh.surface_points import SurfacePoints
+from ...mesh.surface_points import SurfacePoints, interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...repair.clean_surface import CleanSurface
 from ...repair.cleaning import clean
@@ -258,9 +258,7 @@ class _Evidence:
 
 def _evaluation(points: FoundPoints | SurfacePoints, mesh: TriangleMesh) -> csr_array:
     """Matrix (k, n) that interpolates values at the vertices of a mesh at points."""
-    rows = np.repeat(np.arange(len(points)), 3)
-    corners = mesh.triangles[points.triangles].ravel()
-    return csr_array((points.barycentric.ravel(), (rows, corners)), shape=(len(points), mesh.vertex_count))
+    return interpolation_matrix(points.barycentric, mesh.triangles[points.triangles], mesh.vertex_count)
 
 
 @dataclass(frozen=True, eq=False)

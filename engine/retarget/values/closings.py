@@ -14,6 +14,7 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints, facing
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
@@ -127,7 +128,7 @@ def closings_kept_steps(
     given, result = np.asarray(offsets, np.float64), np.array(carried, np.float64)
     _check(source, given, maps, target, result)
     yield Progress(0.0, "Carrying offsets")
-    images = _matrix(maps[0])
+    images = interpolation_matrix(maps[0].barycentric, maps[0].corners, target.vertex_count)
     trips = np.linalg.norm(images @ maps[1].positions - source.vertices, axis=1)
     seeking, ways = _Seeking(source, trips), None
     for number, key in enumerate(given):
@@ -158,13 +159,6 @@ def _check(
             )
 
 
-def _matrix(found: SurfaceMap) -> csr_array:
-    """Make the matrix of a map (n_x, n_y), which interpolates values of the image."""
-    rows = np.repeat(np.arange(len(found)), 3)
-    shape = len(found), found.image_vertex_count
-    return csr_array((found.barycentric.ravel(), (rows, found.corners.ravel())), shape=shape)
-
-
 class _Seeking:
     """Finds what a key closes on a surface, but for its small pieces."""
 
@@ -187,9 +181,7 @@ class _Seeking:
         normals = search.vertex_normals
         found = facing(search, moved[places], -normals[places], float(np.sqrt(self._mesh.area)))
         corners = self._triangles[found.triangles]
-        there = csr_array(
-            (found.barycentric.ravel(), (np.repeat(np.arange(len(places)), 3), corners.ravel())), shape=(len(places), n)
-        )
+        there = interpolation_matrix(found.barycentric, corners, n)
         apart, now = there @ rest - rest[places], there @ moved - moved[places]
         widths = np.linalg.norm(apart, axis=1)
         closed = (widths > _OPEN * lengths.max()) & (np.sqrt(found.squared_distances) <= _CLOSED * widths)

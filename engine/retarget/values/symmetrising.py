@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError
@@ -99,9 +100,7 @@ class Symmetriser:
         (n, g) csr_array of float
             The weights.
         """
-        n = len(self.mirror)
-        rows = np.repeat(np.arange(n), 3)
-        carry = csr_array((self.mirror.barycentric.ravel(), (rows, self.mirror.corners.ravel())), shape=(n, n))
+        carry = interpolation_matrix(self.mirror.barycentric, self.mirror.corners, len(self.mirror))
         mirrored = csr_array(carry @ weights[:, partners])
         result = csr_array(diags_array(self.own) @ weights + diags_array(1 - self.own) @ mirrored)
         result.eliminate_zeros()
