@@ -38,6 +38,13 @@ def test_without_bodies_no_items_are_named(context):
 
 
 @pytest.mark.usefixtures("bodies")
+def test_of_a_body_that_holds_no_mesh_no_items_are_named(context):
+    state = bpy.context.scene.hiermatch
+    state.source, state.source_collection = None, bpy.data.collections.new("Empty")
+    assert "Items" not in drawn_texts(context)
+
+
+@pytest.mark.usefixtures("bodies")
 def test_without_clothes_it_says_what_to_do(context):
     said = " ".join(drawn_texts(context))
     assert "Items" not in said
