@@ -21,8 +21,8 @@ from .shape_matching import MatchTask, matched_steps
 
 _ALIKE = 0.95
 """Part of bodies that is common to their largest pieces, and so on, from which on they are cut alike: each piece may go
-with one of the other.  Of nine characters no two have more than 0.93, and one in two poses has 1; `modular --both` gives
-the same with it as if pieces were tried first."""
+with one of the other.  Of nine characters no two have more than 0.93, and one in two poses has 1; `modular --both`
+gives the same with it as if pieces were tried first."""
 
 _ALL_BUT_HANDS = 0.9
 """Part of a body that its main part has if that may be all of it, and what the other has beside its own is no body."""
