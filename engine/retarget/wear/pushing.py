@@ -18,9 +18,10 @@ from .contact import Surface
 _ROUNDS = 8
 """How often is looked anew where something pokes through."""
 
-_SMOOTHLY, _WITH_SAMPLES = 4, 6
-"""In how many of them items are pushed smoothly, and in how many for places of theirs that are below; the last are for
-the places of what is below that can be seen."""
+_SMOOTHLY = 6
+"""In how many of them items are pushed smoothly, and for places of theirs that are below as well; the last are for the
+places of what is below that can be seen.  Chosen by ``python -m tests.benchmarks.outfits``: with 4 smooth rounds and 2
+that move places of the item one by one, twice as many of O1's edges are folded over."""
 
 _SPREAD = 0.03
 """How far a push spreads over the cloth, in sqrt(area of the body), if `_FREE` is one; farther the less that is.  Both
@@ -177,7 +178,7 @@ def pushed_out(
     through = 0.0
     surface, above = Surface(mesh), [_Above(layer, samples.shape[0]) for layer in layers]
     for number in range(_ROUNDS):
-        item, all_places = surface.moved(positions), number < _WITH_SAMPLES
+        item, all_places = surface.moved(positions), number < _SMOOTHLY
         rows, moves, counts = _needed(item, samples, sample_mass, above, free=free, unit=unit, all_places=all_places)
         if rows is None:
             through = 0.0
@@ -187,7 +188,7 @@ def pushed_out(
         if needed.max() < tolerance:
             break
         moves *= np.minimum(1, _LARGEST_STEP * unit / np.maximum(needed, tolerance))[:, None]
-        if number < _SMOOTHLY:
+        if all_places:
             weighted = csr_array(diags_array(_FIRM * counts) @ rows)
             factor = symmetric_factor(csr_array(smooth + rows.T @ weighted))
             positions = positions + factor.solve(weighted.T @ moves) * free[:, None]
