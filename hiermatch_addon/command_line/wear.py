@@ -10,7 +10,7 @@ import bpy
 from ..scene.character import parts_of
 from ..scene.garments import meshes_of, undressed
 from ..transfers.options.wear import wear_settings
-from ..transfers.wear import WearTransfer
+from ..transfers.wearing.wear_transfer import WearTransfer
 from .command import EXIT_CODES
 from .match import add_pair_arguments, add_result_options
 from .options import add_options

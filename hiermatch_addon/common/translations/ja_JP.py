@@ -1562,6 +1562,7 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" should be checked: {1}.': '"{0}"を確認してください: {1}。',
     "kept {0} as they are": "{0}の形を保持",
     "pushed {0} of it out of what is below": "{0}を下のものの外へ押し出し",
+    "laid onto the skin of the other body": "相手の体の肌の上に置き",
     "what is below still shows through {0} of it": "下のものがまだ{0}で突き抜けています",
     "the match is uncertain below {0} of it": "その{0}の下でマッチングが不確かです",
     "the body ends below {0} of it": "その{0}の下には体がありません",

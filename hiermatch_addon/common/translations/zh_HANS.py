@@ -1291,6 +1291,7 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" should be checked: {1}.': '请检查"{0}"：{1}。',
     "kept {0} as they are": "保持{0}不变形",
     "pushed {0} of it out of what is below": "将其{0}推出下方之物",
+    "laid onto the skin of the other body": "置于另一身体的皮肤上",
     "what is below still shows through {0} of it": "下方之物仍从其{0}处穿出",
     "the match is uncertain below {0} of it": "其{0}下方的匹配不确定",
     "the body ends below {0} of it": "其{0}下方没有身体",

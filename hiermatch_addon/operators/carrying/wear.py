@@ -11,7 +11,7 @@ import bpy
 from ...properties.panel_state import picked, state_of
 from ...scene.garments import meshes_of, selected_items, undressed
 from ...transfers.options.wear import WearOptions, wear_settings
-from ...transfers.wear import WearTransfer
+from ...transfers.wearing.wear_transfer import WearTransfer
 from .transfer_operator import TransferOperator
 
 if TYPE_CHECKING:

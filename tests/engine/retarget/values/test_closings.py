@@ -15,17 +15,22 @@ def smooth(values):
     return values * values * (3 - 2 * values)
 
 
-@pytest.fixture(scope="module")
-def head():
-    """A ball with a slot at the front (x > 0), and a lash on the upper lid: the mesh, and what is the lash."""
+def ball(end=2.0):
+    """A ball with a slot at the front (x > 0), which ends there, below the surface if that is less than 1."""
     axis = np.arange(-1.2, 1.2 + STEP, STEP)
     x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
-    slot = np.maximum.reduce([np.abs(y + 0.001) - WIDTH / 2, DEPTH - x, np.abs(z) - 0.5])
+    slot = np.maximum.reduce([np.abs(y + 0.001) - WIDTH / 2, DEPTH - x, np.abs(z) - 0.5, x - end])
     points, triangles = surface_net(-np.maximum(np.sqrt(x * x + y * y + z * z) - 1, -slot).astype(np.float32), 0.0)
     points = points * STEP + axis[0]
-    ball = TriangleMesh(points, triangles)
-    if np.einsum("md,md->", ball.vertices[triangles[:, 0]], ball.triangle_normals * ball.triangle_areas[:, None]) < 0:
-        triangles = triangles[:, ::-1]
+    mesh = TriangleMesh(points, triangles)
+    volume = np.einsum("md,md->", points[triangles[:, 0]], mesh.triangle_normals * mesh.triangle_areas[:, None])
+    return mesh if volume > 0 else TriangleMesh(points, triangles[:, ::-1])
+
+
+@pytest.fixture(scope="module")
+def head():
+    """A ball with a slot at the front, and a lash on the upper lid: the mesh, and what is the lash."""
+    points, triangles = ball().vertices, ball().triangles
     lash = np.array([[0.97, WIDTH / 2, z] for z in np.linspace(-0.2, 0.2, 9)])
     lash = np.concatenate([lash, lash + np.array([0.04, 0.0, 0.0])])
     strip = [(i, i + 1, i + 9) for i in range(8)] + [(i + 1, i + 10, i + 9) for i in range(8)]
@@ -33,12 +38,17 @@ def head():
     return mesh, np.arange(mesh.vertex_count) >= len(points)
 
 
-@pytest.fixture(scope="module")
-def blink(head):
+def closing(mesh):
     """A key by which the upper lid comes down, but for a twentieth of the opening."""
-    x, y, _ = head[0].vertices.T
+    x, y, _ = mesh.vertices.T
     down = 0.95 * WIDTH * smooth((x - DEPTH) / 0.6) * smooth((0.8 - y) / 0.5) * (y > 0)
     return np.stack([0 * x, -down, 0 * x], axis=1)
+
+
+@pytest.fixture(scope="module")
+def blink(head):
+    """A key that closes the slot."""
+    return closing(head[0])
 
 
 def wider(head, by):
@@ -96,6 +106,14 @@ def test_keys_that_close_nothing_stay_as_they_are(head, blink):
     flat = -0.9 * head[0].vertices * [0, 0, 1]  # brings skin together, with the head between
     keys = np.stack([-blink, 0.3 * blink, flat, 0 * blink])
     np.testing.assert_array_equal(run(closings_kept_steps(head[0], keys, maps, target, keys)), keys)
+
+
+def test_what_comes_together_out_of_sight_stays_as_it_is():
+    mouth = ball(0.8), np.zeros(0, bool)
+    target, maps = wider(mouth, 1.3)
+    inside = closing(mouth[0]) * (np.linalg.norm(mouth[0].vertices, axis=1) < 0.95)[:, None]
+    assert inside.any()
+    np.testing.assert_array_equal(run(closings_kept_steps(mouth[0], [inside], maps, target, [inside]))[0], inside)
 
 
 def test_what_does_not_belong_together_is_refused(head, blink):

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from hiermatch.hiermatch_addon.transfers.item_weights import ItemWeights, chosen_weights, in_columns, replaced
 from hiermatch.hiermatch_addon.transfers.options.wear import WearSettings
+from hiermatch.hiermatch_addon.transfers.wearing.item_weights import ItemWeights, chosen_weights, in_columns, replaced
 from scipy.sparse import csr_array
 
 OLD = {"arm", "hand", "skirt"}

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hiermatch.engine import FittedItem
-from hiermatch.hiermatch_addon.transfers import wear
+from hiermatch.hiermatch_addon.transfers.wearing.fit_report import done, doubt
 from scipy.sparse import csr_array
 
 
@@ -44,4 +46,16 @@ def fitted(*, confidence=1.0, bare=0, through=0.0):
     ],
 )
 def test_what_is_doubtful_is_said(given, said):
-    assert wear._doubt("Boots", fitted(**given)) == said  # noqa: SLF001
+    assert doubt("Boots", fitted(**given)) == said
+
+
+@pytest.mark.parametrize(
+    ("is_body", "said"),
+    [
+        (False, '"Boots" was fitted: pushed 100% of it out of what is below.'),
+        (True, '"Boots" was fitted: laid onto the skin of the other body.'),
+    ],
+)
+def test_what_is_the_skin_itself_is_not_said_to_be_pushed_out_of_it(is_body, said):
+    pushed = replace(fitted(), pushed=np.ones(10))
+    assert done("Boots", pushed, is_body=is_body) == said

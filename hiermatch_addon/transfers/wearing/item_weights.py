@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
-from ...engine import Columns, put_in, row_sums
+from ....engine import Columns, put_in, row_sums
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .options.wear import WearSettings
+    from ..options.wear import WearSettings
 
 __all__ = ["ItemWeights", "chosen_weights", "in_columns", "replaced"]
 

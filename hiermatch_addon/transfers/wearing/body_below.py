@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...engine import ClosestPoints, TriangleMesh
-from ..common.access import mesh_of
-from ..scene.character import parts_of, read_surface, vertex_ranges
-from ..scene.deform_layer import write_weights
-from ..scene.shape_key_io import KeySettings, add_keys
+from ....engine import ClosestPoints, TriangleMesh
+from ...common.access import mesh_of
+from ...scene.character import parts_of, read_surface, vertex_ranges
+from ...scene.deform_layer import write_weights
+from ...scene.shape_key_io import KeySettings, add_keys
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ..scene.character import Side
+    from ...scene.character import Side
 
 __all__ = ["COVERED", "cover_body", "covered_vertices"]
 

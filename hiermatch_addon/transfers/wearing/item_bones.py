@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ...engine import bones_of_items, moved_with_items, row_sums
-from ..scene.armature_copy import NewBone, add_bones
-from ..scene.armatures import SourceRig, armature_of, find_armature
-from ..scene.garments import ITEM
-from ..scene.pair import is_own
+from ....engine import bones_of_items, moved_with_items, row_sums
+from ...scene.armature_copy import NewBone, add_bones
+from ...scene.armatures import SourceRig, armature_of, find_armature
+from ...scene.garments import ITEM
+from ...scene.pair import is_own
 from .item_weights import in_columns
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.sparse import csr_array
 
-    from ...engine import BonePairing, FittedItem
-    from ..scene.character import Side
+    from ....engine import BonePairing, FittedItem
+    from ...scene.character import Side
     from .item_weights import ItemWeights
 
 __all__ = ["ItemBones", "read_item_bones"]

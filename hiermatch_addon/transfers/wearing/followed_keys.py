@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ..common.access import mesh_of
-from ..common.phrases import listed
-from ..scene.character import parts_of
-from ..scene.deform_layer import read_group
-from ..scene.key_drivers import drive_key
-from ..scene.shape_key_io import (
+from ...common.access import mesh_of
+from ...common.phrases import listed
+from ...scene.character import parts_of
+from ...scene.deform_layer import read_group
+from ...scene.key_drivers import drive_key
+from ...scene.shape_key_io import (
     KeySettings,
     add_keys,
     all_key_names,
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ..scene.character import Side
+    from ...scene.character import Side
 
 __all__ = ["BodyKeys", "read_body_keys", "write_followed"]
 

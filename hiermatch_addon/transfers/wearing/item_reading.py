@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Items that the source wears, as they are read and looked up again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import bpy
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+
+from ....engine import ClosestPoints, TriangleMesh, WornItem, row_sums
+from ...common.access import mesh_of
+from ...common.errors import ObjectError
+from ...scene.deform_layer import read_weights
+from ...scene.garments import dressed_at_rest
+from ...scene.mesh_io import position_digest, read_mesh, topology
+from .item_weights import ItemWeights
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...scene.armatures import SourceRig
+    from ...scene.character import Side
+
+__all__ = ["ReadItem", "check_place", "painted_groups", "read_item", "still_there"]
+
+painted_groups = ("Rigid", "Tight", "Loose", "Leave")
+"""Names of vertex groups of an item that steer how it is fitted."""
+
+_FAR, _BESIDE = 0.25, 0.3
+"""How far from the body, in the root of its area, the nearest vertex of an item may be, and half of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReadItem:
+    """An item as it was read."""
+
+    name: str
+    uid: int
+    state: tuple[str, str]
+    worn: WornItem
+    at_rest: bool
+    weights: ItemWeights
+
+
+def read_item(
+    depsgraph: bpy.types.Depsgraph, item: bpy.types.Object, source: Side, rig: SourceRig | None, clearance: float
+) -> ReadItem:
+    """Read an item with what steers it, and its weights for the bones of the rig that moves the body.
+
+    Clearance is the least distance from the skin, in the target's units.
+    """
+    names = () if rig is None else rig.names
+    stored: Any = cast("Any", item).hiermatch_wear
+    mesh = read_mesh(item, depsgraph, use_modifiers=False)
+    weights = read_weights(item)
+    numbers = {name: number for number, name in enumerate(names)}
+    groups = [group for group in item.vertex_groups if group.name in numbers]
+    bones = None
+    if groups:
+        columns = weights[:, [group.index for group in groups]].tocoo()
+        places = np.array([numbers[group.name] for group in groups], np.int64)
+        bones = csr_array((columns.data, (columns.row, places[columns.col])), shape=(mesh.vertex_count, len(names)))
+        total = row_sums(bones)
+        bones = csr_array(diags_array(1 / np.where(total > 0, total, 1)) @ bones)
+        if (total <= 0).any():  # accessory bones of its own: they say nothing of the body's
+            bones = None
+    rigid, tight, loose, left = (_painted(item, weights, name) for name in painted_groups)
+    tightness = None if tight is None and loose is None else _or_none(tight, mesh) - _or_none(loose, mesh)
+    worn = WornItem(
+        mesh,
+        bones,
+        stored.fit,
+        rigid=None if rigid is None else rigid > 0.5,
+        find_rigid=stored.find_rigid,
+        tightness=tightness,
+        left=None if left is None else left > 0.5,
+        margin=clearance,
+    )
+    state = topology(mesh_of(item)), position_digest(mesh_of(item))
+    names_of = tuple(group.name for group in item.vertex_groups)
+    locked = frozenset(group.name for group in item.vertex_groups if group.lock_weight)
+    own = ItemWeights(names_of, weights, locked)
+    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own)
+
+
+def still_there(item: ReadItem) -> bpy.types.Object:
+    """Look an item up again.
+
+    Raises
+    ------
+    ObjectError
+        If it was deleted or edited since.
+    """
+    obj = next((one for one in bpy.data.objects if one.session_uid == item.uid), None)
+    if obj is None:
+        raise ObjectError(f'"{item.name}" was deleted meanwhile. Nothing was written.')
+    if (topology(mesh_of(obj)), position_digest(mesh_of(obj))) != item.state:
+        raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
+    return obj
+
+
+def _painted(item: bpy.types.Object, weights: csr_array, name: str) -> NDArray[np.float64] | None:
+    """Return the weights of a painted group, (n,); none if there is none such."""
+    group = item.vertex_groups.get(name)
+    return None if group is None else weights[:, [group.index]].toarray().ravel()
+
+
+def _or_none(values: NDArray[np.float64] | None, mesh: TriangleMesh) -> NDArray[np.float64]:
+    return np.zeros(mesh.vertex_count) if values is None else values
+
+
+def check_place(item: ReadItem, body: TriangleMesh, other: TriangleMesh, source: Side, target: Side) -> None:
+    """Make sure that an item lies on the body.
+
+    Raises
+    ------
+    ObjectError
+        If it does not.
+    """
+    points = item.worn.mesh.vertices
+    unit = float(np.sqrt(body.area))
+    away = np.sqrt(ClosestPoints(body).nearest(points).squared_distances) / unit
+    if away.min() <= _FAR and np.median(away) <= _BESIDE:
+        return
+    there = np.sqrt(ClosestPoints(other).nearest(points).squared_distances) / float(np.sqrt(other.area))
+    if there.min() < _FAR and np.median(there) < _BESIDE:
+        raise ObjectError(
+            f'"{item.name}" lies on "{target.name}", not on "{source.name}". Swap Source and Target, or take it out '
+            "of the items."
+        )
+    if away.min() <= _FAR:
+        raise ObjectError(
+            f'There is no body under most of "{item.name}": "{source.name}" has no surface there. Pick the whole body '
+            "as the Source, or take the item out."
+        )
+    raise ObjectError(
+        f'"{item.name}" is far from "{source.name}". Move it to where the body wears it, or pick that '
+        "body as the Source."
+    )

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fitted items as objects: copies with weights and an armature, keys, and colors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...common.access import mesh_of
+from ...common.phrases import listed
+from ...scene.armatures import find_armature
+from ...scene.binding import bind
+from ...scene.deform_layer import write_weights
+from ...scene.garment_shape_io import write_shape
+from ...scene.garments import fitted_copy
+from ...scene.mesh_io import add_colors
+from ...scene.shape_key_io import KeySettings, add_keys, key_positions, keys_of, shape_key_names
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ....engine import FittedItem
+    from ...scene.character import Side
+    from .item_weights import ItemWeights
+
+__all__ = ["KEY", "write_colors", "write_copy", "write_key"]
+
+KEY = "Fit to "
+"""What the name of a shape key begins with that fits the item itself to a body."""
+
+_FIT_NAMES = "Distance to Skin", "Pushed", "Uncertain"
+"""What the color attributes of a fitted item show."""
+
+
+def write_key(obj: bpy.types.Object, target: Side, fitted: FittedItem) -> None:
+    """Write a shape key that moves the item itself to the other body."""
+    matrix = np.linalg.inv(np.array(obj.matrix_world, np.float64))
+    local = fitted.positions @ matrix[:3, :3].T + matrix[:3, 3]
+    keys = keys_of(obj)
+    rest = (
+        np.array([vertex.co for vertex in mesh_of(obj).vertices]) if keys is None else key_positions(keys.reference_key)
+    )
+    name = KEY + target.name
+    others = [other for other in shape_key_names(obj) if other.startswith(KEY) and other != name]
+    add_keys(obj, [KeySettings(name, value=float(not others))], (local - rest)[None])
+
+
+def write_copy(
+    context: bpy.types.Context,
+    item: bpy.types.Object,
+    bodies: tuple[Side, Side],
+    fitted: FittedItem,
+    *,
+    weights: ItemWeights | None,
+    motion: NDArray[np.float64],
+) -> tuple[bpy.types.Object, list[str]]:
+    """Write a fitted copy of what moved on the whole by a motion (4, 4); return it, and what is to be known."""
+    source, target = bodies
+    notes: list[str] = []
+    growth = float(np.median(fitted.scales))
+    copy, kept = fitted_copy(context, item, source, target, motion=motion, growth=growth)
+    if kept:
+        notes.append(
+            f'Drivers of the shape keys of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
+            "what they need. Carry its shape keys or bones over by Retarget, and fit it again."
+        )
+    write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])
+    armature = find_armature(target)
+    if armature is None:
+        notes.append(
+            f'"{target.name}" has no armature, so what was fitted to it is not bound. Give it one by Retarget, '
+            "and fit it again."
+        )
+    elif weights is not None:
+        _write_weights(copy, weights)
+        if weights.lost and not weights.from_skin:
+            notes.append(
+                f'The armature "{armature.name}" has no bones {listed(weights.lost)} of "{item.name}". What they '
+                "moved is moved by the bones of the skin below."
+            )
+    mover = find_armature(source)
+    for modifier in [modifier for modifier in copy.modifiers if modifier.type == "ARMATURE"]:
+        changed: Any = modifier
+        if armature is None and changed.object in (mover, None):
+            copy.modifiers.remove(modifier)
+        elif changed.object == mover:
+            changed.object = armature
+    if armature is not None:
+        bind(copy, armature, item)
+    return copy, notes
+
+
+def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:
+    """Write weights where they are not locked, and drop the groups of bones that are not there."""
+    for name in weights.lost:
+        copy.vertex_groups.remove(copy.vertex_groups[name])
+    free = [number for number, name in enumerate(weights.names) if name not in weights.locked]
+    write_weights(copy, [weights.names[number] for number in free], csr_array(weights.weights[:, free]))
+
+
+def write_colors(obj: bpy.types.Object, fitted: FittedItem) -> None:
+    """Write color attributes: distance to the skin, how far each vertex was pushed, and where it is uncertain."""
+    unit = max(float(np.quantile(np.abs(fitted.clearance), 0.95)), 1e-12)
+    pushed = fitted.pushed / max(float(fitted.pushed.max(initial=0.0)), 1e-12)
+    shown = ((fitted.clearance / unit).clip(0, 1), pushed, 1 - fitted.confidence.clip(0, 1))
+    inside = fitted.clearance < 0
+    mesh = mesh_of(obj)
+    for name, values in zip(_FIT_NAMES, shown, strict=True):
+        colors = np.ones((len(values), 4), np.float32)
+        # From white over orange to dark red; what is inside the skin is blue.
+        colors[:, 0], colors[:, 1], colors[:, 2] = 1 - 0.5 * values**2, 1 - 0.9 * values, (1 - values) ** 2
+        if name == _FIT_NAMES[0]:
+            colors[inside] = (0.05, 0.1, 0.9, 1.0)
+        if name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
+        add_colors(mesh, name, colors)

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Clothes, hair and accessories of the source, fitted to the target."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from ....engine import TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
+from ...common.errors import NothingToCarryError
+from ...common.phrases import counted
+from ...jobs.transfer import TransferReport
+from ...scene.armatures import armature_of, find_armature, read_rig
+from ...scene.character import parts_of, read_surface
+from ...scene.deform_layer import check_weights_writable
+from ...scene.garments import bound_items, check_item, dressed_at_rest
+from ...scene.pair import check_writable, named_object
+from ...scene.shape_key_io import check_keys_writable
+from ..options.rig import RigSettings
+from ..options.weights import WeightSettings
+from ..rig import RigTransfer
+from ..weights import WeightTransfer
+from .body_below import cover_body
+from .fit_report import done, doubt
+from .followed_keys import read_body_keys, write_followed
+from .item_bones import ItemBones, read_item_bones
+from .item_motion import ItemMotion
+from .item_reading import check_place, read_item, still_there
+from .item_writing import KEY, write_colors, write_copy, write_key
+
+if TYPE_CHECKING:
+    import bpy
+    from numpy.typing import NDArray
+
+    from ....engine import FittedItem, Steps
+    from ...jobs.transfer import Passage
+    from ...scene.armatures import SourceRig
+    from ...scene.character import Side
+    from ..options.wear import WearSettings
+    from .followed_keys import BodyKeys
+    from .item_reading import ReadItem
+
+__all__ = ["WearTransfer"]
+
+
+class WearTransfer:
+    """Fits clothes of the source to the target; see `Transfer`.
+
+    Parameters
+    ----------
+    settings : WearSettings
+        Which, and how.
+    """
+
+    label = "Clothes"
+    uses_rig = True
+
+    def __init__(self, settings: WearSettings) -> None:
+        self._settings = settings
+        self._items: list[ReadItem] = []
+        self._first: list[WeightTransfer | RigTransfer] = []
+        self._posed: NDArray[np.float64] | None = None
+        self._rig: SourceRig | None = None
+        self._moving: ItemMotion | None = None
+        self._keys: BodyKeys | None = None
+        self._fitted: list[FittedItem] = []
+        self._motion: NDArray[np.float64] = np.eye(4)
+        self._notes: list[str] = []
+        self._ends: list[str] = []
+
+    def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
+        """Read all items, and make sure that they can be fitted."""
+        settings = self._settings
+        chosen = self._chosen(context, source, target)
+        depsgraph = context.evaluated_depsgraph_get()
+        self._ends = [item.name for item in chosen if item in parts_of(source)]
+        for item in chosen:
+            check_item(context, item, source, target, chosen)
+            if settings.result == "KEY":
+                check_keys_writable(item, [KEY + target.name])
+                check_writable(item)
+        if settings.hide != "NONE":
+            for part in parts_of(target):
+                check_weights_writable(part)
+                check_keys_writable(part, [])
+        self._rig = read_rig(source)
+        if any(not dressed_at_rest(item, source) for item in chosen):
+            self._posed = read_surface(source, depsgraph, use_modifiers=True).vertices
+        body, other = (read_surface(side, depsgraph, use_modifiers=False) for side in (source, target))
+        if settings.keys and settings.result == "OBJECT":
+            self._keys = read_body_keys(context, target)
+            self._notes.extend(self._keys.notes)
+        for item in chosen:
+            self._items.append(read_item(depsgraph, item, source, self._rig, settings.clearance))
+            around = body.vertices if self._items[-1].at_rest or self._posed is None else self._posed
+            check_place(self._items[-1], TriangleMesh(around, body.triangles), other, source, target)
+        if settings.result == "OBJECT":
+            self._read_rigs(context, source, target)
+
+    def _read_rigs(self, context: bpy.types.Context, source: Side, target: Side) -> None:
+        """Read what becomes of the rig that moves the source: bones of the items go along, or all of it is fitted."""
+        settings, rig, other, item_bones = self._settings, self._rig, read_rig(target), None
+        if other is not None and settings.weights != "SKIN":
+            item_bones, note = read_item_bones(source, target, rig, [item.weights for item in self._items])
+            self._notes += [note] if note else []
+        if find_armature(target) is None and rig is not None and settings.fit_rig:
+            self._first = [WeightTransfer(WeightSettings()), RigTransfer(RigSettings())]
+            for transfer in self._first:
+                transfer.read(context, source, target)
+        mover = find_armature(source)
+        old = set() if mover is None else {bone.name for bone in armature_of(mover).bones if bone.use_deform}
+        self._moving = ItemMotion(
+            settings, rig, other, fits_rig=bool(self._first), old_bones=old, item_bones=item_bones, keys=self._keys
+        )
+
+    def _chosen(self, context: bpy.types.Context, source: Side, target: Side) -> list[bpy.types.Object]:
+        """Return the items: those that are named, or else all that the source's armature moves.
+
+        Raises
+        ------
+        ObjectError
+            If there is none, or none of a name.
+        """
+        chosen = [named_object(name) for name in dict.fromkeys(self._settings.items)]
+        if not chosen:
+            chosen = [obj for obj in bound_items(context, source) if obj not in parts_of(target)]
+        if not chosen:
+            raise NothingToCarryError(
+                f'No clothes of "{source.name}" were found: no other mesh is bound to its armature. Select the items '
+                "together with both bodies, or name them."
+            )
+        return chosen
+
+    def steps(self, passage: Passage) -> Steps[None]:
+        """Fit the items."""
+        pair, rig = passage.pair, passage.rig
+        for number, transfer in enumerate(self._first):
+            yield from within(transfer.steps(passage), 0.1 * number, 0.1 * (number + 1), transfer.label)
+        start = 0.1 * len(self._first)
+        there = pair.source_to_target
+        registered = None if rig is None else rig.registered
+        if registered is None:
+            maps = there, pair.target_to_source
+            wrapped = yield from within(wrap_steps(pair.source, pair.target, *maps), start, start + 0.3)
+            registered, start = wrapped.positions, start + 0.3
+        self._motion = _overall_motion(pair.source, registered)
+        self._fitted = [cast("Any", None)] * len(self._items)
+        bones = None if self._rig is None else self._rig.weights
+        for at_rest in (True, False):
+            numbers = [number for number, item in enumerate(self._items) if item.at_rest == at_rest]
+            if not numbers:
+                continue
+            body = pair.source
+            if not at_rest and self._posed is not None:
+                body = TriangleMesh(self._posed, body.triangles)
+            worn = [self._items[number].worn for number in numbers]
+            made = wear_steps(body, pair.target, there, registered, worn, bones=bones)
+            found = yield from within(made, start, 0.9)
+            for number, fitted in zip(numbers, found, strict=True):
+                self._fitted[number] = fitted
+            start = 0.9
+        if self._moving is not None:
+            yield from within(self._moving.steps(passage, self._items, self._fitted), 0.9, 1.0)
+
+    def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
+        """Write the fitted items."""
+        items = [still_there(item) for item in self._items]
+        reports = [transfer.write(context, source, target) for transfer in self._first]
+        notes = [*self._notes, *(note for report in reports for note in report.notes)]
+        remarks = [remark for report in reports for remark in report.remarks]
+        if self._moving is not None and self._moving.new_bones:
+            ItemBones.write(context, target, self._moving.new_bones)
+            count = counted(len(self._moving.new_bones), "bone")
+            remarks.append(f'{count} of the items were added to the rig of "{target.name}".')
+        for number, (item, obj, fitted) in enumerate(zip(self._items, items, self._fitted, strict=True)):
+            if self._moving is None:
+                made = obj
+                write_key(obj, target, fitted)
+            else:
+                weights = self._moving.weights[number]
+                made, said = write_copy(context, obj, (source, target), fitted, weights=weights, motion=self._motion)
+                notes.extend(note for note in said if note not in notes)
+                if self._keys is not None and self._moving.followed:
+                    followed = len(write_followed(made, target, self._keys, self._moving.followed[number]))
+                    if followed:
+                        remarks.append(f'"{made.name}" follows {counted(followed, "shape key")} of "{target.name}".')
+            if self._settings.colors:
+                write_colors(made, fitted)
+            remarks.append(done(item.name, fitted, is_body=item.name in self._ends))
+            notes.extend(filter(None, [doubt(item.name, fitted)]))
+        remarks.extend(
+            f'"{name}" counts as part of the body as well: "{source.name}" has no skin below it.' for name in self._ends
+        )
+        remarks.extend([] if self._moving is None else self._moving.remarks(target.name))
+        if self._settings.hide != "NONE":
+            meshes = zip(self._fitted, (item.worn.mesh for item in self._items), strict=True)
+            cover_body(context, target, [(one.positions, mesh.triangles) for one, mesh in meshes], self._settings.hide)
+        written = [report.done for report in reports if report.done]
+        return TransferReport(", ".join([*written, counted(len(items), "item")]), tuple(notes), tuple(remarks))
+
+
+def _overall_motion(source: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Find how the body turns and moves on the whole."""
+    turned_back = kept_in_place(source, images)
+    weights = source.vertex_areas / source.area
+    centre, back = weights @ images, weights @ turned_back
+    x, y = turned_back - back, images - centre
+    left, _, right = np.linalg.svd(y.T @ (weights[:, None] * x))
+    left[:, 2] *= np.sign(np.linalg.det(left @ right))
+    motion = np.eye(4)
+    motion[:3, :3] = left @ right
+    motion[:3, 3] = centre - motion[:3, :3] @ (weights @ source.vertices)
+    return motion
