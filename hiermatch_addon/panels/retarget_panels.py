@@ -133,7 +133,7 @@ def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
 
 
 def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: HIERMATCH_PG_report) -> None:
-    """Draw what became of the last transfer."""
+    """Draw what became of the last transfer: the verdict, the way to see for oneself, and only then what to check."""
     if not report.done:
         return
     box = layout.box().column()
@@ -141,8 +141,6 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
         draw_text(box, context, line, "ERROR" if report.doubtful else "CHECKMARK")
     for line in report.verdict.splitlines():
         draw_text(box, context, line, "ERROR" if report.doubtful else "INFO")
-    for line in report.notes.splitlines():
-        draw_text(box, context, line, "ERROR")
     box.label(text=f"{report.seconds:.1f} s", icon="TIME")
     target = bpy.data.objects.get(report.target)
     if target is not None and target.type == "ARMATURE":
@@ -155,4 +153,8 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
     hidden = target is not None and is_before(target)
     before = row.operator("hiermatch.before_after", icon="ARROW_LEFTRIGHT", depress=hidden)
     poses.target = before.target = report.target
+    if report.notes:
+        box = layout.box().column()
+        for line in report.notes.splitlines():
+            draw_text(box, context, line, "ERROR")
     draw_notes(layout, context, "hiermatch_remarks", report.remarks.splitlines())

@@ -100,8 +100,8 @@ def posed_vertices(armature):
     return np.array(found)
 
 
-def add_action(armature, name="Wave", angles=None, frames=(1, 11, 21), way=(0.0, 0.3, 0.1)):
-    """Give an armature an action: at each frame random turns of some bones, and a way of the first."""
+def add_action(armature, name="Wave", angles=None, frames=(1, 11, 21), way=(0.0, 0.3, 0.1), *, hips="hips"):
+    """Give an armature an action: at each frame random turns of some bones, and a way of the hips."""
     random = np.random.default_rng(5)
     armature.animation_data_clear()
     bones = angles or ["upper_arm.L", "forearm.L", "thigh.R", "shin.R", "spine1", "neck"]
@@ -112,9 +112,8 @@ def add_action(armature, name="Wave", angles=None, frames=(1, 11, 21), way=(0.0,
                 random.uniform(-0.7, 0.7), 3, random.normal(size=3)
             ).to_quaternion()
             bone.keyframe_insert("rotation_quaternion", frame=frame)
-        hips = armature.pose.bones["hips"]
-        hips.location = number * np.array(way)
-        hips.keyframe_insert("location", frame=frame)
+        armature.pose.bones[hips].location = number * np.array(way)
+        armature.pose.bones[hips].keyframe_insert("location", frame=frame)
     action = armature.animation_data.action
     action.name = name
     return action

@@ -11,7 +11,7 @@ from mathutils import Matrix
 
 from ....engine import Motion, posed_motion, rotation_matrices
 from ..armatures import armature_of
-from .action_curves import CurveMaker, assign_action, bone_curves, slot_for
+from .action_curves import CurveMaker, assign_action, bone_curves, played_action, slot_for
 from .rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
@@ -93,6 +93,9 @@ class BoneKeys:
     cycle: dict[str, Any] = field(default_factory=dict)
     extrapolation: str = "CONSTANT"
 
+
+_MARKER = "hiermatch_carried"
+"""Custom property of actions that were made from those of other rigs."""
 
 _CYCLE = ("mode_before", "cycles_before", "mode_after", "cycles_after")
 
@@ -204,6 +207,9 @@ def write_action(
 ) -> bpy.types.Action:
     """Make an action of keys, named and ranged like another one.
 
+    If it takes the place of an action that was carried over before, what only that one moved goes back to rest: it
+    would stand for good where that one left it. Where an action was made by hand, nobody knows whether that is wanted.
+
     Parameters
     ----------
     name : str
@@ -226,9 +232,21 @@ def write_action(
     for channel in keys:
         for index in range(channel.values.shape[1]):
             _write_curve(maker.curve(channel.bone, channel.channel, index), channel, index)
+    maker.action[_MARKER] = True
     if assign:
+        _leave_action(armature, {(each.bone, each.channel) for each in keys})
         assign_action(armature, maker.action)
     return maker.action
+
+
+def _leave_action(armature: bpy.types.Object, moved: set[tuple[str, str]]) -> None:
+    """Put channels of bones to rest that the action played now moves, if it was carried over, and the next does not."""
+    before = played_action(armature)
+    if before is None or _MARKER not in before:
+        return
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    for bone, channel in {(bone, channel) for bone, channel, _ in bone_curves(before, armature)} - moved:
+        setattr(bones[bone], channel, bones[bone].bl_rna.properties[channel].default_array)
 
 
 def _write_curve(curve: Any, keys: BoneKeys, index: int) -> None:  # noqa: ANN401 - Blender's types differ

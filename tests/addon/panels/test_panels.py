@@ -321,6 +321,17 @@ def test_the_button_and_the_result_come_before_all_that_unfolds(context):
     assert all(closed for kind, _, *closed in [*draw(context), *drawn] if kind == "panel")
 
 
+def test_the_way_to_see_for_oneself_is_not_below_what_is_to_be_checked(context):
+    report = context.scene.hiermatch_retarget.report
+    report.done, report.verdict, report.notes = "Carried.", "Confidence 83%: so it is.", "Check this.\nCheck that."
+    drawn = []
+    panel = SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_retarget")
+    retarget_panels.HIERMATCH_PT_retarget.draw(panel, context)
+    poses = drawn.index(("switch", "hiermatch.test_poses", False))
+    assert drawn.index(("label", "Confidence 83%: so it is.")) < poses < drawn.index(("label", "Check this."))
+    assert ("label", "Check that.") in drawn
+
+
 def test_a_match_that_is_out_of_date(context):
     summary = context.scene.hiermatch.summary
     summary.points, summary.stale = 5, 'The match is out of date: "Cat" was edited since.'

@@ -171,6 +171,38 @@ def test_the_table_is_kept_and_a_second_run_uses_it(monkeypatch):
     assert carry(source="A", target="B") == {"FINISHED"}
 
 
+def test_a_bone_whose_pair_was_removed_goes_with_its_parent_in_the_next_run():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    add_action(source)
+    carry(source="A", target="B")
+    arm, shin = (made.names[made.origins.index(frozenset([name]))] for name in ("forearm.L", "shin.R"))
+    bpy.context.scene.frame_set(11)
+    turned = {name: target.pose.bones[name].matrix_basis.to_quaternion().angle for name in (arm, shin)}
+    assert min(turned.values()) > 0.1
+    bpy.ops.hiermatch.remove_bone_pair(source="A", target="B", target_bone=arm)
+    carry(source="A", target="B")
+    for frame in (1, 11):
+        bpy.context.scene.frame_set(frame)
+        assert target.pose.bones[arm].matrix_basis == Matrix()
+    assert target.pose.bones[shin].matrix_basis.to_quaternion().angle == pytest.approx(turned[shin], abs=1e-4)
+
+
+def test_what_an_action_made_by_hand_left_stays():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    add_action(source)
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    arm = made.names[made.origins.index(frozenset(["forearm.L"]))]
+    bpy.ops.hiermatch.remove_bone_pair(source="A", target="B", target_bone=arm)
+    add_action(target, "By Hand", [arm], hips=made.names[made.origins.index(frozenset(["hips"]))])
+    bpy.context.scene.frame_set(11)
+    before = target.pose.bones[arm].matrix_basis.copy()
+    carry(source="A", target="B", action="Wave")
+    bpy.context.scene.frame_set(1)
+    assert target.pose.bones[arm].matrix_basis == before
+
+
 def test_an_armature_alone_gives_motion_through_pairs_that_are_there():
     source, _ = add_person("A")
     add_person("B", "renamed")
