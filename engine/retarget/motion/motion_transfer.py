@@ -12,7 +12,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, Steps, run
+from ...runtime.progress import Progress, Steps, at_once
 from ..rig.skeleton import Skeleton
 from .bone_pairing import BonePairing
 from .contacts import contacts_of, grounded_lifts, held_shifts
@@ -86,18 +86,6 @@ class TransferredMotion:
         return f"<TransferredMotion: {int(self.moved.sum())} of {len(self.moved)} bones turn, scale {self.scale:.3g}>"
 
 
-def transfer_motion(
-    motion: Motion,
-    pairing: BonePairing,
-    target: Skeleton,
-    settings: MotionSettings | None = None,
-    *,
-    ups: Floats | None = None,
-) -> TransferredMotion:
-    """Transfer motion; see `transfer_motion_steps`."""
-    return run(transfer_motion_steps(motion, pairing, target, settings, ups=ups))
-
-
 @can_go_beside
 def transfer_motion_steps(
     motion: Motion,
@@ -107,7 +95,7 @@ def transfer_motion_steps(
     *,
     ups: Floats | None = None,
 ) -> Steps[TransferredMotion]:
-    r"""Transfer motion from one skeleton to another, in steps.
+    r"""Transfer motion from one skeleton to another.
 
     If the source's bone turns by :math:`D` from rest, the target's surface is turned by :math:`M` against the
     source's around it, both at rest, and the target as a whole by :math:`G`, then the target's bone turns by
@@ -166,6 +154,9 @@ def transfer_motion_steps(
     if settings.in_place and len(motion) > 1:
         posed = _in_place(posed, ups[1], np.flatnonzero(body.placed))
     return TransferredMotion(posed, body.moved, body.placed, body.rooted, body.scale)
+
+
+transfer_motion = at_once(transfer_motion_steps)
 
 
 def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: MotionSettings) -> None:

@@ -19,7 +19,7 @@ from ...repair.cleaning import clean
 from ...runtime.arrays import Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, Steps, run, within
+from ...runtime.progress import Progress, Steps, at_once, within
 from ...shapes.enclosing_surface import all_joined_steps
 from ...shapes.known_shapes import KnownShapes
 from ...shapes.proxy import MATCHED, Proxy, proxy_steps
@@ -52,22 +52,6 @@ _LEAST_COVERED = 0.85
 """Least part of the target on which it should, for the rig to be believed."""
 
 
-def fit_rig(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    source_to_target: SurfaceMap,
-    target_to_source: SurfaceMap,
-    *,
-    weights: csr_array,
-    skeleton: Skeleton,
-    refine: bool = True,
-    known: KnownShapes | None = None,
-) -> FittedRig:
-    """Fit a rig into another body; see `fit_rig_steps`."""
-    maps = source_to_target, target_to_source
-    return run(fit_rig_steps(source, target, *maps, weights=weights, skeleton=skeleton, refine=refine, known=known))
-
-
 @can_go_beside
 def fit_rig_steps(
     source: TriangleMesh,
@@ -80,7 +64,7 @@ def fit_rig_steps(
     refine: bool = True,
     known: KnownShapes | None = None,
 ) -> Steps[FittedRig]:
-    """Fit a rig into another body, in steps.
+    """Fit a rig into another body.
 
     The bones are found that pose the source as the maps say.  Then, in turn, the source slides onto the target, held
     by the shape that its bones give it, and the bones are found anew: where on a limb a point lies, the bones know
@@ -138,6 +122,9 @@ def fit_rig_steps(
     return FittedRig(
         skeleton, weights, bones.linear, bones.translations, bones.rotations, bones.scales, posed, registered, *maps
     )
+
+
+fit_rig = at_once(fit_rig_steps)
 
 
 def _cleaned_steps(meshes: tuple[TriangleMesh, TriangleMesh], known: KnownShapes | None) -> Steps[list[CleanSurface]]:

@@ -14,7 +14,7 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints, group_means
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, Steps, run
+from ...runtime.progress import Progress, Steps, at_once
 from .bend_directions import kept_bends
 from .joint_carriers import joint_places
 from .joint_placement import PlacedJoints, across_axes, swung, with_lengths
@@ -52,25 +52,6 @@ _STEPS = np.linspace(0.1, 0.9, 5)
 """Where on a bone it is asked whether it is in the body."""
 
 
-def carry_standing_rig(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    source_to_target: SurfaceMap,
-    target_to_source: SurfaceMap,
-    *,
-    skeleton: Skeleton,
-    normals: Floats,
-    frames: Floats | None = None,
-    space: Floats | None = None,
-) -> PlacedJoints:
-    """Carry a rig that stands in a body; see `carry_standing_rig_steps`."""
-    maps = source_to_target, target_to_source
-    steps = carry_standing_rig_steps(
-        source, target, *maps, skeleton=skeleton, normals=normals, frames=frames, space=space
-    )
-    return run(steps)
-
-
 @can_go_beside
 def carry_standing_rig_steps(
     source: TriangleMesh,
@@ -83,7 +64,7 @@ def carry_standing_rig_steps(
     frames: Floats | None = None,
     space: Floats | None = None,
 ) -> Steps[PlacedJoints]:
-    r"""Carry a rig that stands in a body, and moves nothing of it, into another body, in steps.
+    r"""Carry a rig that stands in a body, and moves nothing of it, into another body.
 
     Each joint moves with the surface around it, by the similarity that is nearest to where the map takes it: moving
     least squares [1]_ with the weights :math:`a_i / |p_i - x|^3` for places with areas :math:`a_i`, of which those
@@ -152,6 +133,9 @@ def carry_standing_rig_steps(
     heads, tails, across = mirrored_joints(skeleton, target, (heads, tails, across), space)
     yield Progress(1.0, "Carrying joints")
     return PlacedJoints(heads, tails, across, swung(turns, axes, tails - heads))
+
+
+carry_standing_rig = at_once(carry_standing_rig_steps)
 
 
 def standing_share(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools) -> float:
