@@ -25,7 +25,6 @@ from ..registration.registration import (
     SOFT,
     Registration,
     Stage,
-    points_at,
     register_steps,
     restarted_steps,
     smooth_start,
@@ -309,8 +308,8 @@ class Follower:
         ways = (self.source, self.target, fit.registration), (self.target, self.source, fit.reverse)
         trips = []
         for (start, end, there), (_, _, back) in zip(ways, ways[::-1], strict=True):
-            images = points_at(back.on_target, start.triangles, start.vertices)
-            returned = points_at(there.on_target, end.triangles, images)
+            images = back.on_target.interpolate(start.triangles, start.vertices)
+            returned = there.on_target.interpolate(end.triangles, images)
             trips.append(np.linalg.norm(returned - start.vertices, axis=1))
         return trips[0], trips[1]
 

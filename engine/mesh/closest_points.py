@@ -71,6 +71,10 @@ class FoundPoints:
     def __repr__(self) -> str:
         return f"<FoundPoints: {len(self)} points>"
 
+    def interpolate(self, triangles: Ints, values: Floats) -> Floats:
+        """Values (n, d) of the vertices that the triangles of the surface, (m, 3), name, at the points, (k, d)."""
+        return np.einsum("kc,kcd->kd", self.barycentric, values[triangles[self.triangles]])
+
     def nearest_vertices(self, triangles: Ints) -> Ints:
         """Tell which corner of its triangle each is nearest to, of the surface's (m, 3): vertices (k,)."""
         return triangles[self.triangles, self.barycentric.argmax(axis=1)]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ...mesh.unit_vectors import unit_vectors
 from ...runtime.arrays import Floats
 from ...runtime.errors import RigError
 
@@ -38,9 +39,7 @@ def rotation_matrices(channels: Floats, mode: str) -> Floats:
         safe = np.where(lengths > 0, channels / np.maximum(lengths, _TINY), [1.0, 0, 0, 0])
         return np.asarray(Rotation.from_quat(safe[:, [1, 2, 3, 0]]).as_matrix())
     if mode == "AXIS_ANGLE":
-        lengths = np.linalg.norm(channels[:, 1:], axis=1, keepdims=True)
-        axes = channels[:, 1:] / np.maximum(lengths, _TINY)
-        return np.asarray(Rotation.from_rotvec(channels[:, :1] * axes).as_matrix())
+        return np.asarray(Rotation.from_rotvec(channels[:, :1] * unit_vectors(channels[:, 1:])).as_matrix())
     places = ["XYZ".index(letter) for letter in mode]
     return np.asarray(Rotation.from_euler(mode.lower(), channels[:, places]).as_matrix())
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...mesh.unit_vectors import unit_vectors
 from ...runtime.arrays import Bools, Floats
@@ -98,9 +99,4 @@ def _steady_normals(upper: Floats, normals: Floats, flat: Bools) -> Floats:
 
 def _around(axes: Floats, angles: Floats) -> Floats:
     """Rotations (f, 3, 3) around axes (f, 3) of length one by angles (f,)."""
-    cross = np.zeros((len(axes), 3, 3))
-    x, y, z = axes.T
-    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -z, y, -x
-    cross -= np.swapaxes(cross, 1, 2)
-    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
-    return np.eye(3) + sine * cross + (1 - cosine) * cross @ cross
+    return Rotation.from_rotvec(angles[:, None] * axes).as_matrix()

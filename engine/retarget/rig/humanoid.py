@@ -120,10 +120,7 @@ class _Tree:
 
     def above(self, bone: int) -> list[int]:
         """Return a bone and all that it hangs on."""
-        found = [bone]
-        while self.bones.parents[found[-1]] >= 0:
-            found.append(int(self.bones.parents[found[-1]]))
-        return found
+        return [bone, *self.bones.above(bone)]
 
     def below(self, bone: int) -> list[int]:
         """Return a bone and all that hangs on it."""

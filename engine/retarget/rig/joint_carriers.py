@@ -79,7 +79,7 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
     masses = moved_areas(rig, source)
     moving = masses > 0
     places = joint_places(skeleton)
-    above = _moving_above(skeleton, moving)
+    above = skeleton.nearest_above(moving)
     of_turns = np.zeros((count, count))
     anchors = np.full(count, -1)
     below = sums_below(skeleton, masses)
@@ -136,16 +136,6 @@ def joint_places(skeleton: Skeleton) -> Ints:
     # The two ends of a very short bone are not one place.
     pairs = pairs[pairs[:, 1] - pairs[:, 0] != len(skeleton)]
     return joined_components(len(joints), *pairs.T)
-
-
-def _moving_above(skeleton: Skeleton, moving: Bools) -> Ints:
-    """For each bone its nearest ancestor that moves vertices, -1 if there is none, (b,)."""
-    found = np.full(len(skeleton), -1)
-    for bone in skeleton.order:
-        parent = skeleton.parents[bone]
-        if parent >= 0:
-            found[bone] = parent if moving[parent] else found[parent]
-    return found
 
 
 def sums_below(skeleton: Skeleton, masses: Floats) -> Floats:

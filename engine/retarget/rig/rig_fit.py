@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
@@ -106,8 +106,7 @@ def fit_rig_steps(
     yield Progress(0.05, "Fitting the bones")
     forward = _FORWARD * body.vertex_areas / body.area * (x.main.original_vertices >= 0)
     backward = y.mesh.vertex_areas / y.mesh.area * (y.main.original_vertices >= 0)
-    images = y.mesh.vertices[y.mesh.triangles[there.triangles]]
-    positions = np.einsum("kc,kcd->kd", there.barycentric, images)
+    positions = there.interpolate(y.mesh.triangles, y.mesh.vertices)
     evidence = _Evidence(body, moving, y.mesh, skeleton)
     bones = evidence.bones(positions, back, forward, backward)
     maps = source_to_target, target_to_source
@@ -238,9 +237,7 @@ class _Evidence:
         shares = np.concatenate([forward_shares, back_shares])
         weights = csr_array(vstack([self.weights, evaluate @ self.weights]))
         fitted = fit_bones(vertices, there, shares, weights, self.skeleton)
-        return BoneTransforms(
-            fitted.linear, fitted.translations, fitted.rotations, fitted.scales, fitted.posed[: len(positions)]
-        )
+        return replace(fitted, posed=fitted.posed[: len(positions)])
 
 
 def _evaluation(points: FoundPoints | SurfacePoints, mesh: TriangleMesh) -> csr_array:
@@ -307,8 +304,7 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     yield Progress(0.85, "Mapping every vertex")
     steps = _maps_steps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back))
     maps = yield from within(steps, 0.85, 1.0)
-    bones = BoneTransforms(bones.linear, bones.translations, bones.rotations, bones.scales, whole)
-    return _Slid(bones, positions, maps)
+    return _Slid(replace(bones, posed=whole), positions, maps)
 
 
 def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Proxy) -> FoundPoints:
@@ -317,9 +313,9 @@ def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Prox
     chosen = FoundPoints(back.triangles[rows], back.barycentric[rows], back.squared_distances[rows])
     if proxy.is_identity:
         return chosen
-    corners = pair.x.mesh.triangles[chosen.triangles]
-    places = np.einsum("kc,kcd->kd", chosen.barycentric, pair.x.mesh.vertices[corners])
-    starts = proxy.points.nearest_vertices[corners[np.arange(len(corners)), chosen.barycentric.argmax(axis=1)]]
+    mesh = pair.x.mesh
+    places = chosen.interpolate(mesh.triangles, mesh.vertices)
+    starts = proxy.points.nearest_vertices[chosen.nearest_vertices(mesh.triangles)]
     return ClosestPoints(proxy.mesh).walk(places, starts)
 
 

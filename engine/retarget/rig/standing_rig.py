@@ -197,9 +197,7 @@ def _outside(points: Floats, mesh: TriangleMesh) -> Bools:
 def _surface_beside(points: Floats, mesh: TriangleMesh, search: ClosestPoints) -> tuple[Floats, Floats]:
     """Find the nearest points (k, 3) of the surface, and how far it faces the points, (k,): negative inside."""
     found = search.nearest(points)
-    corners = mesh.triangles[found.triangles]
-    nearest = np.einsum("kc,kcd->kd", found.barycentric, mesh.vertices[corners])
-    normals = np.einsum("kc,kcd->kd", found.barycentric, mesh.vertex_normals[corners])
+    nearest, normals = (found.interpolate(mesh.triangles, each) for each in (mesh.vertices, mesh.vertex_normals))
     return nearest, ((points - nearest) * normals).sum(axis=1)
 
 
