@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.orientation import tangent_gradient
 from ..hierarchical.spectral_descriptors import automatic_energies, wave_kernel_signatures
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..shapes.shape import Shape
 from .functional_maps import PointMaps, SampledBasis
 
@@ -146,7 +146,7 @@ class MapDomain:
         integrated = np.einsum("nd,nd->n", gradient, mesh.vertex_normals)
         coefficients = np.exp(-_HEAT_TIME * self.values) * (self.functions.T @ integrated)
         size = np.linalg.norm(coefficients)
-        return self.functions[self.vertices] @ coefficients / max(size, np.finfo(float).tiny)
+        return self.functions[self.vertices] @ coefficients / max(size, TINY)
 
     @cached_property
     def signatures(self) -> Floats:
@@ -164,7 +164,7 @@ class MapDomain:
         spectrum = self.shape.spectrum
         spectrum = replace(spectrum, values=spectrum.values[:pairs], functions=spectrum.functions[vertices, :pairs])
         logarithms = np.log(wave_kernel_signatures(spectrum, automatic_energies(pairs, count)) + _LEAST_SIGNATURE)
-        return logarithms / np.maximum(logarithms.std(axis=0), np.finfo(float).tiny)
+        return logarithms / np.maximum(logarithms.std(axis=0), TINY)
 
 
 def _filled_up(points: Floats, samples: Ints, count: int) -> Ints:

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints, numbered
+from ..runtime.arrays import TINY, Floats, Ints, numbered
 
 
 def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
@@ -38,10 +38,10 @@ def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
     opposite = np.stack([c - b, a - c, b - a], axis=1)  # (t, 3 corners, 3)
     rotated = np.cross(mesh.triangle_normals[triangle][:, None, :], opposite)
     weight = np.bincount(owner, mesh.triangle_areas[triangle], len(vertices))
-    rotated /= np.maximum(2 * weight[owner], np.finfo(float).tiny)[:, None, None]
+    rotated /= np.maximum(2 * weight[owner], TINY)[:, None, None]
     normal = mesh.vertex_normals[vertices]
     e1 = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
-    e1 /= np.maximum(np.linalg.norm(e1, axis=1, keepdims=True), np.finfo(float).tiny)
+    e1 /= np.maximum(np.linalg.norm(e1, axis=1, keepdims=True), TINY)
     frame = np.stack([e1, np.cross(normal, e1)], axis=1)  # (k, 2, 3)
     entries = np.einsum("tcd,tfd->tfc", rotated, frame[owner])  # (t, 2, 3 corners)
     rows = np.broadcast_to((2 * owner[:, None] + np.arange(2))[:, :, None], entries.shape)

@@ -9,14 +9,13 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry.squared_differences import squared_differences
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import CheckedSettings, MatchSettings, setting
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
 from ..runtime.progress import Progress, Steps, at_once, within

@@ -16,7 +16,7 @@ from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, at_once, within
@@ -229,7 +229,7 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) 
     curvature = curvature_agreement(shape, shape, images)
     # A map that moves points by little cannot change distances by much, as the flip of a thin body from front to back:
     # what counts is the change for the way that the points go.
-    tiny = float(np.finfo(float).tiny)
+    tiny = TINY
     way = float(np.square(distances[images, everywhere]).mean())
     score = np.log(max(float(np.square(change).mean()), tiny) / max(way, tiny))
     score += (involution / _INVOLUTION_SCALE) ** 2 - CURVATURE_WEIGHT * curvature

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.errors import MeshError
 from ..runtime.worker import search_threads
 from .triangle_mesh import TriangleMesh
@@ -43,8 +43,6 @@ _REMEMBERED = 4
 _NORMAL_LENGTH, _NORMAL_GATE = 0.008, 0.3
 """How many units of length (in the root of the area) a unit of difference of the normals counts when points are
 matched, and below which cosine only: more would draw points of a curved surface together."""
-
-_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -281,9 +279,9 @@ class ClosestPoints:
         origin, ab, ac, own = a - centre, b - a, c - a, points - centre.T
         ab_ab, ab_ac, ac_ac = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac)
         ab_ap, ac_ap = own @ ab - _dot(origin, ab), own @ ac - _dot(origin, ac)  # (k, m)
-        divisor = np.maximum(ab_ab, _TINY)
+        divisor = np.maximum(ab_ab, TINY)
         height = ac - (ab_ac / divisor) * ab
-        w = (ac_ap - (ab_ac / divisor) * ab_ap) / np.maximum(_dot(height, height), _TINY)
+        w = (ac_ap - (ab_ac / divisor) * ab_ap) / np.maximum(_dot(height, height), TINY)
         v = (ab_ap - w * ab_ac) / divisor
         inside = (v >= 0) & (w >= 0) & (v + w <= 1)
         sides = _closest_on_sides(ab_ab, ab_ac, ac_ac, ab_ap, ac_ap)
@@ -503,9 +501,9 @@ def _closest(ap: Floats, ab: Floats, ac: Floats) -> tuple[Floats, Floats, Floats
     The vectors are (3, k).
     """
     ab_ab, ab_ac, ac_ac, ab_ap, ac_ap = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac), _dot(ab, ap), _dot(ac, ap)
-    divisor = np.maximum(ab_ab, _TINY)
+    divisor = np.maximum(ab_ab, TINY)
     height = ac - (ab_ac / divisor) * ab
-    w = _dot(height, ap) / np.maximum(_dot(height, height), _TINY)
+    w = _dot(height, ap) / np.maximum(_dot(height, height), TINY)
     v = (ab_ap - w * ab_ac) / divisor
     outside = np.flatnonzero((v < 0) | (w < 0) | (v + w > 1))
     products = (product.take(outside) for product in (ab_ab, ab_ac, ac_ac, ab_ap, ac_ap))
@@ -521,7 +519,7 @@ def _closest_on_sides(
     """Find v and w of the closest points on the three sides, from the scalar products (k,) of the vectors."""
     bc_bc = ab_ab + ac_ac - 2 * ab_ac
     bc_bp = ac_ap - ab_ap - ab_ac + ab_ab
-    squares = (np.maximum(square, _TINY) for square in (ab_ab, ac_ac, bc_bc))
+    squares = (np.maximum(square, TINY) for square in (ab_ab, ac_ac, bc_bc))
     on_ab, on_ac, on_bc = (
         np.minimum(np.maximum(along, 0), square) / square
         for along, square in zip((ab_ap, ac_ap, bc_bp), squares, strict=True)
@@ -566,7 +564,7 @@ def _spatial_order(points: Floats) -> Ints:
     """Order of points (k, d) along a Morton curve through 128^3 cells of the first three coordinates."""
     points = points[:, :3]
     low = points.min(axis=0)
-    size = max(float((points.max(axis=0) - low).max()), _TINY)
+    size = max(float((points.max(axis=0) - low).max()), TINY)
     cells = ((points - low) / size * 127).astype(np.int64)
     bits = np.arange(7)
     spread = ((np.arange(128)[:, None] >> bits & 1) << 3 * bits).sum(axis=1)

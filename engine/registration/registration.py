@@ -12,7 +12,7 @@ import numpy as np
 
 from ..geometry.procrustes import nearest_rotations
 from ..mesh.closest_points import ClosestPoints, FoundPoints
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import TINY, Bools, Floats, Ints
 from ..runtime.parallel_map import beside_steps
 from ..runtime.progress import Progress, Steps, within
 from .deformable import DeformableSurface
@@ -489,5 +489,5 @@ def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableS
 
 def _agreement(first: Floats, second: Floats) -> Floats:
     """How far normals (k, 3) agree: their product squared, or little where they turn away, (k,)."""
-    lengths = np.maximum(np.linalg.norm(second, axis=1) * np.linalg.norm(first, axis=1), np.finfo(float).tiny)
+    lengths = np.maximum(np.linalg.norm(second, axis=1) * np.linalg.norm(first, axis=1), TINY)
     return np.clip(np.einsum("kd,kd->k", first, second) / lengths, _LEAST_AGREEMENT, 1) ** 2

@@ -9,8 +9,7 @@ from scipy.sparse import csr_array
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, unit_vectors
 from ..runtime.progress import Progress, Steps
 
 _ROUNDS = 11  # none of them is the last after averaging, which others have to put right

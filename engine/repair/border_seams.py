@@ -13,8 +13,7 @@ from scipy.spatial import cKDTree
 from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
 from ..mesh.triangle_mesh import triangle_areas
-from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked
+from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked, unit_vectors
 
 _SMALLEST = 0.01
 """Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""

@@ -18,7 +18,7 @@ from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.clean_surface import SurfacePart
 from ..repair.hole_filling import fill_holes
-from ..runtime.arrays import Ints, numbered
+from ..runtime.arrays import TINY, Ints, numbered
 from ..runtime.progress import Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
@@ -86,7 +86,7 @@ def _spectra_apart_steps(x: Shape, y: Shape) -> Steps[float]:
     for shape in (x, y):
         spectrum = yield from eigenpairs_steps(shape.laplace, min(_COMPARED + 1, shape.mesh.vertex_count))
         values = spectrum.values[1:] * shape.laplace.area
-        logarithms.append(np.log(np.maximum(values, np.finfo(float).tiny)))
+        logarithms.append(np.log(np.maximum(values, TINY)))
     count = min(map(len, logarithms))
     return float(np.abs(logarithms[0][:count] - logarithms[1][:count]).mean())
 

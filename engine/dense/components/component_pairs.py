@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from ...mesh.connectivity.adjacency import edge_graph
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from .similarity_field import Surroundings
 
 _LARGEST_OFFSET = 1.5
@@ -50,7 +50,6 @@ what is nearest, as clothes do; and at how many points that is measured."""
 _LYING = 0.2
 """Root mean square distance from its surroundings, in radii, up to which a large part lies on them everywhere."""
 
-_TINY = np.finfo(float).tiny
 
 _NOT_POSSIBLE = 20.0
 """No pair costs more than that of leaving a part alone, so that as many as possible are made."""
@@ -133,7 +132,7 @@ def _length(part: TriangleMesh) -> float:
         distances[~np.isfinite(distances)] = 0
         end = int(distances.argmax())
         length = float(distances[end])
-    return max(length / np.sqrt(part.area), _TINY)
+    return max(length / np.sqrt(part.area), TINY)
 
 
 def contact_with(distances: Floats, part: TriangleMesh) -> Contact:

@@ -13,8 +13,7 @@ from scipy.spatial import cKDTree
 
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints, group_sums
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, unit_vectors
 
 _NEIGHBOURS = 32
 """Places on the surface that a similarity is fitted to."""
@@ -197,6 +196,6 @@ def _neighbours_together(points: Floats) -> Ints:
     if not len(points):
         return np.empty(0, np.int64)
     low = points.min(axis=0)
-    side = max(float((points.max(axis=0) - low).max()), np.finfo(float).tiny)
+    side = max(float((points.max(axis=0) - low).max()), TINY)
     cells = ((points - low) / side * 63).astype(np.int64)
     return np.argsort((cells[:, 0] * 64 + cells[:, 1]) * 64 + cells[:, 2], kind="stable")

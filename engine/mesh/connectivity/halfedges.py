@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import Bools, Floats, Ints, ranges
-from ..unit_vectors import unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, ranges, unit_vectors
 from .components import triangle_components
 
 _MOST_TRIANGLES = 64

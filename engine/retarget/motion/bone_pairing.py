@@ -12,8 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
 from ...runtime.errors import RigError
 from ..rig.fitted_rig import FittedRig
 from ..rig.joint_placement import least_turns, place_joints, standing
@@ -305,7 +304,7 @@ def _without_offshoots(
 ) -> set[tuple[int, int]]:
     """Leave out bones that share the partner of a better one, unless the chain goes on below them."""
     for side, tree in enumerate(trees):
-        usual = inside / np.maximum(inside.max(axis=side, keepdims=True), np.finfo(float).tiny)
+        usual = inside / np.maximum(inside.max(axis=side, keepdims=True), TINY)
         for partner in {pair[1 - side] for pair in pairs}:
             rivals = [pair for pair in pairs if pair[1 - side] == partner]
             best = max(rivals, key=lambda pair: gains[pair[1], pair[0]])
@@ -355,7 +354,7 @@ def _without_misplaced(
             if np.linalg.norm(starts[1] - starts[0]) <= least:
                 continue
             if astray > max(least, excess * lost):
-                worst, excess = int(part), astray / max(lost, float(np.finfo(float).tiny))
+                worst, excess = int(part), astray / max(lost, TINY)
         if worst < 0:
             break
         chosen = np.delete(chosen, parts.rows[worst], axis=0)

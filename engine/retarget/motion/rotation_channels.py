@@ -6,11 +6,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats
+from ...runtime.arrays import TINY, Floats, unit_vectors
 from ...runtime.errors import RigError
-
-_TINY = np.finfo(float).tiny
 
 
 def rotation_matrices(channels: Floats, mode: str) -> Floats:
@@ -36,7 +33,7 @@ def rotation_matrices(channels: Floats, mode: str) -> Floats:
     _check(mode, channels.shape[1])
     if mode == "QUATERNION":
         lengths = np.linalg.norm(channels, axis=1, keepdims=True)
-        safe = np.where(lengths > 0, channels / np.maximum(lengths, _TINY), [1.0, 0, 0, 0])
+        safe = np.where(lengths > 0, channels / np.maximum(lengths, TINY), [1.0, 0, 0, 0])
         return np.asarray(Rotation.from_quat(safe[:, [1, 2, 3, 0]]).as_matrix())
     if mode == "AXIS_ANGLE":
         return np.asarray(Rotation.from_rotvec(channels[:, :1] * unit_vectors(channels[:, 1:])).as_matrix())

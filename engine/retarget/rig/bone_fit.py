@@ -11,7 +11,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ...geometry.procrustes import nearest_rotations, nearest_similarity
-from ...runtime.arrays import Floats, Ints, numbered
+from ...runtime.arrays import TINY, Floats, Ints, numbered
 from .skeleton import Skeleton
 
 _ROUNDS = 12
@@ -141,7 +141,7 @@ class _System:
         self, vertices: Floats, positions: Floats, areas: Floats, weights: csr_array, joints: _Joints, *, axes: Floats
     ) -> None:
         lengths = np.linalg.norm(axes, axis=1, keepdims=True)
-        self._axes = np.where(lengths > 0, axes / np.maximum(lengths, np.finfo(float).tiny), [0.0, 0.0, 1.0])
+        self._axes = np.where(lengths > 0, axes / np.maximum(lengths, TINY), [0.0, 0.0, 1.0])
         self._positions, self._areas, count = positions, areas, weights.shape[1]
         # Around the middle of the body and in its size, so that the four columns of a bone are of one magnitude.
         self._middle = areas @ vertices
@@ -163,9 +163,9 @@ class _System:
             part = slice(dense.indptr[bone], dense.indptr[bone + 1])
             moved, weight = dense.indices[part], dense.data[part]
             share = areas[moved] * weight
-            centre = share @ local[moved] / max(share.sum(), np.finfo(float).tiny)
+            centre = share @ local[moved] / max(share.sum(), TINY)
             moments[bone] = share @ np.square(local[moved] - centre).sum(axis=1) / 3
-            sharp = np.maximum(share * weight, np.finfo(float).tiny)
+            sharp = np.maximum(share * weight, TINY)
             self._start[bone] = nearest_similarity(local[moved], positions[moved], sharp)[0]
         self._pull = np.zeros((count, 4))
         self._pull[:, :3] = _SIMILARITY * np.maximum(moments, _LEAST_MASS**2)[:, None]
@@ -218,7 +218,7 @@ class _System:
 
     def _usual(self, scales: Floats, part: float) -> Floats:
         """Draw scales (k,) of bones to that of the body."""
-        logarithms = np.log(np.maximum(scales, np.finfo(float).tiny))
+        logarithms = np.log(np.maximum(scales, TINY))
         common = self._mass @ logarithms / self._mass.sum()
         most = np.log(_MOST_SCALE)
         return np.exp(common + np.clip((1 - part) * (logarithms - common), -most, most))

@@ -13,9 +13,8 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
 from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import Floats
+from ...runtime.arrays import Floats, unit_vectors
 from .match_gate import Homes
 
 _SLIDING = 0.01
