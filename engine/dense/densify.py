@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ..mesh.reflection import reflected_mesh, reflected_points
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
@@ -236,11 +234,7 @@ def _doubts(pair: RegisteredPair) -> tuple[Floats | float, Floats | float]:
     if pair.trips is None:
         return 0.0, 0.0
     places = pair.x.surface.proxy.points, pair.y.surface.proxy.points
-    there, back = (
-        np.einsum("nc,nc->n", points.barycentric, trips[points.corners])
-        for points, trips in zip(places, pair.trips, strict=True)
-    )
-    return there, back
+    return places[0].interpolate(pair.trips[0]), places[1].interpolate(pair.trips[1])
 
 
 @dataclass(frozen=True, eq=False)

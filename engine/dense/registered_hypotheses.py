@@ -371,12 +371,8 @@ class Follower:
 
     def vertex_maps(self, registration: Registration) -> PointMaps:
         """Take the maps of a registration between all vertices."""
-        on_target, on_source = registration.on_target, registration.on_source
-        there, back = (
-            on_target.nearest_vertices(self.target.triangles),
-            on_source.nearest_vertices(self.source.triangles),
-        )
-        return PointMaps(there, back)
+        there = registration.on_target.nearest_vertices(self.target.triangles)
+        return PointMaps(there, registration.on_source.nearest_vertices(self.source.triangles))
 
 
 def _followed_steps(follow: Follower, hypothesis: MapHypothesis) -> Steps[_Judged]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.orientation import tangent_gradient
+from ..geometry.orientation import tangent_directions, tangent_gradient
 from ..hierarchical.spectral_descriptors import automatic_energies, wave_kernel_signatures
 from ..runtime.arrays import TINY, Floats, Ints
 from ..shapes.shape import Shape
@@ -95,11 +95,7 @@ class MapDomain:
 
     def directions(self, samples: Ints) -> Floats:
         """Take the unit directions at the coarse samples away from the given ones (m,), (coarse, m, 2)."""
-        operator = tangent_gradient(self.shape.mesh, self.shape.samples)
-        gradients = operator @ self.shape.sample_rows[samples].T.astype(np.float64)
-        planar = gradients.reshape(self.coarse_count, 2, len(samples)).transpose(0, 2, 1)
-        lengths = np.linalg.norm(planar, axis=2, keepdims=True)
-        return np.divide(planar, lengths, out=np.zeros_like(planar), where=lengths > 0)
+        return tangent_directions(self.shape.mesh, self.shape.samples, self.shape.sample_rows[samples])
 
     @cached_property
     def places(self) -> Floats:

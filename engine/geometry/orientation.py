@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import TINY, Floats, Ints, numbered
+from ..runtime.arrays import TINY, Floats, Ints, numbered, unit_vectors
 
 
 def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
@@ -48,6 +49,12 @@ def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
     columns = np.broadcast_to(corners[:, None, :], entries.shape)
     shape = (2 * len(vertices), mesh.vertex_count)
     return csr_array((entries.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
+
+
+def tangent_directions(mesh: TriangleMesh, vertices: Ints, values: NDArray[np.float32]) -> Floats:
+    """Directions in which functions (s, n) grow at vertices (k,), in their tangent planes, of length one: (k, s, 2)."""
+    gradients = tangent_gradient(mesh, vertices) @ values.T.astype(np.float64)
+    return unit_vectors(gradients.reshape(len(vertices), 2, -1).transpose(0, 2, 1))
 
 
 def signed_areas(directions: Floats) -> Floats:

@@ -73,6 +73,13 @@ class FoundPoints:
         """Values (n, d) of the vertices that the triangles of the surface, (m, 3), name, at the points, (k, d)."""
         return np.einsum("kc,kcd->kd", self.barycentric, values[triangles[self.triangles]])
 
+    def with_others(self, places: Ints, others: FoundPoints) -> FoundPoints:
+        """Put other points in the place of some of these, by their numbers (l,)."""
+        triangles, barycentric, squares = self.triangles.copy(), self.barycentric.copy(), self.squared_distances.copy()
+        triangles[places], barycentric[places] = others.triangles, others.barycentric
+        squares[places] = others.squared_distances
+        return FoundPoints(triangles, barycentric, squares)
+
     def nearest_vertices(self, triangles: Ints) -> Ints:
         """Tell which corner of its triangle each is nearest to, of the surface's (m, 3): vertices (k,)."""
         return triangles[self.triangles, self.barycentric.argmax(axis=1)]
@@ -228,7 +235,7 @@ class ClosestPoints:
         # Many points are looked up neighbour after neighbour, else every step in the tree has to wait for the memory,
         # and by as many threads as may be.
         many = len(points) >= _MANY
-        order = _spatial_order(points) if many else np.arange(len(points))
+        order = spatial_order(points) if many else np.arange(len(points))
         for start in range(0, len(points), _TREE_CHUNK):
             part = order[start : start + _TREE_CHUNK]
             query = points[part]
@@ -560,8 +567,10 @@ def _checked(vectors: Floats, name: str, dimensions: int) -> Floats:
     return array
 
 
-def _spatial_order(points: Floats) -> Ints:
+def spatial_order(points: Floats) -> Ints:
     """Order of points (k, d) along a Morton curve through 128^3 cells of the first three coordinates."""
+    if not len(points):
+        return np.empty(0, np.int64)
     points = points[:, :3]
     low = points.min(axis=0)
     size = max(float((points.max(axis=0) - low).max()), TINY)

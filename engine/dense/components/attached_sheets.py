@@ -13,6 +13,7 @@ from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...repair.clean_surface import CleanSurface
 from ...runtime.arrays import TINY, Floats, Ints
+from .component_pairs import radius_of
 from .similarity_field import Surroundings
 
 _SMALL = 0.02
@@ -138,7 +139,7 @@ def _paired(here: list[_Sheet], there: list[_Sheet], around: Surroundings) -> li
         if not (here[i].has_others or there[j].has_others):
             continue
         sheet, partner = carried[i], there[j].mesh
-        radii = _radius(sheet), _radius(partner)
+        radii = radius_of(sheet), radius_of(partner)
         apart = np.linalg.norm(sheet.vertices.mean(axis=0) - partner.vertices.mean(axis=0))
         if apart <= min(radii) and max(radii) <= _LARGEST_RATIO * min(radii):
             ahead = ClosestPoints(partner).nearest(sheet.vertices).squared_distances
@@ -148,8 +149,3 @@ def _paired(here: list[_Sheet], there: list[_Sheet], around: Surroundings) -> li
     rows, columns = linear_sum_assignment(costs)
     pairs = [(i, j) for i, j in zip(rows, columns, strict=True) if costs[i, j] <= _ALIKE]
     return [(here[i], there[j], carried[i].vertices) for i, j in pairs]
-
-
-def _radius(sheet: TriangleMesh) -> float:
-    """Root mean square distance of the vertices from their centre."""
-    return float(np.sqrt(np.square(sheet.vertices - sheet.vertices.mean(axis=0)).sum(axis=1).mean()))

@@ -131,6 +131,11 @@ def pair_half_edges(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> In
     return twins
 
 
+def twins_of(vertices: Floats, triangles: Ints) -> Ints:
+    """Pair the half-edges of triangles that have not been grouped yet; see `pair_half_edges`."""
+    return pair_half_edges(vertices, triangles, group_half_edges(triangles, len(vertices)))
+
+
 def _crowded(groups: EdgeGroups, most: int) -> tuple[Ints, Ints]:
     """Half-edges of the edges with more than two, but no more than `most`, and the number of the edge of each."""
     edges = np.flatnonzero((groups.counts > 2) & (groups.counts <= most))

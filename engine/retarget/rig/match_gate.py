@@ -71,8 +71,4 @@ class Homes:
             return found
         used = np.unique(search.triangles)
         starts = used[cKDTree(there[used]).query(homes[far])[1]]
-        again = search.walk(points[far], starts)
-        triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
-        distances = found.squared_distances.copy()
-        triangles[far], barycentric[far], distances[far] = again.triangles, again.barycentric, again.squared_distances
-        return FoundPoints(triangles, barycentric, distances)
+        return found.with_others(far, search.walk(points[far], starts))

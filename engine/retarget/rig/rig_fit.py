@@ -25,11 +25,11 @@ from ...shapes.known_shapes import KnownShapes
 from ...shapes.proxy import MATCHED, Proxy, proxy_steps
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .digit_fit import with_digits
+from .digit_groups import stunted_digits, with_stiff_digits
 from .fitted_rig import FittedRig
 from .match_gate import Homes
 from .posed_registration import PosedRegistration
 from .skeleton import Skeleton
-from .stunted_digits import stunted_digits, with_stiff_digits
 
 _STIFFNESS = (8e-4, 8e-4, 4e-4, 4e-4, 1.5e-4, 1.5e-4, 8e-5, 8e-5, 8e-5)
 """How stiff the body is, round after round, against distances in units of the root of the target's area."""

@@ -110,10 +110,8 @@ def surface_frames(
             f"The deformed surface needs one finite position for each of the {mesh.vertex_count} vertices, "
             f"but got an array of the shape {images.shape}."
         )
-    before, after = (
-        _sides(mesh.vertices, mesh.triangles, 1.0),
-        _sides(images, mesh.triangles, -1.0 if mirrored else 1.0),
-    )
+    before = _sides(mesh.vertices, mesh.triangles, 1.0)
+    after = _sides(images, mesh.triangles, -1.0 if mirrored else 1.0)
     # The transpose of the Jacobian times the area: large triangles count more, and needles are no division by zero.
     areas = np.maximum(mesh.triangle_areas, TINY)
     jacobians = after @ np.linalg.pinv(before)  # (m, 3, 3)

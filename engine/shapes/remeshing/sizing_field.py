@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array
 
+from ...mesh.connectivity.adjacency import pair_matrix
 from ...runtime.arrays import TINY, Floats, unit_vectors
 from .surface_cells import SurfaceCells
 
@@ -50,9 +51,8 @@ def vertex_density(cells: SurfaceCells) -> Floats:
     """
     a, b = cells.pairs.T
     count = cells.count
-    one_way = csr_array((np.ones(len(a)), (a, b)), shape=(count, count))
     areas = np.maximum(cells.areas, TINY)
-    around = csr_array((one_way + one_way.T + eye_array(count)) @ diags_array(areas))
+    around = csr_array((pair_matrix(cells.pairs, np.ones(len(a)), count) + eye_array(count)) @ diags_array(areas))
     average = csr_array(diags_array(1 / around.sum(axis=1)) @ around)
     normals = cells.normals
     for _ in range(_NORMAL_ROUNDS):
