@@ -345,8 +345,7 @@ class _Fitter:
         source = DeformableSurface(piece.mesh, piece.laplace)
         candidate = yield from Follower(piece, self.part, source, self._surface).steps(proposal.hypothesis)
         lying = candidate.registration.on_source
-        corners = piece.mesh.vertices[piece.mesh.triangles[lying.triangles]]
-        places = np.einsum("kc,kcd->kd", lying.barycentric, corners)
+        places = lying.interpolate(piece.mesh.triangles, piece.mesh.vertices)
         there, back = (
             SurfacePoints.from_barycentric(surface.mesh, found.triangles, found.barycentric)
             for surface, found in ((source, lying), (self._surface, candidate.registration.on_target))

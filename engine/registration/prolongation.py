@@ -196,8 +196,7 @@ class _Lift:
             positions, starts, normals, normal_weight=_NORMAL_REACH**2 * self.target.area, normal_gate=_NORMAL_GATE
         )
         # Not the normal of the triangle: which of two a point is in, on their edge, is for rounding to decide.
-        corners = self.target.vertex_normals[self.target.triangles[found.triangles]]
-        there = np.einsum("qc,qcd->qd", found.barycentric, corners)
+        there = found.interpolate(self.target.triangles, self.target.vertex_normals)
         agreement = np.einsum("qd,qd->q", normals, there)
         return found.triangles, found.barycentric, agreement
 
@@ -217,10 +216,8 @@ class _Lift:
         places = self.proxy.points
         shares = ((trust + _LEAST_TRUST) * self.source.vertex_areas[samples])[:, None] * places.barycentric[samples]
         corners = places.corners[samples].ravel()
-        sums = np.stack(
-            [np.bincount(corners, (shares * column[:, None]).ravel(), k) for column in (*steps.T, np.ones(len(steps)))],
-            axis=1,
-        )
+        counted = np.append(steps, np.ones((len(steps), 1)), axis=1)
+        sums = group_sums(corners, (shares[:, :, None] * counted[:, None]).reshape(-1, 4), k)
         for _ in range(_CORRECTION_ROUNDS):
             sums = average @ sums
         return sums[:, :3] / np.maximum(sums[:, 3:], TINY)

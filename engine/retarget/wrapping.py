@@ -190,8 +190,7 @@ def _smoothed(mesh: TriangleMesh, positions: Floats, folded: Bools) -> tuple[Flo
         for _ in range(rings):
             free |= graph @ free > 0
         # A piece that is free as a whole has nothing to be spanned between.
-        fixed = np.zeros(mesh.component_labels.max() + 1, bool)
-        fixed[mesh.component_labels[~free]] = True
+        fixed = marked(mesh.component_labels[~free], mesh.component_labels.max() + 1)
         free &= fixed[mesh.component_labels]
         if not free.any():
             continue
@@ -247,8 +246,7 @@ def _start(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, wa
     distances, _ = surroundings.nearest(source.vertices[free])
     # A loose part moves as one: all of it follows the surroundings of its farthest vertex.
     labels = source.component_labels
-    with_hold = np.zeros(labels.max() + 1, bool)
-    with_hold[labels[held]] = True
+    with_hold = marked(labels[held], labels.max() + 1)
     reach = np.zeros(labels.max() + 1)
     np.maximum.at(reach, labels[free], distances)
     loose = ~with_hold[labels[free]]

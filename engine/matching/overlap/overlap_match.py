@@ -18,7 +18,7 @@ from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.prolongation import lift_steps
-from ...runtime.arrays import TINY, Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, marked
 from ...runtime.progress import Progress, Steps, within
 from ...shapes.shape import Shape
 from ..result import MatchResult
@@ -289,8 +289,7 @@ def _spread(shape: Shape, members: Ints, count: int) -> Ints:
     centre = shape.mesh.vertices[members].mean(axis=0)
     first = members[int(np.square(shape.mesh.vertices[members] - centre).sum(axis=1).argmax())]
     sampler = FarthestPointSampler(graph, int(first))
-    inside = np.zeros(shape.mesh.vertex_count, bool)
-    inside[members] = True
+    inside = marked(members, shape.mesh.vertex_count)
     sampler.distances[~inside] = -1.0
     sampler.extend(max(min(count, len(members)), min(_LEAST_POINTS, len(members))))
     return np.array(sampler.samples)

@@ -15,7 +15,7 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats
+from ...runtime.arrays import TINY, Bools, Floats, marked
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
@@ -141,8 +141,7 @@ class _Filling:
             return
         stiffness = laplace_beltrami(mesh).stiffness
         labels = connected_components(stiffness, directed=False)[1]
-        reachable = np.zeros(labels.max() + 1, bool)
-        reachable[labels[known]] = True
+        reachable = marked(labels[known], labels.max() + 1)
         self._known = np.flatnonzero(known)
         self._unknown = np.flatnonzero(~known & reachable[labels])
         rows = stiffness[self._unknown]
