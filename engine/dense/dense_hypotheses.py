@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.arrays import Ints
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run, within
@@ -136,16 +135,6 @@ class MapHypothesis(MapLead):
     def images_steps(self) -> Steps[PointMaps]:
         """Extend the map to all vertices in short steps; the result is kept."""
         return self.extension.steps(self.domains, self.points)
-
-    @property
-    def images_on_y(self) -> Ints:
-        """For each vertex of X, the vertex of Y it is taken to, (n,)."""
-        return self.images.on_y
-
-    @property
-    def images_on_x(self) -> Ints:
-        """For each vertex of Y, the vertex of X it is taken to, (n',)."""
-        return self.images.on_x
 
     @property
     def isometric_defect(self) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from ..mesh.closest_points import FoundPoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
-from ..registration.registration import Registration, points_at
+from ..registration.registration import Registration
 from ..runtime.arrays import Floats
 from ..runtime.errors import MatchError
 from ..runtime.progress import Preview, Progress, Steps, within
@@ -180,7 +180,7 @@ def _preview(hypothesis: MapHypothesis, registration: Registration | None = None
     if registration is None:
         images = there.vertices[y.vertices[hypothesis.points.on_y]]
     else:
-        images = points_at(registration.on_target, there.triangles, there.vertices)[x.vertices]
+        images = registration.on_target.interpolate(there.triangles, there.vertices)[x.vertices]
     return Preview(x.shape.surface.as_given(x.shape.mesh.vertices[x.vertices]), images)
 
 

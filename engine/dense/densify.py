@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ..mesh.reflection import reflected_mesh, reflected_points
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
@@ -19,7 +17,7 @@ from ..registration.registration import POLISH, Registration, Stage
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
-from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.progress import Progress, Steps, at_once, within
 from ..runtime.worker import call_helpers
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.genus_reduction import evened_steps
@@ -69,22 +67,6 @@ class DenseMatch:
         return f"<DenseMatch: {sizes}, confidence {self.quality.confidence:.2f}>"
 
 
-def densify(
-    source: TriangleMesh | Shape,
-    target: TriangleMesh | Shape,
-    source_points: SurfacePoints,
-    target_points: SurfacePoints,
-    *,
-    maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
-    margin: float | None = None,
-    alternatives: int = 0,
-) -> DenseMatch:
-    """Extend a sparse correspondence to all vertices; see `densify_steps`."""
-    return run(
-        densify_steps(source, target, source_points, target_points, maps=maps, margin=margin, alternatives=alternatives)
-    )
-
-
 @can_go_beside
 def densify_steps(
     source: TriangleMesh | Shape,
@@ -96,7 +78,7 @@ def densify_steps(
     margin: float | None = None,
     alternatives: int = 0,
 ) -> Steps[DenseMatch]:
-    """Extend a sparse correspondence to all vertices, in steps.
+    """Extend a sparse correspondence to all vertices.
 
     If it mirrors one surface onto another, other maps that do are tried as well, and the most credible is taken; any
     other correspondence is extended as it is.
@@ -149,6 +131,9 @@ def densify_steps(
     if mirrored:
         dense = replace(dense, target_to_source=_seen_directly(dense.target_to_source, x.original))
     return with_pieces_only(dense, (x.original, y.original), covered)
+
+
+densify = at_once(densify_steps)
 
 
 def _piece_of(surface: TriangleMesh | Shape, found: SurfaceMap | None, points: SurfacePoints) -> Bools | None:
@@ -249,11 +234,7 @@ def _doubts(pair: RegisteredPair) -> tuple[Floats | float, Floats | float]:
     if pair.trips is None:
         return 0.0, 0.0
     places = pair.x.surface.proxy.points, pair.y.surface.proxy.points
-    there, back = (
-        np.einsum("nc,nc->n", points.barycentric, trips[points.corners])
-        for points, trips in zip(places, pair.trips, strict=True)
-    )
-    return there, back
+    return places[0].interpolate(pair.trips[0]), places[1].interpolate(pair.trips[1])
 
 
 @dataclass(frozen=True, eq=False)

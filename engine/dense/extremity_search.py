@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.errors import MatchError
 
 
@@ -68,7 +68,7 @@ def beam_matchings(
     for new in range(1, m):
         known = distances_x[new, :new, None]  # (new, 1)
         offered = distances_y[images]  # (r, new, n)
-        stretch = 2 * np.abs(known - offered) / np.maximum(known + offered, np.finfo(float).tiny)
+        stretch = 2 * np.abs(known - offered) / np.maximum(known + offered, TINY)
         extended = costs[:, None] + 2 * stretch.mean(axis=1) + weight * dissimilarity[new]
         np.put_along_axis(extended, images, np.inf, axis=1)
         best = np.argsort(extended, axis=None, kind="stable")[: min(width, len(images) * (n - new))]

@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.parallel_map import beside_steps, shared_steps
 from ..runtime.progress import Progress, Steps, in_turn, within
 from ..shapes.extremities import spread_extremities
@@ -315,4 +315,4 @@ def _dissimilarity(x: MapDomain, y: MapDomain, of_x: Ints, of_y: Ints) -> Floats
     """Compare the descriptors of samples given by number, (m,) and (n,): (m, n), in units of the median."""
     difference = x.extremity_descriptors(of_x)[:, None] - y.extremity_descriptors(of_y)
     root = np.sqrt(np.square(difference).mean(axis=2))
-    return root / max(float(np.median(root)), np.finfo(float).tiny)
+    return root / max(float(np.median(root)), TINY)

@@ -53,8 +53,8 @@ def landmark_distance(x: Shape, y: Shape, landmarks: Landmarks, hypothesis: MapH
     The samples of the shapes begin with the landmarks.
     """
     numbers = np.arange(len(landmarks))
-    there = y.sample_rows[numbers, hypothesis.images_on_y[landmarks.source.matched]]
-    back = x.sample_rows[numbers, hypothesis.images_on_x[landmarks.target.matched]]
+    there = y.sample_rows[numbers, hypothesis.images.on_y[landmarks.source.matched]]
+    back = x.sample_rows[numbers, hypothesis.images.on_x[landmarks.target.matched]]
     return float((there + back).mean() / 2)
 
 

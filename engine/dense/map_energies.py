@@ -148,29 +148,22 @@ def rigidity_term(x: MapDomain, y: MapDomain, points: PointMaps, size: int) -> f
 
 def _rigid_defects(weights: Floats, places: Floats, normals: Floats, images: Floats, image_normals: Floats) -> Floats:
     """Compare weighted patches (c, p) of points with normals (p, 3) and of their images: 0 for similar ones; (c,)."""
-    means, image_means = weights @ places, weights @ images
-    kept = _correlation(weights, places, images, means, image_means)
+    kept = _correlation(weights, places, images, (weights @ places, weights @ images))
     kept += _correlation(weights, normals, image_normals)
     values = np.linalg.svd(kept, compute_uv=False)
     values[:, 2] *= np.sign(np.linalg.det(kept))
     return (1 - values.sum(axis=1) / 2).clip(0, 1)
 
 
-def _correlation(
-    weights: Floats,
-    first: Floats,
-    second: Floats,
-    first_means: Floats | None = None,
-    second_means: Floats | None = None,
-) -> Floats:
+def _correlation(weights: Floats, first: Floats, second: Floats, means: tuple[Floats, ...] = ()) -> Floats:
     """Correlate vectors (p, 3) in weighted patches (c, p), from means (c, 3) or from zero: (c, 3, 3)."""
     products = np.einsum("pi,pj->pij", first, second).reshape(-1, 9)
     squares = np.stack([np.square(first).sum(axis=1), np.square(second).sum(axis=1)], axis=1)
     moments = weights @ np.concatenate([products, squares], axis=1)
     covariance, spreads = moments[:, :9].reshape(-1, 3, 3), moments[:, 9:]
-    if first_means is not None and second_means is not None:
-        covariance = covariance - first_means[:, :, None] * second_means[:, None, :]
-        spreads = spreads - np.stack([np.square(m).sum(axis=1) for m in (first_means, second_means)], axis=1)
+    if means:
+        covariance = covariance - means[0][:, :, None] * means[1][:, None, :]
+        spreads = spreads - np.stack([np.square(each).sum(axis=1) for each in means], axis=1)
     size = np.sqrt(spreads.clip(0).prod(axis=1))[:, None, None]
     return np.divide(covariance, size, out=np.zeros_like(covariance), where=size > _POINT)
 

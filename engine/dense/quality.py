@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..mesh.connectivity.adjacency import neighbour_means
+from ..mesh.connectivity.adjacency import edge_means, neighbour_means
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
@@ -125,7 +125,7 @@ def _confidence(
     source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, known: Bools, trips: Floats
 ) -> Floats:
     """Judge images, (n,), by where vertices are known to have a partner, (n,), and how far they may err, (n,)."""
-    stretch = _vertex_means(source, np.abs(_log_stretch(source, target, there)))
+    stretch = edge_means(source, np.abs(_log_stretch(source, target, there)))
     confidence = trip_confidence(trips) / (1 + np.square(stretch / _TRUSTED_STRETCH))
     return np.clip(neighbour_means(source, confidence), 0, 1) * known
 
@@ -266,9 +266,3 @@ def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoint
     # Edges shorter than a thousandth of the mean say nothing about stretch.
     least = 1e-3 * float(own.mean())
     return np.log(np.maximum(mapped, least) / np.maximum(own, least))
-
-
-def _vertex_means(mesh: TriangleMesh, values: Floats) -> Floats:
-    """Mean of values per edge (e,) over the edges at each vertex, (n,)."""
-    ends, n = mesh.edges.ravel(), mesh.vertex_count
-    return np.bincount(ends, np.repeat(values, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)

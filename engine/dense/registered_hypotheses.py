@@ -25,7 +25,6 @@ from ..registration.registration import (
     SOFT,
     Registration,
     Stage,
-    points_at,
     register_steps,
     restarted_steps,
     smooth_start,
@@ -309,8 +308,8 @@ class Follower:
         ways = (self.source, self.target, fit.registration), (self.target, self.source, fit.reverse)
         trips = []
         for (start, end, there), (_, _, back) in zip(ways, ways[::-1], strict=True):
-            images = points_at(back.on_target, start.triangles, start.vertices)
-            returned = points_at(there.on_target, end.triangles, images)
+            images = back.on_target.interpolate(start.triangles, start.vertices)
+            returned = there.on_target.interpolate(end.triangles, images)
             trips.append(np.linalg.norm(returned - start.vertices, axis=1))
         return trips[0], trips[1]
 
@@ -372,12 +371,8 @@ class Follower:
 
     def vertex_maps(self, registration: Registration) -> PointMaps:
         """Take the maps of a registration between all vertices."""
-        on_target, on_source = registration.on_target, registration.on_source
-        there, back = (
-            on_target.nearest_vertices(self.target.triangles),
-            on_source.nearest_vertices(self.source.triangles),
-        )
-        return PointMaps(there, back)
+        there = registration.on_target.nearest_vertices(self.target.triangles)
+        return PointMaps(there, registration.on_source.nearest_vertices(self.source.triangles))
 
 
 def _followed_steps(follow: Follower, hypothesis: MapHypothesis) -> Steps[_Judged]:

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.orientation import tangent_gradient
+from ..geometry.orientation import tangent_directions, tangent_gradient
 from ..hierarchical.spectral_descriptors import automatic_energies, wave_kernel_signatures
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..shapes.shape import Shape
 from .functional_maps import PointMaps, SampledBasis
 
@@ -95,11 +95,7 @@ class MapDomain:
 
     def directions(self, samples: Ints) -> Floats:
         """Take the unit directions at the coarse samples away from the given ones (m,), (coarse, m, 2)."""
-        operator = tangent_gradient(self.shape.mesh, self.shape.samples)
-        gradients = operator @ self.shape.sample_rows[samples].T.astype(np.float64)
-        planar = gradients.reshape(self.coarse_count, 2, len(samples)).transpose(0, 2, 1)
-        lengths = np.linalg.norm(planar, axis=2, keepdims=True)
-        return np.divide(planar, lengths, out=np.zeros_like(planar), where=lengths > 0)
+        return tangent_directions(self.shape.mesh, self.shape.samples, self.shape.sample_rows[samples])
 
     @cached_property
     def places(self) -> Floats:
@@ -146,7 +142,7 @@ class MapDomain:
         integrated = np.einsum("nd,nd->n", gradient, mesh.vertex_normals)
         coefficients = np.exp(-_HEAT_TIME * self.values) * (self.functions.T @ integrated)
         size = np.linalg.norm(coefficients)
-        return self.functions[self.vertices] @ coefficients / max(size, np.finfo(float).tiny)
+        return self.functions[self.vertices] @ coefficients / max(size, TINY)
 
     @cached_property
     def signatures(self) -> Floats:
@@ -164,7 +160,7 @@ class MapDomain:
         spectrum = self.shape.spectrum
         spectrum = replace(spectrum, values=spectrum.values[:pairs], functions=spectrum.functions[vertices, :pairs])
         logarithms = np.log(wave_kernel_signatures(spectrum, automatic_energies(pairs, count)) + _LEAST_SIGNATURE)
-        return logarithms / np.maximum(logarithms.std(axis=0), np.finfo(float).tiny)
+        return logarithms / np.maximum(logarithms.std(axis=0), TINY)
 
 
 def _filled_up(points: Floats, samples: Ints, count: int) -> Ints:

@@ -110,19 +110,8 @@ def corner_tables(mesh: TriangleMesh) -> CornerTables:
     kept = corners.at(np.flatnonzero(~(obtuse & sees)))
     parts = _Corners._make(np.concatenate(arrays) for arrays in zip(kept, left, right, strict=True))
     c, a, b, length, x, y = parts.at(np.argsort(parts.c, kind="stable"))
-    return CornerTables(
-        unit=unit,
-        c=c,
-        a=a,
-        b=b,
-        slope=y / length,
-        height=y * length,
-        along=x / length,
-        bend=x**2 + y**2 - x * length,
-        length_a=np.hypot(x, y),
-        length_b=np.hypot(x - length, y),
-        graph=graph,
-    )
+    slope, height, along, bend = y / length, y * length, x / length, x**2 + y**2 - x * length
+    return CornerTables(unit, c, a, b, slope, height, along, bend, np.hypot(x, y), np.hypot(x - length, y), graph)
 
 
 def _corners(mesh: TriangleMesh, unit: float) -> _Corners:

@@ -11,7 +11,7 @@ import numpy as np
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats
 from ..runtime.errors import SettingsError
-from ..runtime.progress import Steps, run
+from ..runtime.progress import Steps, at_once
 from .block_krylov import lowest_eigenpairs_steps
 from .laplacian import LaplaceBeltrami, laplace_beltrami
 
@@ -63,13 +63,8 @@ class Spectrum:
         return len(self.values)
 
 
-def eigenpairs(surface: TriangleMesh | LaplaceBeltrami, count: int) -> Spectrum:
-    """Compute the lowest eigenpairs of a surface; see `eigenpairs_steps`."""
-    return run(eigenpairs_steps(surface, count))
-
-
 def eigenpairs_steps(surface: TriangleMesh | LaplaceBeltrami, count: int) -> Steps[Spectrum]:
-    """Compute the lowest eigenpairs of a surface, in steps.
+    """Compute the lowest eigenpairs of a surface.
 
     Parameters
     ----------
@@ -77,11 +72,6 @@ def eigenpairs_steps(surface: TriangleMesh | LaplaceBeltrami, count: int) -> Ste
         The surface, or its operator: it hangs together, and every vertex has a triangle.
     count : int
         How many pairs, the constant function included; at most as many as there are vertices.
-
-    Yields
-    ------
-    Progress
-        About every 0.1 s for tens of thousands of vertices.
 
     Returns
     -------
@@ -110,6 +100,9 @@ def eigenpairs_steps(surface: TriangleMesh | LaplaceBeltrami, count: int) -> Ste
     functions = pairs.vectors  # no copy, as it may be large
     functions /= roots[:, None]
     return Spectrum(pairs.values, _signed(functions, operator.mass), operator.mass, pairs.complete)
+
+
+eigenpairs = at_once(eigenpairs_steps)
 
 
 def _signed(functions: Floats, mass: Floats) -> Floats:

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 
 
 def vicinity(mesh: TriangleMesh, vertex: int, radius: float) -> tuple[Ints, Floats]:
@@ -36,7 +36,7 @@ def vicinity(mesh: TriangleMesh, vertex: int, radius: float) -> tuple[Ints, Floa
     members = np.flatnonzero(inside)
     edges = np.flatnonzero(inside[mesh.edges].all(axis=1))
     # A length of zero would be no edge.
-    lengths = np.maximum(mesh.edge_lengths[edges], np.finfo(float).tiny)
+    lengths = np.maximum(mesh.edge_lengths[edges], TINY)
     ends = np.searchsorted(members, mesh.edges[edges])
     graph = csr_array(coo_array((lengths, ends.T), shape=(len(members), len(members))))
     distances = dijkstra(graph, directed=False, indices=int(np.searchsorted(members, vertex)), limit=radius)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import dijkstra
 
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, ranges
 from ..runtime.errors import MeshError
 from .corner_tables import corner_tables
 
@@ -342,9 +342,9 @@ def checked_sources(sources: ArrayLike, count: int) -> Ints:
 
 def _spans(starts: Ints, index: Ints) -> tuple[Ints, Ints, Ints]:
     """List starts[i] to starts[i + 1] - 1 for each i of `index`; also where in the list each begins, and its length."""
-    counts = starts.take(index + 1) - starts.take(index)
-    first = np.cumsum(counts) - counts
-    return np.arange(counts.sum()) + np.repeat(starts.take(index) - first, counts), first, counts
+    first = starts.take(index)
+    counts = starts.take(index + 1) - first
+    return ranges(first, counts), np.cumsum(counts) - counts, counts
 
 
 def _unfolded(squares: Floats, geometry: Floats) -> Floats:

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 from ..mesh.connectivity.adjacency import neighbour_means
 from ..mesh.connectivity.boundary_loops import boundary_loops
 from ..mesh.connectivity.edge_chains import way_to_root
-from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from ..mesh.connectivity.halfedges import twins_of
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Ints
 from ..runtime.progress import Progress, Steps
@@ -85,8 +85,7 @@ class _Ends:
     """The loops in which a surface ends."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
-        groups = group_half_edges(mesh.triangles, mesh.vertex_count)
-        twins = pair_half_edges(mesh.vertices, mesh.triangles, groups)
+        twins = twins_of(mesh.vertices, mesh.triangles)
         loops = boundary_loops(mesh.vertices, mesh.triangles, np.flatnonzero(twins < 0))
         self.twins, self.half_edges, self.labels, self.count = twins, loops.half_edges, loops.labels, loops.count
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import group_half_edges
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints, numbered
+from ..runtime.arrays import TINY, Bools, Floats, Ints, numbered
 
 _SLACK = 1e-6
 """By how much two sides of a triangle are at least longer than the third, in mean edge lengths."""
@@ -90,7 +90,7 @@ def corner_cotangents(lengths: Floats) -> tuple[Floats, Floats]:
     areas = np.sqrt(np.maximum(half * (half - a) * (half - b) * (half - c), 0))
     squares = lengths**2
     opposite = squares.sum(axis=1, keepdims=True) - 2 * squares
-    return opposite / (4 * np.maximum(areas, np.finfo(float).tiny))[:, None], areas
+    return opposite / (4 * np.maximum(areas, TINY))[:, None], areas
 
 
 def intrinsic_delaunay(mesh: TriangleMesh) -> IntrinsicTriangulation:

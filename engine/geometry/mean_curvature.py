@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats
+from ..runtime.arrays import TINY, Floats
 
 
 def smoothed_mean_curvature(mesh: TriangleMesh, distances: Floats, radius: float) -> Floats:
@@ -41,9 +41,9 @@ def smoothed_mean_curvature(mesh: TriangleMesh, distances: Floats, radius: float
     def mean_over_patch(size: float) -> Floats:
         """Average positions and normals over a Gaussian patch of that size."""
         weight = np.exp(-np.square(distances / size) / 2) * mesh.vertex_areas
-        return (weight @ values) / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+        return (weight @ values) / np.maximum(weight.sum(axis=1, keepdims=True), TINY)
 
     small, large = mean_over_patch(radius), mean_over_patch(2 * radius)
     normal = small[:, 3:]
-    length = np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
+    length = np.maximum(np.linalg.norm(normal, axis=1), TINY)
     return np.einsum("sd,sd->s", small[:, :3] - large[:, :3], normal) / (length * radius)

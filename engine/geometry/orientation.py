@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints, numbered
+from ..runtime.arrays import TINY, Floats, Ints, numbered, unit_vectors
 
 
 def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
@@ -38,16 +39,22 @@ def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
     opposite = np.stack([c - b, a - c, b - a], axis=1)  # (t, 3 corners, 3)
     rotated = np.cross(mesh.triangle_normals[triangle][:, None, :], opposite)
     weight = np.bincount(owner, mesh.triangle_areas[triangle], len(vertices))
-    rotated /= np.maximum(2 * weight[owner], np.finfo(float).tiny)[:, None, None]
+    rotated /= np.maximum(2 * weight[owner], TINY)[:, None, None]
     normal = mesh.vertex_normals[vertices]
     e1 = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
-    e1 /= np.maximum(np.linalg.norm(e1, axis=1, keepdims=True), np.finfo(float).tiny)
+    e1 /= np.maximum(np.linalg.norm(e1, axis=1, keepdims=True), TINY)
     frame = np.stack([e1, np.cross(normal, e1)], axis=1)  # (k, 2, 3)
     entries = np.einsum("tcd,tfd->tfc", rotated, frame[owner])  # (t, 2, 3 corners)
     rows = np.broadcast_to((2 * owner[:, None] + np.arange(2))[:, :, None], entries.shape)
     columns = np.broadcast_to(corners[:, None, :], entries.shape)
     shape = (2 * len(vertices), mesh.vertex_count)
     return csr_array((entries.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
+
+
+def tangent_directions(mesh: TriangleMesh, vertices: Ints, values: NDArray[np.float32]) -> Floats:
+    """Directions in which functions (s, n) grow at vertices (k,), in their tangent planes, of length one: (k, s, 2)."""
+    gradients = tangent_gradient(mesh, vertices) @ values.T.astype(np.float64)
+    return unit_vectors(gradients.reshape(len(vertices), 2, -1).transpose(0, 2, 1))
 
 
 def signed_areas(directions: Floats) -> Floats:

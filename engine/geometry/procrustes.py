@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..runtime.arrays import Bools, Floats
+from ..runtime.arrays import TINY, Bools, Floats
 
 _TURNS = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], np.float64)
 """No turn and the half turns around the axes: after one of them any rotation is less than 121 degrees from none."""
@@ -28,8 +28,6 @@ _FEW = 100
 
 _BLOCK = 4096
 """Matrices at once: what is computed from them stays in the cache."""
-
-_TINY = np.finfo(float).tiny
 
 
 def nearest_similarity(
@@ -121,8 +119,8 @@ def _by_quaternions(matrices: Floats) -> tuple[Floats, Bools]:
     """Nearest rotations to matrices (n, 3, 3), and which of them can be believed, (n,)."""
     entries = np.ascontiguousarray(matrices.reshape(-1, 9).T)
     # First by the largest, as squares of very small numbers vanish.
-    entries /= np.maximum(np.abs(entries).max(axis=0), _TINY)
-    entries /= np.maximum(np.sqrt(np.einsum("en,en->n", entries, entries)), _TINY)
+    entries /= np.maximum(np.abs(entries).max(axis=0), TINY)
+    entries /= np.maximum(np.sqrt(np.einsum("en,en->n", entries, entries)), TINY)
     xx, xy, xz, yx, yy, yz, zx, zy, zz = entries
     # The rows of the symmetric matrix are (a, b, c, d), (b, e, f, g), (c, f, h, i), (d, g, i, j).
     b, c, d = zy - yz, xz - zx, yx - xy
@@ -135,7 +133,7 @@ def _by_quaternions(matrices: Floats) -> tuple[Floats, Bools]:
     quaternions = np.stack(
         [e * hj - f * fj + g * fi, f * cj - b * hj - g * ci, b * fj - e * cj + g * cg, e * ci - b * fi - f * cg]
     )
-    quaternions /= np.maximum(np.sqrt(np.einsum("qn,qn->n", quaternions, quaternions)), _TINY)
+    quaternions /= np.maximum(np.sqrt(np.einsum("qn,qn->n", quaternions, quaternions)), TINY)
     sure = (gaps > _SEPARATE) & (np.square(quaternions[0]) > _REAL)
     return _rotations(quaternions), sure
 

@@ -9,8 +9,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Ints
-from ..runtime.errors import MeshError
-from .geodesics import GeodesicSolver
+from .geodesics import GeodesicSolver, checked_sources
 
 NO_REGION = -1
 """The region of a vertex that no point has a path to."""
@@ -39,9 +38,7 @@ def nearest_regions(mesh: TriangleMesh, vertices: ArrayLike) -> Ints:
     MeshError
         If there is no such vertex.
     """
-    places = np.asarray(vertices, np.int64).ravel()
-    if len(places) and not (places.min() >= 0 and places.max() < mesh.vertex_count):
-        raise MeshError(f"The points should be vertices from 0 to {mesh.vertex_count - 1}.")
+    places = checked_sources(vertices, mesh.vertex_count)
     regions = np.full(mesh.vertex_count, NO_REGION)
     if not len(places):
         return regions

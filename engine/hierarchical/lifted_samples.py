@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement, signed_areas
-from ..geometry.squared_differences import squared_differences
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, squared_differences
 from ..shapes.shape import Shape
 from .descriptors import weighted_correlation
 

@@ -8,8 +8,7 @@ import copy
 import numpy as np
 
 from ..geometry.orientation import orientation_agreement, signed_areas
-from ..geometry.squared_differences import squared_differences
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import TINY, Bools, Floats, Ints, squared_differences
 from ..shapes.shape import Shape
 from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 from .descriptors import bin_difference, distance_histograms, earth_movers_distance
@@ -175,5 +174,5 @@ def _scaled(difference: Floats) -> Floats:
 
 def _signature_difference(first: Floats, second: Floats) -> Floats:
     """Compare kernel signatures (s, d) and (t, d) by their logarithms, because they span decades: (s, t)."""
-    smallest = np.finfo(float).tiny
+    smallest = TINY
     return bin_difference(*(np.log(np.maximum(signature, smallest)) for signature in (first, second)))

@@ -16,7 +16,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.progress import Progress, Steps, in_turn, within
 from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
 from .hierarchy import Refined, level_sizes, refine_steps
@@ -256,7 +256,7 @@ def assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
     # The sides must agree as the matching itself says, whichever it says.
     misfits = sample_misfits(source, target, assignment, 1 if pair.orientation(assignment) >= 0 else -1)
     lifted = misfits.all.argmin(axis=1)
-    residual = max(float(misfits.distances[np.arange(len(lifted)), lifted].mean()), float(np.finfo(float).tiny))
+    residual = max(float(misfits.distances[np.arange(len(lifted)), lifted].mean()), TINY)
     orientation = mean_orientation(source, target, assignment, lifted)
     score = float(np.log(residual) - CURVATURE_WEIGHT * curvature_agreement(source, target, lifted))
     cost = pair.problem(len(assignment)).cost(assignment)

@@ -15,7 +15,7 @@ from ..runtime.arrays import Bools
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
-from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.progress import Progress, Steps, at_once, within
 from ..runtime.worker import call_helpers
 from ..shapes.known_shapes import KnownShapes
 from ..shapes.prepared_surface import PreparedSurface, prepared_steps
@@ -63,7 +63,8 @@ _SMALL = 8000
 """Vertices up to which a mesh is prepared sooner than it is sent."""
 
 
-def match(
+@can_go_beside
+def match_steps(
     source: TriangleMesh | Shape,
     target: TriangleMesh | Shape,
     settings: MatchSettings | None = None,
@@ -71,7 +72,7 @@ def match(
     landmarks: ArrayLike | None = None,
     excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
     known: KnownShapes | None = None,
-) -> MatchResult:
+) -> Steps[MatchResult]:
     """Find corresponding points on two surfaces that differ by a non-rigid deformation.
 
     The first points are matched exactly by branch and bound; then points are added level by level, and all points are
@@ -105,38 +106,9 @@ def match(
         If a surface has too few vertices for the points that were asked for, landmarks cannot be used, or vertices are
         excluded from a `Shape`, which was made with or without them.
 
-    See Also
-    --------
-    match_steps : the same in short steps, with progress.
-
     References
     ----------
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
-    """
-    return run(match_steps(source, target, settings, landmarks=landmarks, excluded=excluded, known=known))
-
-
-@can_go_beside
-def match_steps(
-    source: TriangleMesh | Shape,
-    target: TriangleMesh | Shape,
-    settings: MatchSettings | None = None,
-    *,
-    landmarks: ArrayLike | None = None,
-    excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
-    known: KnownShapes | None = None,
-) -> Steps[MatchResult]:
-    """Match two surfaces in short steps; see `match`.
-
-    Yields
-    ------
-    Progress
-        About every tenth of a second for meshes of some thousand vertices.
-
-    Returns
-    -------
-    MatchResult
-        When the generator ends.  Closing it earlier cancels the match; nothing has to be cleaned up.
     """
     settings = settings or MatchSettings()
     task = MatchTask(settings, landmarks)
@@ -153,6 +125,9 @@ def match_steps(
         known.trim()
     yield Progress(1.0, "Done")
     return task.clock.noted(result)
+
+
+match = at_once(match_steps)
 
 
 def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float) -> Steps[MatchResult]:

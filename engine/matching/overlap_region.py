@@ -20,7 +20,7 @@ from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.deformable import DeformableSurface
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import TINY, Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
@@ -310,7 +310,7 @@ class _Fitter:
     def common_part(self, first: Bools, second: Bools) -> float:
         """Area that two pieces of the whole, (n,) each, have in common, as a part of that of both together."""
         areas = self.whole.mesh.vertex_areas
-        return float(areas @ (first & second)) / max(float(areas @ (first | second)), float(np.finfo(float).tiny))
+        return float(areas @ (first & second)) / max(float(areas @ (first | second)), TINY)
 
     def proposal_steps(self, covered: Bools, images: Ints, *, known: bool = False) -> Steps[_Proposal | None]:
         """Cut a piece out of the whole and compare it with the part; None if it is too small for that.
@@ -345,8 +345,7 @@ class _Fitter:
         source = DeformableSurface(piece.mesh, piece.laplace)
         candidate = yield from Follower(piece, self.part, source, self._surface).steps(proposal.hypothesis)
         lying = candidate.registration.on_source
-        corners = piece.mesh.vertices[piece.mesh.triangles[lying.triangles]]
-        places = np.einsum("kc,kcd->kd", lying.barycentric, corners)
+        places = lying.interpolate(piece.mesh.triangles, piece.mesh.vertices)
         there, back = (
             SurfacePoints.from_barycentric(surface.mesh, found.triangles, found.barycentric)
             for surface, found in ((source, lying), (self._surface, candidate.registration.on_target))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ..dense.components.masked_maps import share_of, with_piece_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, RISE, is_less_alike
 from ..mesh.connectivity.components import joined_components
-from ..runtime.arrays import Bools
+from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
 from ..shapes.enclosing_surface import with_limbs_steps
@@ -194,8 +194,7 @@ def _cut_steps(shape: Shape, covered: Bools, name: str) -> Steps[Shape]:
     mesh, kept = shape.original, shape.surface.kept_triangles
     excluded = ~covered
     if len(kept) < mesh.triangle_count:
-        used = np.zeros(mesh.vertex_count, bool)
-        used[mesh.triangles[kept]] = True
+        used = marked(mesh.triangles[kept], mesh.vertex_count)
         excluded |= ~used
     cut = yield from within(Shape.steps(mesh, name, excluded=excluded), 0.0, 0.7)
     if shape.surface.cleaned.stand_in is None:

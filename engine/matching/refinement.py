@@ -19,7 +19,7 @@ from ..registration.registration import FINE, Stage, register_steps, restarted_s
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.progress import Steps, run, within
+from ..runtime.progress import Steps, at_once, run, within
 from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
 from ..shapes.landmarks import locate_landmarks
 from ..shapes.shape import Shape
@@ -38,20 +38,6 @@ _ANCHORS = 96
 """Points at most that the distances to others are measured from."""
 
 
-def refine_map(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    source_to_target: SurfaceMap,
-    landmarks: ArrayLike,
-    excluded: tuple[Bools | None, Bools | None] = (None, None),
-    *,
-    target_to_source: SurfaceMap | None = None,
-) -> DenseMatch:
-    """Make a dense map better around landmarks; see `refine_map_steps`."""
-    steps = refine_map_steps(source, target, source_to_target, landmarks, excluded, target_to_source=target_to_source)
-    return run(steps)
-
-
 @can_go_beside
 def refine_map_steps(
     source: TriangleMesh,
@@ -62,7 +48,7 @@ def refine_map_steps(
     *,
     target_to_source: SurfaceMap | None = None,
 ) -> Steps[DenseMatch]:
-    """Make a dense map better around landmarks, in steps.
+    """Make a dense map better around landmarks.
 
     The source is laid smoothly onto the target where the map takes it, and registered from there, held at the
     landmarks; then the target onto the source.  So
@@ -122,6 +108,9 @@ def refine_map_steps(
     pair = RegisteredPair(x, y, moving, fixed, there, back, (), None, known, mirrored)
     dense = yield from within(dense_match_steps(pair, _BRIEF), 0.75, 1.0)
     return with_pieces_only(dense, (source, target), pieces)
+
+
+refine_map = at_once(refine_map_steps)
 
 
 def _ends(landmarks: ArrayLike) -> tuple[Ints, Ints]:

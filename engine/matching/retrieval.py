@@ -9,17 +9,16 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry.squared_differences import squared_differences
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import CheckedSettings, MatchSettings, setting
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
-from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.progress import Progress, Steps, at_once, within
 from ..shapes.shape import Shape
 
 _LEVELS = (np.arange(64) + 0.5) / 64  # at which the quantiles of distances are taken
@@ -124,9 +123,10 @@ class Retrieval:
         return np.isnan(self.scores)
 
 
-def retrieve(
+@can_go_beside
+def retrieve_steps(
     query: TriangleMesh | Shape, shapes: Sequence[TriangleMesh | Shape], settings: RetrievalSettings | None = None
-) -> Retrieval:
+) -> Steps[Retrieval]:
     r"""Rank shapes by the distortion of a sparse match with a query.
 
     Matching is spared where it has little to find: first all shapes are ranked by a lower bound of the distortion,
@@ -162,25 +162,6 @@ def retrieve(
     .. [1] F. Mémoli, "Gromov-Wasserstein distances and the metric approach to object matching", Foundations of
        Computational Mathematics 11, 2011: the third lower bound.
     """
-    return run(retrieve_steps(query, shapes, settings))
-
-
-@can_go_beside
-def retrieve_steps(
-    query: TriangleMesh | Shape, shapes: Sequence[TriangleMesh | Shape], settings: RetrievalSettings | None = None
-) -> Steps[Retrieval]:
-    """Rank shapes in short steps; see `retrieve`.
-
-    Yields
-    ------
-    Progress
-        About every tenth of a second for meshes of some thousand vertices.
-
-    Returns
-    -------
-    Retrieval
-        When the generator ends.
-    """
     settings = settings or RetrievalSettings()
     if not len(shapes):
         raise MatchError("There are no shapes to compare with: choose at least one beside the query.")
@@ -209,6 +190,9 @@ def retrieve_steps(
     order = np.concatenate([[match.shape for match in matches], by_bound[count:]]).astype(np.int64)
     yield Progress(1.0, "Done")
     return Retrieval(order, scores, bounds, tuple(matches))
+
+
+retrieve = at_once(retrieve_steps)
 
 
 def _check(shape: Shape, name: str, settings: RetrievalSettings) -> None:

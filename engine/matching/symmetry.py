@@ -16,10 +16,10 @@ from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.progress import Progress, Steps, at_once, within
 from ..shapes.shape import Shape
 
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
@@ -102,7 +102,10 @@ class _Candidate:
     score: float  # smaller is more credible
 
 
-def find_symmetry(surface: TriangleMesh | Shape, settings: MatchSettings | None = None) -> SymmetryResult:
+@can_go_beside
+def find_symmetry_steps(
+    surface: TriangleMesh | Shape, settings: MatchSettings | None = None, alternatives: int = 3
+) -> Steps[SymmetryResult]:
     """Find the intrinsic symmetry of a surface, for bodies the map from left to right.
 
     The surface is matched to itself, away from the identity [1]_ [2]_.  It need not be symmetric in space: a body in
@@ -114,6 +117,8 @@ def find_symmetry(surface: TriangleMesh | Shape, settings: MatchSettings | None 
         The surface; the main part is used.
     settings : MatchSettings, optional
         How many points, and how hard to search.
+    alternatives : int
+        How many other symmetries are placed on the surface, at most.
 
     Returns
     -------
@@ -130,32 +135,6 @@ def find_symmetry(surface: TriangleMesh | Shape, settings: MatchSettings | None 
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
     .. [2] D. Raviv, A. M. Bronstein, M. M. Bronstein, R. Kimmel, "Full and partial symmetries of non-rigid shapes",
        IJCV 89, 2010.
-    """
-    return run(find_symmetry_steps(surface, settings))
-
-
-@can_go_beside
-def find_symmetry_steps(
-    surface: TriangleMesh | Shape, settings: MatchSettings | None = None, alternatives: int = 3
-) -> Steps[SymmetryResult]:
-    """Find the intrinsic symmetry of a surface in short steps; see `find_symmetry`.
-
-    Parameters
-    ----------
-    surface, settings
-        As there.
-    alternatives : int
-        How many other symmetries are placed on the surface, at most.
-
-    Yields
-    ------
-    Progress
-        About every tenth of a second for meshes of some thousand vertices.
-
-    Returns
-    -------
-    SymmetryResult
-        When the generator ends.
     """
     settings = settings or MatchSettings()
     shape = surface if isinstance(surface, Shape) else Shape(surface)
@@ -179,6 +158,9 @@ def find_symmetry_steps(
         results.append(_result(shape, candidate, settings.points))
     yield Progress(1.0, "Done")
     return replace(results[0], alternatives=tuple(results[1:]))
+
+
+find_symmetry = at_once(find_symmetry_steps)
 
 
 def _coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
@@ -247,7 +229,7 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) 
     curvature = curvature_agreement(shape, shape, images)
     # A map that moves points by little cannot change distances by much, as the flip of a thin body from front to back:
     # what counts is the change for the way that the points go.
-    tiny = float(np.finfo(float).tiny)
+    tiny = TINY
     way = float(np.square(distances[images, everywhere]).mean())
     score = np.log(max(float(np.square(change).mean()), tiny) / max(way, tiny))
     score += (involution / _INVOLUTION_SCALE) ** 2 - CURVATURE_WEIGHT * curvature

@@ -7,12 +7,13 @@ from ..dense.densify import DenseMatch, densify_steps
 from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.background import can_go_beside
-from ..runtime.progress import Steps, run, within
+from ..runtime.progress import Steps, at_once, within
 from ..shapes.shape import Shape
 from .symmetry import find_symmetry_steps
 
 
-def symmetry_map(mesh: TriangleMesh, settings: MatchSettings | None = None) -> DenseMatch:
+@can_go_beside
+def symmetry_map_steps(mesh: TriangleMesh, settings: MatchSettings | None = None) -> Steps[DenseMatch]:
     """Map every vertex of a surface to its mirror image on the same surface.
 
     Parameters
@@ -36,13 +37,10 @@ def symmetry_map(mesh: TriangleMesh, settings: MatchSettings | None = None) -> D
     --------
     find_symmetry : the sparse symmetry, how symmetric the surface is, and its axis.
     """
-    return run(symmetry_map_steps(mesh, settings))
-
-
-@can_go_beside
-def symmetry_map_steps(mesh: TriangleMesh, settings: MatchSettings | None = None) -> Steps[DenseMatch]:
-    """Map every vertex to its mirror image in short steps; see `symmetry_map`."""
     shape = yield from within(Shape.steps(mesh), 0.0, 0.05)
     symmetry = yield from within(find_symmetry_steps(shape, settings, alternatives=0), 0.05, 0.4)
     steps = densify_steps(shape, shape, symmetry.source_points, symmetry.target_points)
     return (yield from within(steps, 0.4, 1.0))
+
+
+symmetry_map = at_once(symmetry_map_steps)

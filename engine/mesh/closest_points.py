@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.errors import MeshError
 from ..runtime.worker import search_threads
 from .triangle_mesh import TriangleMesh
@@ -44,8 +44,6 @@ _NORMAL_LENGTH, _NORMAL_GATE = 0.008, 0.3
 """How many units of length (in the root of the area) a unit of difference of the normals counts when points are
 matched, and below which cosine only: more would draw points of a curved surface together."""
 
-_TINY = np.finfo(float).tiny
-
 
 @dataclass(frozen=True, eq=False)
 class FoundPoints:
@@ -70,6 +68,17 @@ class FoundPoints:
 
     def __repr__(self) -> str:
         return f"<FoundPoints: {len(self)} points>"
+
+    def interpolate(self, triangles: Ints, values: Floats) -> Floats:
+        """Values (n, d) of the vertices that the triangles of the surface, (m, 3), name, at the points, (k, d)."""
+        return np.einsum("kc,kcd->kd", self.barycentric, values[triangles[self.triangles]])
+
+    def with_others(self, places: Ints, others: FoundPoints) -> FoundPoints:
+        """Put other points in the place of some of these, by their numbers (l,)."""
+        triangles, barycentric, squares = self.triangles.copy(), self.barycentric.copy(), self.squared_distances.copy()
+        triangles[places], barycentric[places] = others.triangles, others.barycentric
+        squares[places] = others.squared_distances
+        return FoundPoints(triangles, barycentric, squares)
 
     def nearest_vertices(self, triangles: Ints) -> Ints:
         """Tell which corner of its triangle each is nearest to, of the surface's (m, 3): vertices (k,)."""
@@ -226,7 +235,7 @@ class ClosestPoints:
         # Many points are looked up neighbour after neighbour, else every step in the tree has to wait for the memory,
         # and by as many threads as may be.
         many = len(points) >= _MANY
-        order = _spatial_order(points) if many else np.arange(len(points))
+        order = spatial_order(points) if many else np.arange(len(points))
         for start in range(0, len(points), _TREE_CHUNK):
             part = order[start : start + _TREE_CHUNK]
             query = points[part]
@@ -277,9 +286,9 @@ class ClosestPoints:
         origin, ab, ac, own = a - centre, b - a, c - a, points - centre.T
         ab_ab, ab_ac, ac_ac = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac)
         ab_ap, ac_ap = own @ ab - _dot(origin, ab), own @ ac - _dot(origin, ac)  # (k, m)
-        divisor = np.maximum(ab_ab, _TINY)
+        divisor = np.maximum(ab_ab, TINY)
         height = ac - (ab_ac / divisor) * ab
-        w = (ac_ap - (ab_ac / divisor) * ab_ap) / np.maximum(_dot(height, height), _TINY)
+        w = (ac_ap - (ab_ac / divisor) * ab_ap) / np.maximum(_dot(height, height), TINY)
         v = (ab_ap - w * ab_ac) / divisor
         inside = (v >= 0) & (w >= 0) & (v + w <= 1)
         sides = _closest_on_sides(ab_ab, ab_ac, ac_ac, ab_ap, ac_ap)
@@ -499,9 +508,9 @@ def _closest(ap: Floats, ab: Floats, ac: Floats) -> tuple[Floats, Floats, Floats
     The vectors are (3, k).
     """
     ab_ab, ab_ac, ac_ac, ab_ap, ac_ap = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac), _dot(ab, ap), _dot(ac, ap)
-    divisor = np.maximum(ab_ab, _TINY)
+    divisor = np.maximum(ab_ab, TINY)
     height = ac - (ab_ac / divisor) * ab
-    w = _dot(height, ap) / np.maximum(_dot(height, height), _TINY)
+    w = _dot(height, ap) / np.maximum(_dot(height, height), TINY)
     v = (ab_ap - w * ab_ac) / divisor
     outside = np.flatnonzero((v < 0) | (w < 0) | (v + w > 1))
     products = (product.take(outside) for product in (ab_ab, ab_ac, ac_ac, ab_ap, ac_ap))
@@ -517,7 +526,7 @@ def _closest_on_sides(
     """Find v and w of the closest points on the three sides, from the scalar products (k,) of the vectors."""
     bc_bc = ab_ab + ac_ac - 2 * ab_ac
     bc_bp = ac_ap - ab_ap - ab_ac + ab_ab
-    squares = (np.maximum(square, _TINY) for square in (ab_ab, ac_ac, bc_bc))
+    squares = (np.maximum(square, TINY) for square in (ab_ab, ac_ac, bc_bc))
     on_ab, on_ac, on_bc = (
         np.minimum(np.maximum(along, 0), square) / square
         for along, square in zip((ab_ap, ac_ap, bc_bp), squares, strict=True)
@@ -558,11 +567,13 @@ def _checked(vectors: Floats, name: str, dimensions: int) -> Floats:
     return array
 
 
-def _spatial_order(points: Floats) -> Ints:
+def spatial_order(points: Floats) -> Ints:
     """Order of points (k, d) along a Morton curve through 128^3 cells of the first three coordinates."""
+    if not len(points):
+        return np.empty(0, np.int64)
     points = points[:, :3]
     low = points.min(axis=0)
-    size = max(float((points.max(axis=0) - low).max()), _TINY)
+    size = max(float((points.max(axis=0) - low).max()), TINY)
     cells = ((points - low) / size * 127).astype(np.int64)
     bits = np.arange(7)
     spread = ((np.arange(128)[:, None] >> bits & 1) << 3 * bits).sum(axis=1)

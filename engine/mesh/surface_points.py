@@ -105,6 +105,11 @@ class SurfacePoints:
         place = (mesh.triangles[triangles][:, :, None] == corners[:, None, :]).argmax(axis=2)
         return cls.from_barycentric(mesh, triangles, np.take_along_axis(barycentric, place, axis=1))
 
+    def at(self, rows: Ints) -> SurfacePoints:
+        """Take some of the points, by their numbers."""
+        places = self.triangles[rows], self.barycentric[rows], self.corners[rows]
+        return SurfacePoints(*places, self.nearest_vertices[rows], self.positions[rows])
+
     def interpolate(self, values: Floats) -> Floats:
         """Evaluate a function given at the vertices, linear inside triangles.
 

@@ -11,10 +11,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..runtime.arrays import Bools, Floats, Ints, numbered
+from ..runtime.arrays import Bools, Floats, Ints, numbered, unit_vectors
 from ..runtime.errors import MeshError
 from .connectivity.components import joined_components
-from .unit_vectors import unit_vectors
 
 _FARTHEST = 1e75
 """Coordinate, in any unit, up to which the squares of areas are numbers: their fourth powers are below 1e308."""

@@ -13,8 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from ..geometry.orientation import tangent_gradient
 from ..geometry.procrustes import nearest_rotations
-from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, unit_vectors
 from ..runtime.worker import search_threads
 from ..shapes.extremities import spread_extremities
 from ..shapes.shape import Shape

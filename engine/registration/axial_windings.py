@@ -97,16 +97,13 @@ def local_costs(source: DeformableSurface, target: DeformableSurface, registrati
     costs = source.elastic.energies(positions, source.elastic.rotations(positions, FINE.rotation_radius))
     costs += _MISFIT_WEIGHT * source.mass * _misfits(on_target, target.triangles, own, others)
     apart = _MISFIT_WEIGHT * target.mass * _misfits(on_source, source.triangles, others, own)
-    corners = source.triangles[on_source.triangles]
-    nearest = corners[np.arange(len(corners)), on_source.barycentric.argmax(axis=1)]
-    return costs + np.bincount(nearest, apart, len(costs))
+    return costs + np.bincount(on_source.nearest_vertices(source.triangles), apart, len(costs))
 
 
 def _misfits(matches: FoundPoints, triangles: Ints, own: tuple[Floats, ...], others: tuple[Floats, ...]) -> Floats:
     """Squared differences (k,) of positions, normals and curvatures between vertices and the points they match."""
-    corners = triangles[matches.triangles]
     places, normals, curvatures = (
-        np.square(np.einsum("kc,kcd->kd", matches.barycentric, theirs[corners]) - mine).sum(axis=1)
+        np.square(matches.interpolate(triangles, theirs) - mine).sum(axis=1)
         for mine, theirs in zip(own, others, strict=True)
     )
     return places + _FEATURE_LENGTH**2 * (normals + np.minimum(curvatures, _MOST_CURVED**2))

@@ -14,7 +14,7 @@ from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats
+from ..runtime.arrays import TINY, Floats
 from ..runtime.progress import Progress, Steps
 from .elastic import ElasticSurface
 from .normal_equations import NormalEquations
@@ -124,7 +124,7 @@ class DeformableSurface:
         if radius <= 0:
             return values
         if radius not in self._spreaders:
-            mass = diags_array(np.maximum(self.mass, np.finfo(float).tiny))
+            mass = diags_array(np.maximum(self.mass, TINY))
             self._spreaders[radius] = symmetric_factor(mass + radius**2 / 4 * self._laplace.stiffness)
         return self._spreaders[radius].solve(self.mass[:, None] * values)
 

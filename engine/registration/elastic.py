@@ -12,7 +12,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.procrustes import nearest_rotations
 from ..geometry.symmetric_factor import symmetric_factor
-from ..runtime.arrays import Floats
+from ..runtime.arrays import TINY, Floats
 
 _LEAST_WEIGHT = 1e-4
 """Least weight of an edge: one without would let its ends drift apart where all triangles around are right-angled."""
@@ -26,7 +26,6 @@ _DOUBTED, _MOST_STRETCHED = 0.1, float(np.log(2))
 _PLANE = 1e-3
 """Part of the covariance of edges that is given to all directions, also those in which a flat surface has no edge."""
 
-_TINY = float(np.finfo(float).tiny)
 
 _LEAST_RATIO = 0.1
 """Least ratio of squared lengths that is believed: surfaces that collapse or explode locally are not followed there."""
@@ -123,7 +122,7 @@ class ElasticSurface:
         """Measure by what factor the deformation lengthens edges, averaged over a radius around each vertex, (n,)."""
         now = np.square(positions[self._tails] - positions[self._heads]).sum(axis=1)
         before = self._around @ (self._weights * np.square(self._edges).sum(axis=1))
-        ratio = (self._around @ (self._weights * now)) / np.maximum(before, _TINY)
+        ratio = (self._around @ (self._weights * now)) / np.maximum(before, TINY)
         logarithms = np.log(np.clip(ratio, _LEAST_RATIO, 1 / _LEAST_RATIO)) / 2
         return np.exp(self._averaged(logarithms, radius))
 
@@ -165,7 +164,7 @@ class ElasticSurface:
         """
         lengths = self._weights * np.square(self._edges).sum(axis=1)
         relative = [
-            strains / max(np.average(strains, weights=lengths), _TINY)
+            strains / max(np.average(strains, weights=lengths), TINY)
             for strains in (self._strains_around(positions, radius, lengths), self._strains_along(positions, radius))
         ]
         factors = (constant + (1 - directed) * relative[0] + directed * relative[1]) ** -power
@@ -177,13 +176,13 @@ class ElasticSurface:
     def _strains_around(self, positions: Floats, radius: float, lengths: Floats) -> Floats:
         """Squared strain around the ends of each edge, whichever way, (e,); the weighted squared lengths are given."""
         misfits = self._weights * self._misfit(positions, self.rotations(positions, radius))
-        strains = self._averaged(self._around @ misfits / np.maximum(self._around @ lengths, _TINY), radius)
+        strains = self._averaged(self._around @ misfits / np.maximum(self._around @ lengths, TINY), radius)
         return self._around.T @ strains / 2
 
     def _strains_along(self, positions: Floats, radius: float) -> Floats:
         """Squared strain of each edge by the stretch around its ends, (e,)."""
         apart = self._at_edges(self._stretches(positions, lambda values: self._averaged(values, radius)) - np.eye(3))
-        return np.square(apart).sum(axis=1) / np.maximum(np.square(self._edges).sum(axis=1), _TINY)
+        return np.square(apart).sum(axis=1) / np.maximum(np.square(self._edges).sum(axis=1), TINY)
 
     def strained(self, positions: Floats, radius: float) -> ElasticSurface:
         r"""Take the surface as at rest when strained as it is on average over a neighbourhood.
@@ -228,7 +227,7 @@ class ElasticSurface:
         weighted = self._weights[:, None, None] * self._edges[:, None, :]
         products = (ends[:, :, None] * weighted for ends in (now, self._edges))
         moved, rest = (averaged(self._around @ each.reshape(-1, 9)).reshape(-1, 3, 3) for each in products)
-        least = np.maximum(_PLANE * np.einsum("nii->n", rest), _TINY)[:, None, None]
+        least = np.maximum(_PLANE * np.einsum("nii->n", rest), TINY)[:, None, None]
         linear = (moved + least * nearest_rotations(moved)) @ np.linalg.inv(rest + least * np.eye(3))
         stretch = nearest_rotations(linear).transpose(0, 2, 1) @ linear
         return (stretch + stretch.transpose(0, 2, 1)) / 2

@@ -9,7 +9,7 @@ from ..geometry.geodesic_ball import distances_to_others, vicinity
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Ints
+from ..runtime.arrays import TINY, Ints
 from ..shapes.landmarks import placed_at_vertices
 
 _REACH = 4.0
@@ -59,7 +59,7 @@ def pinned(
     lengths = np.linalg.norm(missing, axis=1) * np.sqrt(source.area / target.area)
     reach = np.maximum(_REACH * lengths, _LEAST_REACH * np.sqrt(source.area))
     reach = np.minimum(reach, distances_to_others(source.vertices[vertices]))
-    reach = np.maximum(reach, np.finfo(float).tiny)  # two landmarks may lie at one place, such as on closed lips
+    reach = np.maximum(reach, TINY)  # two landmarks may lie at one place, such as on closed lips
     steps = np.zeros((source.vertex_count, 3))
     for vertex, radius, step in zip(vertices, reach, missing, strict=True):
         near, distances = vicinity(source, int(vertex), float(radius))

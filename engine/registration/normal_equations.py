@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, csc_array, csr_array
 
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import FoundPoints
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, group_sums
 
 Solve = Callable[[Floats], Floats]
 
@@ -92,5 +92,4 @@ class NormalEquations:
         """Sum forces (k, 3) at points (k,) of the triangles, over the vertices that they act on: (n, 3)."""
         corners = self._triangles[points.triangles].ravel()
         shares = points.barycentric[:, :, None] * forces[:, None, :]  # (k, 3, 3)
-        sums = [np.bincount(corners, part, len(self._place)) for part in shares.reshape(-1, 3).T]
-        return np.stack(sums, axis=1)
+        return group_sums(corners, shares.reshape(-1, 3), len(self._place))

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from ..geometry.geodesic_ball import distances_to_others, vicinity
 from ..mesh.surface_points import SurfacePoints, interpolation_matrix
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats
+from ..runtime.arrays import TINY, Floats
 from ..shapes.landmarks import LandmarkPlaces
 from ..shapes.proxy import Proxy
 from .deformable import DeformableSurface
@@ -55,7 +55,7 @@ class Ties:
         """Tie points (k,) of a mesh to places (k, 3)."""
         evaluate = interpolation_matrix(points.barycentric, points.corners, mesh.vertex_count)
         radii = np.minimum(_SPREAD * np.sqrt(mesh.area), _ALONE * distances_to_others(points.positions))
-        radii = np.maximum(radii, np.finfo(float).tiny)  # where two are projected to the same place
+        radii = np.maximum(radii, TINY)  # where two are projected to the same place
         forces = np.zeros((mesh.vertex_count, len(points)))
         for i, vertex in enumerate(points.nearest_vertices):
             near, distances = vicinity(mesh, int(vertex), radii[i])

@@ -10,8 +10,7 @@ from ..mesh.closest_points import ClosestPoints
 from ..mesh.connectivity.adjacency import vertex_adjacency
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints, group_sums
+from ..runtime.arrays import TINY, Bools, Floats, Ints, group_sums, unit_vectors
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
 from ..shapes.proxy import Proxy
@@ -29,7 +28,6 @@ _RINGS = 3  # of the target's proxy around the match of a proxy vertex in which 
 _FAR = 4.0  # times the median: longer corrections are not trusted
 _LEAST_TRUST = 1e-3
 _CHUNK = 100_000  # vertices between two reports of progress, which also bounds the memory of a step
-_TINY = np.finfo(float).tiny
 _LABEL = "Mapping every vertex"
 
 
@@ -198,8 +196,7 @@ class _Lift:
             positions, starts, normals, normal_weight=_NORMAL_REACH**2 * self.target.area, normal_gate=_NORMAL_GATE
         )
         # Not the normal of the triangle: which of two a point is in, on their edge, is for rounding to decide.
-        corners = self.target.vertex_normals[self.target.triangles[found.triangles]]
-        there = np.einsum("qc,qcd->qd", found.barycentric, corners)
+        there = found.interpolate(self.target.triangles, self.target.vertex_normals)
         agreement = np.einsum("qd,qd->q", normals, there)
         return found.triangles, found.barycentric, agreement
 
@@ -219,13 +216,11 @@ class _Lift:
         places = self.proxy.points
         shares = ((trust + _LEAST_TRUST) * self.source.vertex_areas[samples])[:, None] * places.barycentric[samples]
         corners = places.corners[samples].ravel()
-        sums = np.stack(
-            [np.bincount(corners, (shares * column[:, None]).ravel(), k) for column in (*steps.T, np.ones(len(steps)))],
-            axis=1,
-        )
+        counted = np.append(steps, np.ones((len(steps), 1)), axis=1)
+        sums = group_sums(corners, (shares[:, :, None] * counted[:, None]).reshape(-1, 4), k)
         for _ in range(_CORRECTION_ROUNDS):
             sums = average @ sums
-        return sums[:, :3] / np.maximum(sums[:, 3:], _TINY)
+        return sums[:, :3] / np.maximum(sums[:, 3:], TINY)
 
 
 def _averaging(mesh: TriangleMesh) -> csr_array:
@@ -255,7 +250,7 @@ def _motion(proxy: Proxy, registered: Floats, average: csr_array) -> Floats:
         sums = average @ sums
     u, _, vt = np.linalg.svd(sums[:, :9].reshape(k, 3, 3))
     u[:, :, 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
-    scales = np.sqrt(sums[:, 9] / np.maximum(sums[:, 10], _TINY))
+    scales = np.sqrt(sums[:, 9] / np.maximum(sums[:, 10], TINY))
     turns = scales[:, None, None] * (u @ vt)
     shifts = registered - np.einsum("kab,kb->ka", turns, rest)
     motion = np.concatenate([turns, shifts[:, :, None]], axis=2).reshape(k, 12)

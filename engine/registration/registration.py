@@ -12,7 +12,7 @@ import numpy as np
 
 from ..geometry.procrustes import nearest_rotations
 from ..mesh.closest_points import ClosestPoints, FoundPoints
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import TINY, Bools, Floats, Ints
 from ..runtime.parallel_map import beside_steps
 from ..runtime.progress import Progress, Steps, within
 from .deformable import DeformableSurface
@@ -313,7 +313,7 @@ def restarted_steps(
     stages, isometry, ties, guides
         As in `register_steps`.
     """
-    places = points_at(matches[0], target.triangles, target.vertices)
+    places = matches[0].interpolate(target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
     posed = (start + places) / 2
     steps = register_steps(
@@ -418,8 +418,8 @@ def register_steps(
     rotate = partial(source.elastic.rotations, positions, stages[-1].rotation_radius)
     fitting = matcher.fitted_steps(positions, search, rotate, last=True)
     (on_target, on_source), rotations = yield from within(fitting, 1.0, 1.0)
-    squared = np.square(points_at(on_target, target.triangles, target.vertices) - positions).sum(axis=1)
-    squared_back = np.square(points_at(on_source, source.triangles, positions) - target.vertices).sum(axis=1)
+    squared = np.square(on_target.interpolate(target.triangles, target.vertices) - positions).sum(axis=1)
+    squared_back = np.square(on_source.interpolate(source.triangles, positions) - target.vertices).sum(axis=1)
     gaps = float(source.mass @ np.sqrt(squared)), float(target.mass @ np.sqrt(squared_back))
     energy = source.elastic.energy(positions, rotations)
     return Registration(positions, on_target, on_source, energy, float(source.mass @ squared), gaps)
@@ -435,11 +435,6 @@ def _softened(elastic: ElasticSurface, positions: Floats, stage: Stage, sparse: 
     return elastic.softened(positions, radius, power, 1 - (1 - _SPARSE) * sparse, directed=sparse)
 
 
-def points_at(points: FoundPoints, triangles: Ints, values: Floats) -> Floats:
-    """Values (n, d) of vertices, interpolated at points (k, d)."""
-    return np.einsum("kc,kcd->kd", points.barycentric, values[triangles[points.triangles]])
-
-
 def _solved(
     matcher: _Matcher,
     elastic: ElasticSurface,
@@ -453,12 +448,12 @@ def _solved(
     """Positions of least energy for given matches, beginning with some rotations."""
     on_target, on_source = matches
     source, target = matcher.source, matcher.target
-    wanted = points_at(on_target, target.triangles, target.vertices)
-    seen = points_at(on_target, target.triangles, target.normals)
+    wanted = on_target.interpolate(target.triangles, target.vertices)
+    seen = on_target.interpolate(target.triangles, target.normals)
     own = weight * source.mass * _agreement(normals, seen)
     beyond = np.flatnonzero(_beyond(source, on_target, target))
     own[beyond] = 0
-    theirs = weight * target.mass * _agreement(points_at(on_source, source.triangles, normals), target.normals)
+    theirs = weight * target.mass * _agreement(on_source.interpolate(source.triangles, normals), target.normals)
     theirs[_beyond(target, on_source, source)] = 0
     equations = source.equations
     solve = equations.solver(own, on_source, theirs, stiffness=elastic.stiffness)
@@ -494,5 +489,5 @@ def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableS
 
 def _agreement(first: Floats, second: Floats) -> Floats:
     """How far normals (k, 3) agree: their product squared, or little where they turn away, (k,)."""
-    lengths = np.maximum(np.linalg.norm(second, axis=1) * np.linalg.norm(first, axis=1), np.finfo(float).tiny)
+    lengths = np.maximum(np.linalg.norm(second, axis=1) * np.linalg.norm(first, axis=1), TINY)
     return np.clip(np.einsum("kd,kd->k", first, second) / lengths, _LEAST_AGREEMENT, 1) ** 2

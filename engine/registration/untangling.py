@@ -9,8 +9,7 @@ from scipy.sparse import csr_array
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, marked, numbered, unit_vectors
 from ..runtime.progress import Progress, Steps
 
 _ROUNDS = 11  # none of them is the last after averaging, which others have to put right
@@ -46,7 +45,8 @@ def follow_neighbours(mesh: TriangleMesh, values: Ints, astray: Bools) -> Ints:
     touched = np.flatnonzero(astray[mesh.edges].any(axis=1))
     # The longest first: of several that are written to the same place the last stays.
     touched = touched[np.argsort(-mesh.edge_lengths[touched], kind="stable")]
-    tail, head = _both_ways(mesh.edges[touched])
+    edges = mesh.edges[touched]
+    tail, head = edges.ravel(), edges[:, ::-1].ravel()
     while len(tail):
         known = astray[tail] & ~astray[head]
         if not known.any():
@@ -200,8 +200,7 @@ def untangle_steps(
     for number in range(_ROUNDS):
         if not len(flipped):
             break
-        moving = np.zeros(source.vertex_count, bool)
-        moving[source.triangles[flipped]] = True
+        moving = marked(source.triangles[flipped], source.vertex_count)
         moving[edges[moving[edges].any(axis=1)]] = True
         around = np.flatnonzero(moving[source.triangles].any(axis=1))
         image = _Image(source, target, triangles, barycentric, around)
@@ -225,8 +224,7 @@ def _opened(image: _Image, rest: Floats, free: Ints) -> Floats:
     nearly the same comes out nearly the same.
     """
     rest = np.maximum(rest, _SMALLEST * float(rest.mean()))
-    number = np.full(len(image.vertices), -1)
-    number[free] = np.arange(len(free))
+    number = numbered(free, len(image.vertices))
     now, unknowns = image.positions.copy(), np.arange(3 * len(free))
     for _ in range(_ITERATIONS):
         lack = np.maximum(_LEAST_AREA - image.areas(now) / rest, 0)
@@ -246,8 +244,3 @@ def _opened(image: _Image, rest: Floats, free: Ints) -> Floats:
         pull = jacobian.T @ np.append((lack * np.sqrt(rest))[lacking], back)
         now[free] += symmetric_factor(jacobian.T @ jacobian).solve(pull).reshape(-1, 3)
     return now[free]
-
-
-def _both_ways(edges: Ints) -> tuple[Ints, Ints]:
-    """Tails and heads of the edges (e, 2) in both directions: an edge and its opposite side by side, (2 e,) each."""
-    return edges.ravel(), edges[:, ::-1].ravel()

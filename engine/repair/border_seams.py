@@ -6,15 +6,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ..mesh.connectivity.adjacency import pair_matrix
 from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
 from ..mesh.triangle_mesh import triangle_areas
-from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked
+from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked, unit_vectors
 
 _SMALLEST = 0.01
 """Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""
@@ -73,7 +73,7 @@ class _Borders:
     loops: Ints
     lengths: Floats
     outward: Floats
-    neighbours: coo_array
+    neighbours: csr_array
     owners: Ints
 
 
@@ -191,8 +191,7 @@ def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Bo
     away -= np.einsum("kd,kd->k", away, unit)[:, None] * unit
     away = unit_vectors(away)
     outward = group_sums(tail, away, k) + group_sums(head, away, k)
-    neighbours = _graph(tail, head, k)
-    neighbours = neighbours + neighbours.T
+    neighbours = pair_matrix(np.stack([tail, head], axis=1), np.ones(len(tail)), k)
     for _ in range(_SMOOTHED):
         outward = unit_vectors(outward)
         outward = outward + neighbours @ outward
@@ -205,7 +204,3 @@ def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Bo
     neighbours = neighbours[kept][:, kept]
     outward = unit_vectors(outward[kept])
     return _Borders(border[kept], pieces[border[kept]], loops, around[kept], outward, neighbours, pieces), area
-
-
-def _graph(tails: Ints, heads: Ints, count: int) -> coo_array:
-    return coo_array((np.ones(len(tails)), (tails, heads)), shape=(count, count)).tocsr()

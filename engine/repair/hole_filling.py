@@ -6,8 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.connectivity.boundary_loops import BoundaryLoops
-from ..mesh.unit_vectors import unit_vectors
-from ..runtime.arrays import Bools, Floats, Ints, group_sums
+from ..runtime.arrays import Bools, Floats, Ints, group_sums, unit_vectors
 
 _LARGEST_HOLE = 0.01
 """Area of the largest hole in a sheet that is filled, as a part of the surface."""

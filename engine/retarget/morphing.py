@@ -12,7 +12,7 @@ from ..geometry.laplacian import laplace_beltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.welded_parts import WeldedParts
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints
 from .values.deformation_gradients import surface_frames
 
 _LEAST_WEIGHT = 1e-4
@@ -72,7 +72,7 @@ def _in_between(mesh: TriangleMesh, positions: Floats, fractions: Floats) -> Flo
     count, n = len(tails), mesh.vertex_count
     incidence = (np.concatenate([tails, heads]), np.tile(np.arange(count), 2))
     divergence = csr_array((np.repeat([1.0, -1.0], count), incidence), shape=(n, count))
-    hold = np.full(n, _HOLD * max(mesh.vertex_areas.mean(), np.finfo(float).tiny) / mesh.area)
+    hold = np.full(n, _HOLD * max(mesh.vertex_areas.mean(), TINY) / mesh.area)
     system = divergence @ diags_array(weights) @ divergence.T + diags_array(hold)
     factor = symmetric_factor(system)
     # The turn of the whole, and that of each vertex beside it: less than half a turn in most poses.

@@ -12,12 +12,13 @@ from ..dense.components.similarity_field import Surroundings
 from ..geometry.laplacian import laplace_beltrami
 from ..geometry.procrustes import nearest_similarity
 from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.connectivity.adjacency import edge_means, vertex_adjacency
 from ..mesh.connectivity.welded_parts import WeldedParts
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.elastic import ElasticSurface
-from ..runtime.arrays import Bools, Floats, Ints, group_means
+from ..runtime.arrays import Bools, Floats, group_means, marked
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps
@@ -121,7 +122,7 @@ def wrap_steps(
     parts = WeldedParts.of(source)
     if parts.seams:
         best = parts.best_of(held + confidence)
-        wanted, held, confidence, points = wanted[best], held[best], confidence[best], _chosen(points, best)
+        wanted, held, confidence, points = wanted[best], held[best], confidence[best], points.at(best)
         source = parts.closed
     if not held[source.triangles].all(axis=1).any():
         raise MatchError(
@@ -180,21 +181,16 @@ def kept_in_place(mesh: TriangleMesh, positions: Floats) -> Floats:
 
 def _smoothed(mesh: TriangleMesh, positions: Floats, folded: Bools) -> tuple[Floats, Bools]:
     """Span the surface (n, 3) evenly over what is folded, (m,), and around that as far as needed: new ones of both."""
-    n = mesh.vertex_count
-    one, other = mesh.edges.T
-    graph = csr_array((np.ones(len(one)), (one, other)), shape=(n, n))
-    graph = csr_array(graph + graph.T)
+    graph = vertex_adjacency(mesh)
     spread = csr_array(diags_array(graph.sum(axis=1)) - graph)
     for rings in range(1, _RINGS + 1):
         if not folded.any():
             break
-        free = np.zeros(n, bool)
-        free[mesh.triangles[folded]] = True
+        free = marked(mesh.triangles[folded], mesh.vertex_count)
         for _ in range(rings):
             free |= graph @ free > 0
         # A piece that is free as a whole has nothing to be spanned between.
-        fixed = np.zeros(mesh.component_labels.max() + 1, bool)
-        fixed[mesh.component_labels[~free]] = True
+        fixed = marked(mesh.component_labels[~free], mesh.component_labels.max() + 1)
         free &= fixed[mesh.component_labels]
         if not free.any():
             continue
@@ -224,9 +220,7 @@ def _united(mesh: TriangleMesh, positions: Floats, turns: Floats) -> Floats:
     away = np.zeros(len(counts))
     np.maximum.at(away, place, np.linalg.norm(positions - middle[place], axis=1))
     one, other = mesh.edges.T
-    lengths, ends = np.linalg.norm(positions[one] - positions[other], axis=1), mesh.edges.ravel()
-    n = mesh.vertex_count
-    around = np.bincount(ends, np.repeat(lengths, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)
+    around = edge_means(mesh, np.linalg.norm(positions[one] - positions[other], axis=1))
     near = np.full(len(counts), np.inf)
     np.minimum.at(near, place, around)
     together = ((counts > 1) & (away <= near))[place]
@@ -246,14 +240,13 @@ def _start(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, wa
     if held.all():
         return wanted
     part, vertices, _ = source.submesh(held)
-    images = replace(_chosen(points, vertices), positions=wanted[vertices])
+    images = replace(points.at(vertices), positions=wanted[vertices])
     surroundings = Surroundings(part, target, images)
     free = np.flatnonzero(~held)
     distances, _ = surroundings.nearest(source.vertices[free])
     # A loose part moves as one: all of it follows the surroundings of its farthest vertex.
     labels = source.component_labels
-    with_hold = np.zeros(labels.max() + 1, bool)
-    with_hold[labels[held]] = True
+    with_hold = marked(labels[held], labels.max() + 1)
     reach = np.zeros(labels.max() + 1)
     np.maximum.at(reach, labels[free], distances)
     loose = ~with_hold[labels[free]]
@@ -263,17 +256,6 @@ def _start(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, wa
     start = wanted.copy()
     start[free] = fitted(source.vertices[free])
     return start
-
-
-def _chosen(points: SurfacePoints, rows: Ints) -> SurfacePoints:
-    """Return some of the points."""
-    return SurfacePoints(
-        points.triangles[rows],
-        points.barycentric[rows],
-        points.corners[rows],
-        points.nearest_vertices[rows],
-        points.positions[rows],
-    )
 
 
 def _folded(mesh: TriangleMesh, positions: Floats) -> Bools:

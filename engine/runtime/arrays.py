@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Short names of the types of arrays, whose shapes are said where they are used, and arrays made of indices."""
+"""Types of arrays by short names, the least divisor, and small functions of arrays of indices and of vectors."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+TINY = float(np.finfo(float).tiny)
+"""Smallest positive number: what a divisor is at least, so that nothing is divided by zero."""
 
 
 def marked(places: Ints, count: int) -> Bools:
@@ -39,3 +42,15 @@ def ranges(starts: Ints, counts: Ints) -> Ints:
     """List so many numbers, (k,), from each of some starts (k,) on, one range after the other."""
     before = np.cumsum(counts) - counts
     return np.arange(counts.sum()) + np.repeat(starts - before, counts)
+
+
+def unit_vectors(vectors: Floats, least: float = 0.0) -> Floats:
+    """Scale vectors (n, d) to length one; those that are no longer than `least` become zero."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > least)
+
+
+def squared_differences(first: Floats, second: Floats) -> Floats:
+    """Squared Euclidean distance of every row of `first` (n, d) from every row of `second` (m, d): (n, m)."""
+    square = np.square(first).sum(axis=1)[:, None] + np.square(second).sum(axis=1) - 2 * first @ second.T
+    return np.maximum(square, 0)

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from functools import wraps
+from typing import ParamSpec, TypeVar
 
 from .arrays import Floats
 
+Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
 
@@ -63,6 +65,17 @@ def run(steps: Steps[Result]) -> Result:
             next(steps)
         except StopIteration as stop:
             return stop.value
+
+
+def at_once(function: Callable[Given, Steps[Result]]) -> Callable[Given, Result]:
+    """Make of a function in steps one that does all of them: of the same name without `_steps`, and as documented."""
+
+    @wraps(function)
+    def done(*args: Given.args, **given: Given.kwargs) -> Result:
+        return run(function(*args, **given))
+
+    done.__name__ = done.__qualname__ = function.__name__.removesuffix("_steps")
+    return done
 
 
 def within(steps: Steps[Result], start: float, end: float, label: str | None = None) -> Steps[Result]:

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ..mesh.area_samples import even_samples
 from ..mesh.closest_points import ClosestPoints, facing
 from ..mesh.connectivity.components import triangle_components
-from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from ..mesh.connectivity.halfedges import twins_of
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.triangle_mesh import TriangleMesh
@@ -275,8 +275,7 @@ class _Body:
     def of(cls, pieces: list[SurfacePart]) -> _Body:
         """Turn pieces outward."""
         together = TriangleMesh.concatenated([piece.mesh for piece in pieces])
-        groups = group_half_edges(together.triangles, together.vertex_count)
-        twins = pair_half_edges(together.vertices, together.triangles, groups)
+        twins = twins_of(together.vertices, together.triangles)
         components = triangle_components(twins)
         volumes = enclosed_volumes(together.vertices, together.triangles, twins, components)
         inward = (volumes < 0)[components]

@@ -13,12 +13,12 @@ from ..geometry.eigenpairs import eigenpairs_steps
 from ..geometry.handle_loops import genus, shortest_handle_loop_steps
 from ..mesh.connectivity.boundary_loops import boundary_loops
 from ..mesh.connectivity.edge_chains import way_to_root
-from ..mesh.connectivity.halfedges import group_half_edges, pair_half_edges
+from ..mesh.connectivity.halfedges import twins_of
 from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.clean_surface import SurfacePart
 from ..repair.hole_filling import fill_holes
-from ..runtime.arrays import Ints, numbered
+from ..runtime.arrays import TINY, Ints, numbered
 from ..runtime.progress import Steps, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
@@ -86,7 +86,7 @@ def _spectra_apart_steps(x: Shape, y: Shape) -> Steps[float]:
     for shape in (x, y):
         spectrum = yield from eigenpairs_steps(shape.laplace, min(_COMPARED + 1, shape.mesh.vertex_count))
         values = spectrum.values[1:] * shape.laplace.area
-        logarithms.append(np.log(np.maximum(values, np.finfo(float).tiny)))
+        logarithms.append(np.log(np.maximum(values, TINY)))
     count = min(map(len, logarithms))
     return float(np.abs(logarithms[0][:count] - logarithms[1][:count]).mean())
 
@@ -132,8 +132,7 @@ def cut_along(part: SurfacePart, loop: Ints) -> SurfacePart | None:
         None if what is given is not such a loop.
     """
     mesh = part.mesh
-    groups = group_half_edges(mesh.triangles, mesh.vertex_count)
-    twins = pair_half_edges(mesh.vertices, mesh.triangles, groups)
+    twins = twins_of(mesh.vertices, mesh.triangles)
     tails, heads = mesh.triangles.ravel(), np.roll(mesh.triangles, -1, axis=1).ravel()
     following = np.full(mesh.vertex_count, -1)
     following[loop] = np.roll(loop, -1)

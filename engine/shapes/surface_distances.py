@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..geometry.geodesics import GeodesicSolver
-from ..geometry.squared_differences import squared_differences
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run, within

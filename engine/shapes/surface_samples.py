@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from ..geometry.geodesics import GeodesicSolver
 from ..geometry.mean_curvature import smoothed_mean_curvature
-from ..geometry.orientation import tangent_gradient
+from ..geometry.orientation import tangent_directions
 from ..geometry.sampling import FarthestPointSampler
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints
@@ -77,10 +77,7 @@ class SurfaceSamples:
     @cached_property
     def directions(self) -> Floats:
         """Unit direction at each sample in which the distance from each sample grows, (S at, S from, 2)."""
-        gradient = tangent_gradient(self.mesh, self.vertices) @ self.rows.T.astype(np.float64)
-        planar = gradient.reshape(len(self), 2, -1).transpose(0, 2, 1)
-        lengths = np.linalg.norm(planar, axis=2, keepdims=True)
-        return np.divide(planar, lengths, out=np.zeros_like(planar), where=lengths > 0)
+        return tangent_directions(self.mesh, self.vertices, self.rows)
 
     @cached_property
     def curvatures(self) -> Floats:

@@ -12,7 +12,8 @@ from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...repair.clean_surface import CleanSurface
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
+from .component_pairs import radius_of
 from .similarity_field import Surroundings
 
 _SMALL = 0.02
@@ -29,8 +30,6 @@ _LARGEST_RATIO = 2.0
 
 _NOT_POSSIBLE = 20.0
 """No pair costs more than that of leaving a sheet alone, so that as many as possible are made."""
-
-_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,18 +139,13 @@ def _paired(here: list[_Sheet], there: list[_Sheet], around: Surroundings) -> li
         if not (here[i].has_others or there[j].has_others):
             continue
         sheet, partner = carried[i], there[j].mesh
-        radii = _radius(sheet), _radius(partner)
+        radii = radius_of(sheet), radius_of(partner)
         apart = np.linalg.norm(sheet.vertices.mean(axis=0) - partner.vertices.mean(axis=0))
         if apart <= min(radii) and max(radii) <= _LARGEST_RATIO * min(radii):
             ahead = ClosestPoints(partner).nearest(sheet.vertices).squared_distances
             back = ClosestPoints(sheet).nearest(partner.vertices).squared_distances
-            costs[i, j] = np.sqrt((ahead.mean() + back.mean()) / 2) / max(min(radii), _TINY)
+            costs[i, j] = np.sqrt((ahead.mean() + back.mean()) / 2) / max(min(radii), TINY)
     costs[costs > _ALIKE] = _NOT_POSSIBLE
     rows, columns = linear_sum_assignment(costs)
     pairs = [(i, j) for i, j in zip(rows, columns, strict=True) if costs[i, j] <= _ALIKE]
     return [(here[i], there[j], carried[i].vertices) for i, j in pairs]
-
-
-def _radius(sheet: TriangleMesh) -> float:
-    """Root mean square distance of the vertices from their centre."""
-    return float(np.sqrt(np.square(sheet.vertices - sheet.vertices.mean(axis=0)).sum(axis=1).mean()))

@@ -15,7 +15,7 @@ from ...mesh.closest_points import ClosestPoints, FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import DeformableSurface
 from ...registration.registration import FINE, LAST, Stage, register_steps
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
 from ...runtime.progress import Steps, in_turn
 from .component_pairs import PartPair
 from .similarity_field import Surroundings
@@ -122,7 +122,7 @@ def laid_steps(around: Surroundings, item: tuple[TriangleMesh, TriangleMesh, Par
 def _turned(pair: PartPair) -> list[Floats]:
     """Rotations of a part that has swung about where it touches its surroundings, by all angles about its direction."""
     swung, arm = pair.rotations[-1], pair.centres[1] - pair.joint
-    axis = arm / np.maximum(np.linalg.norm(arm), np.finfo(float).tiny)
+    axis = arm / np.maximum(np.linalg.norm(arm), TINY)
     angles = np.arange(_TURNS) * (2 * np.pi / _TURNS)
     return list(Rotation.from_rotvec(angles[:, None] * axis).as_matrix() @ swung)
 

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from ...mesh.connectivity.adjacency import edge_graph
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from .similarity_field import Surroundings
 
 _LARGEST_OFFSET = 1.5
@@ -50,7 +50,6 @@ what is nearest, as clothes do; and at how many points that is measured."""
 _LYING = 0.2
 """Root mean square distance from its surroundings, in radii, up to which a large part lies on them everywhere."""
 
-_TINY = np.finfo(float).tiny
 
 _NOT_POSSIBLE = 20.0
 """No pair costs more than that of leaving a part alone, so that as many as possible are made."""
@@ -133,12 +132,12 @@ def _length(part: TriangleMesh) -> float:
         distances[~np.isfinite(distances)] = 0
         end = int(distances.argmax())
         length = float(distances[end])
-    return max(length / np.sqrt(part.area), _TINY)
+    return max(length / np.sqrt(part.area), TINY)
 
 
 def contact_with(distances: Floats, part: TriangleMesh) -> Contact:
     """Find where a part is next to its surroundings by the distances (n,) of its vertices from there."""
-    touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * _radius(part))
+    touching = np.flatnonzero(distances <= distances.min() + _TOUCHING * radius_of(part))
     return Contact(touching, part.vertices[touching].mean(axis=0), float(distances.min()))
 
 
@@ -231,14 +230,14 @@ def _worn(
     for i in np.flatnonzero(large):
         part = parts[i]
         distances = around.nearest(part.vertices)[0]
-        lying[i] = np.sqrt(np.square(distances).mean()) < _LYING * _radius(part)
+        lying[i] = np.sqrt(np.square(distances).mean()) < _LYING * radius_of(part)
         carry = around.similarities(part.vertices, distances)
         places = carry(part.vertices)
         tree, area = cKDTree(places), float(np.median(carry.scales)) ** 2 * part.area  # between fingers places are torn
         size = np.abs(np.log([area / partner.area for partner in partners])) / np.log(_LARGEST_RATIO)
         for j in np.flatnonzero(size <= 1):
             ahead = trees[j].query(places[_some(part)])[0]
-            back, radius = tree.query(partners[j].vertices[_some(partners[j])])[0], _radius(partners[j])
+            back, radius = tree.query(partners[j].vertices[_some(partners[j])])[0], radius_of(partners[j])
             away = np.sqrt((np.square(ahead).mean() + np.square(back).mean()) / 2) / radius
             difference[i, j] = size[j] + away / _WORN if away < _WORN else np.inf
     return difference, lying
@@ -249,7 +248,7 @@ def _some(part: TriangleMesh) -> Ints:
     return np.linspace(0, part.vertex_count - 1, min(part.vertex_count, _WORN_POINTS)).astype(np.int64)
 
 
-def _radius(part: TriangleMesh) -> float:
+def radius_of(part: TriangleMesh) -> float:
     """Root mean square distance of the vertices from their centre."""
     return float(np.sqrt(np.square(part.vertices - part.vertices.mean(axis=0)).sum(axis=1).mean()))
 

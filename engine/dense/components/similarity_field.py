@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...mesh.closest_points import spatial_order
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints, group_sums
+from ...runtime.arrays import Floats, Ints, group_sums, unit_vectors
 
 _NEIGHBOURS = 32
 """Places on the surface that a similarity is fitted to."""
@@ -110,7 +110,7 @@ class Surroundings:
     def nearest(self, points: Floats) -> tuple[Floats, Ints]:
         """Find the nearest vertex of the surface to points (k, 3): distances (k,) and vertices (k,)."""
         distances, vertices = np.empty(len(points)), np.empty(len(points), np.int64)
-        order = _neighbours_together(points)
+        order = spatial_order(points)
         distances[order], vertices[order] = self._levels[0].tree.query(points[order])
         return distances, vertices
 
@@ -134,7 +134,7 @@ class Surroundings:
         result = Similarities(np.empty((k, 3, 3)), np.empty(k), np.empty((k, 3)), np.empty((k, 3)))
         spacings = np.array([level.spacing for level in self._levels])
         levels = (np.searchsorted(spacings, reach / 2, side="right") - 1).clip(min=0)
-        order = _neighbours_together(points)
+        order = spatial_order(points)
         for number, level in enumerate(self._levels):
             chosen = order[levels[order] == number]
             for start in range(0, len(chosen), _CHUNK):
@@ -190,13 +190,3 @@ def _coarser(places: _Places) -> _Places | None:
         group_sums(number, areas[:, None] * values, count) / totals[:, None] for values in vectors
     )
     return _Places(spacing, positions, images, normals, image_normals, totals)
-
-
-def _neighbours_together(points: Floats) -> Ints:
-    """Order points (k, 3) by the cells of a grid: searches that follow each other then read the same memory."""
-    if not len(points):
-        return np.empty(0, np.int64)
-    low = points.min(axis=0)
-    side = max(float((points.max(axis=0) - low).max()), np.finfo(float).tiny)
-    cells = ((points - low) / side * 63).astype(np.int64)
-    return np.argsort((cells[:, 0] * 64 + cells[:, 1]) * 64 + cells[:, 2], kind="stable")

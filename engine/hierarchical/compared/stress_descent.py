@@ -126,7 +126,7 @@ def settle_steps(
         for _ in distances.prepare_steps(union):
             yield here
         both = _Places(union, np.append(now.owner, owner), distances.squares_between(union), stress)
-        before, now = now, _best_choice(now, both, distances.mesh)
+        before, now = now, _best_choice(now, both)
         yield here
         if before.value - now.value <= tolerance * now.value:
             break
@@ -175,11 +175,10 @@ class _Places:
         """
         return (self.squares.T - self.squares) / 2
 
-    def chosen(self, numbers: Ints, mesh: TriangleMesh) -> _Places:
+    def chosen(self, numbers: Ints) -> _Places:
         """Return some of the places."""
-        points = self.points
-        points = SurfacePoints.from_barycentric(mesh, points.triangles[numbers], points.barycentric[numbers])
-        return _Places(points, self.owner[numbers], self.squares[np.ix_(numbers, numbers)], self.stress)
+        squares = self.squares[np.ix_(numbers, numbers)]
+        return _Places(self.points.at(numbers), self.owner[numbers], squares, self.stress)
 
 
 def joined(mesh: TriangleMesh, first: SurfacePoints, second: SurfacePoints) -> SurfacePoints:
@@ -191,7 +190,7 @@ def joined(mesh: TriangleMesh, first: SurfacePoints, second: SurfacePoints) -> S
     )
 
 
-def _best_choice(now: _Places, both: _Places, mesh: TriangleMesh) -> _Places:
+def _best_choice(now: _Places, both: _Places) -> _Places:
     """Choose for each of the k points between its present place and its proposed one, if it has one.
 
     `both` are the present places, then the proposed ones, ordered by point.  The stress does not rise.
@@ -211,7 +210,7 @@ def _best_choice(now: _Places, both: _Places, mesh: TriangleMesh) -> _Places:
                 choice[i] = options[(both.linear[options] + 2 * with_others).argmin()]
             if (choice == before).all():
                 break
-        places = both.chosen(choice, mesh)
+        places = both.chosen(choice)
         if places.value < best.value:
             best = places
     return best

@@ -7,11 +7,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints, group_sums
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, unit_vectors
 from .part_surface import PartSurface
-
-_TINY = float(np.finfo(float).tiny)
 
 _RADII = np.array([0.0, 0.045, 0.09, 0.14, 0.2, 0.27, 0.35])
 """Between which distances from the middle, in units of length, the rings of a patch lie."""
@@ -111,7 +108,7 @@ def _frames(normals: Floats) -> Floats:
 def _seen(offsets: Floats, normals: Floats, lengths: Floats) -> tuple[Ints, Floats]:
     """Find the cells of points (k,) and what is seen there, (k, 4), by places, normals and lengths of paths."""
     aside = np.hypot(offsets[:, 0], offsets[:, 1])
-    outwards = (normals[:, :2] * offsets[:, :2]).sum(axis=1) / np.maximum(aside, _TINY)
+    outwards = (normals[:, :2] * offsets[:, :2]).sum(axis=1) / np.maximum(aside, TINY)
     seen = offsets[:, 2] / _HEIGHT, (aside - lengths) / _HEIGHT, _FACING * normals[:, 2], _FACING * outwards
     angles = np.arctan2(offsets[:, 1], offsets[:, 0]) / (2 * np.pi) * TURNS
     rings = np.searchsorted(_RADII, lengths, side="right") - 1

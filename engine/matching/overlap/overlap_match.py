@@ -18,7 +18,7 @@ from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.prolongation import lift_steps
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, marked
 from ...runtime.progress import Progress, Steps, within
 from ...shapes.shape import Shape
 from ..result import MatchResult
@@ -28,7 +28,6 @@ from .overlap_maps import Overlap, OverlapSearch, overlap_steps
 CLEAR = 0.5
 """Credibility from which on an overlap is more likely right than not."""
 
-_TINY = float(np.finfo(float).tiny)
 
 _SCORE, _MARGIN, _AGREEMENT, _AREA = (1.4, 0.6), (2.2, 0.35), (0.5, 0.06), (0.15, 0.04)
 """Of what an overlap is judged by, the value at which it is believed as often as not if all else is clear, and by how
@@ -219,15 +218,15 @@ def _quality(shared: _Shared, margin: float) -> MatchQuality:
     """Measure what is shared."""
     (source, target), known = shared.meshes, shared.known[0]
     areas = source.vertex_areas * known
-    total = max(float(areas.sum()), _TINY)
+    total = max(float(areas.sum()), TINY)
     found = SurfaceMap.from_points(target, shared.maps[0])
     shown = source.triangle_areas * known[source.triangles].all(axis=1)
-    orientation = float(shown @ found.face_orientations(source, target)) / max(float(shown.sum()), _TINY)
+    orientation = float(shown @ found.face_orientations(source, target)) / max(float(shown.sum()), TINY)
     # In one unit of length: parts have no sizes of their own.
     stretch = found.edge_stretch(source, target) * np.sqrt(target.area / source.area)
     usable = known[source.edges].all(axis=1) & np.isfinite(stretch) & (stretch > 0)
     weights = np.square(source.edge_lengths[usable])
-    distortion = float(weights @ np.abs(np.log(stretch[usable]))) / max(float(weights.sum()), _TINY)
+    distortion = float(weights @ np.abs(np.log(stretch[usable]))) / max(float(weights.sum()), TINY)
     confidence = float(areas @ shared.trust(0)) / total * max(orientation, 0.0)
     disagreement = float(areas @ shared.trips(0)) / total
     credible = shared.likely >= CLEAR
@@ -290,8 +289,7 @@ def _spread(shape: Shape, members: Ints, count: int) -> Ints:
     centre = shape.mesh.vertices[members].mean(axis=0)
     first = members[int(np.square(shape.mesh.vertices[members] - centre).sum(axis=1).argmax())]
     sampler = FarthestPointSampler(graph, int(first))
-    inside = np.zeros(shape.mesh.vertex_count, bool)
-    inside[members] = True
+    inside = marked(members, shape.mesh.vertex_count)
     sampler.distances[~inside] = -1.0
     sampler.extend(max(min(count, len(members)), min(_LEAST_POINTS, len(members))))
     return np.array(sampler.samples)

@@ -5,11 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...runtime.arrays import Bools, Ints
+from ...runtime.arrays import TINY, Bools, Ints
 from .part_registration import Fit
 from .part_surface import PartSurface
-
-_TINY = float(np.finfo(float).tiny)
 
 _GAP, _STRAIN, _CURVATURE, _INNER, _AREA = (
     (-4.0, 0.003, 0.0205),
@@ -44,7 +42,7 @@ def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
     strained, and has no other outline.
     """
     here, there = source.mass * fit.members, target.mass * fit.members_back
-    both = max(float(here.sum() + there.sum()), _TINY)
+    both = max(float(here.sum() + there.sum()), TINY)
     differences = (
         np.abs(source.curvatures - target.curvatures[fit.there.images]).mean(axis=1),
         np.abs(target.curvatures - source.curvatures[fit.back.images]).mean(axis=1),
@@ -53,7 +51,7 @@ def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
     inner += _inner_outline(target, source, fit.members_back, fit.back.images)
     values = (
         float(here @ fit.there.gaps + there @ fit.back.gaps) / both,
-        float(fit.energies @ fit.members) / max(float(here.sum()), _TINY),
+        float(fit.energies @ fit.members) / max(float(here.sum()), TINY),
         float(here @ differences[0] + there @ differences[1]) / both,
         inner,
         max(shared_area(source, target, fit), _LEAST_AREA),

@@ -6,25 +6,30 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from ...runtime.arrays import Floats
+from ...runtime.arrays import Floats, Ints
 from ..triangle_mesh import TriangleMesh
 
 
 def vertex_adjacency(mesh: TriangleMesh) -> csr_array:
     """Return the matrix (n, n) of a mesh with n vertices that is one where an edge joins them, and else zero."""
-    return _between_vertices(mesh, np.ones(len(mesh.edges)))
+    return pair_matrix(mesh.edges, np.ones(len(mesh.edges)), mesh.vertex_count)
 
 
 def edge_graph(mesh: TriangleMesh) -> csr_array:
     """Return the matrix (n, n) of a mesh with n vertices that has the length of each edge, in both directions."""
-    return _between_vertices(mesh, mesh.edge_lengths)
+    return pair_matrix(mesh.edges, mesh.edge_lengths, mesh.vertex_count)
 
 
-def _between_vertices(mesh: TriangleMesh, values: Floats) -> csr_array:
-    """Return the symmetric matrix (n, n) with a value for each edge, (e,)."""
-    n, (a, b) = mesh.vertex_count, mesh.edges.T
-    ends = (np.concatenate([a, b]), np.concatenate([b, a]))
-    return csr_array(coo_array((np.tile(values, 2), ends), shape=(n, n)))
+def pair_matrix(pairs: Ints, values: Floats, count: int) -> csr_array:
+    """Return the symmetric matrix (count, count) with a value (k,) for each of some pairs of indices, (k, 2)."""
+    ends = np.concatenate([pairs, pairs[:, ::-1]]).T
+    return csr_array(coo_array((np.tile(values, 2), ends), shape=(count, count)))
+
+
+def edge_means(mesh: TriangleMesh, values: Floats) -> Floats:
+    """Mean of values per edge (e,) over the edges at each vertex, (n,); zero where there are none."""
+    ends, n = mesh.edges.ravel(), mesh.vertex_count
+    return np.bincount(ends, np.repeat(values, 2), n) / np.maximum(np.bincount(ends, minlength=n), 1)
 
 
 def neighbour_means(mesh: TriangleMesh, values: Floats) -> Floats:

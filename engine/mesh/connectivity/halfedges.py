@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import Bools, Floats, Ints, ranges
-from ..unit_vectors import unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, ranges, unit_vectors
 from .components import triangle_components
 
 _MOST_TRIANGLES = 64
@@ -130,6 +129,11 @@ def pair_half_edges(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> In
     one, other = _crowded_pairs(vertices, triangles, groups, triangle_components(twins))
     twins[one], twins[other] = other, one
     return twins
+
+
+def twins_of(vertices: Floats, triangles: Ints) -> Ints:
+    """Pair the half-edges of triangles that have not been grouped yet; see `pair_half_edges`."""
+    return pair_half_edges(vertices, triangles, group_half_edges(triangles, len(vertices)))
 
 
 def _crowded(groups: EdgeGroups, most: int) -> tuple[Ints, Ints]:

@@ -12,8 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
 from ...runtime.errors import RigError
 from ..rig.fitted_rig import FittedRig
 from ..rig.joint_placement import least_turns, place_joints, standing
@@ -150,7 +149,7 @@ def pair_bones(
             raise RigError(f"The target has {len(skeleton)} bones, so there is no bone {bone}.")
     if not weights.nnz:
         weights = nearest_bones(target, skeleton)
-    placed = place_joints(rig, source, _any_normals(rig.skeleton))
+    placed = place_joints(rig, source, np.zeros_like(rig.skeleton.heads))
     there = carried(rig.weights, rig.target_to_source)
     joints = rig.skeleton.parents, placed.heads, placed.tails
     mirrors = mirrored_bones(rig.skeleton), mirrored_bones(skeleton)
@@ -241,12 +240,7 @@ def _even(values: Floats, mirrors: tuple[Ints, Ints]) -> Floats:
 
 def _below(tree: Skeleton) -> csr_array:
     """Say which bones (b,) hang on which, and each on itself: (b, b), a column for each that carries others."""
-    pairs = []
-    for bone in range(len(tree)):
-        above = bone
-        while above >= 0:
-            pairs.append((bone, above))
-            above = int(tree.parents[above])
+    pairs = [(bone, above) for bone in range(len(tree)) for above in (bone, *tree.above(bone))]
     rows, columns = np.array(pairs, np.int64).reshape(-1, 2).T
     return csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(tree), len(tree)))
 
@@ -272,10 +266,8 @@ def _entries(weights: csr_array) -> tuple[Ints, Floats]:
     counts = np.diff(weights.indptr)
     rows = np.repeat(np.arange(len(counts)), counts)
     places = np.arange(weights.nnz) - np.repeat(weights.indptr[:-1], counts)
-    columns, values = (
-        np.zeros((len(counts), counts.max(initial=0)), np.int64),
-        np.zeros((len(counts), counts.max(initial=0))),
-    )
+    shape = len(counts), counts.max(initial=0)
+    columns, values = np.zeros(shape, np.int64), np.zeros(shape)
     columns[rows, places], values[rows, places] = weights.indices, weights.data
     return columns, values
 
@@ -312,7 +304,7 @@ def _without_offshoots(
 ) -> set[tuple[int, int]]:
     """Leave out bones that share the partner of a better one, unless the chain goes on below them."""
     for side, tree in enumerate(trees):
-        usual = inside / np.maximum(inside.max(axis=side, keepdims=True), np.finfo(float).tiny)
+        usual = inside / np.maximum(inside.max(axis=side, keepdims=True), TINY)
         for partner in {pair[1 - side] for pair in pairs}:
             rivals = [pair for pair in pairs if pair[1 - side] == partner]
             best = max(rivals, key=lambda pair: gains[pair[1], pair[0]])
@@ -328,10 +320,10 @@ def _in_chain(
 ) -> bool:
     """Tell whether a bone lies in one chain with a better one, and the chain goes on to bones of other partners."""
     one, other = pair[side], best[side]
-    lower = one if other in _ancestors(tree, one) else other if one in _ancestors(tree, other) else -1
+    lower = one if other in tree.above(one) else other if one in tree.above(other) else -1
     if lower < 0:
         return False
-    return any(lower in _ancestors(tree, each[side]) and each[1 - side] != pair[1 - side] for each in pairs)
+    return any(lower in tree.above(each[side]) and each[1 - side] != pair[1 - side] for each in pairs)
 
 
 def _without_misplaced(
@@ -362,27 +354,11 @@ def _without_misplaced(
             if np.linalg.norm(starts[1] - starts[0]) <= least:
                 continue
             if astray > max(least, excess * lost):
-                worst, excess = int(part), astray / max(lost, float(np.finfo(float).tiny))
+                worst, excess = int(part), astray / max(lost, TINY)
         if worst < 0:
             break
         chosen = np.delete(chosen, parts.rows[worst], axis=0)
     return chosen
-
-
-def _ancestors(tree: Skeleton, bone: int) -> set[int]:
-    """Bones that a bone hangs on."""
-    found, above = set(), int(tree.parents[bone])
-    while above >= 0:
-        found.add(above)
-        above = int(tree.parents[above])
-    return found
-
-
-def _any_normals(skeleton: Skeleton) -> Floats:
-    """Give each bone some direction across it, (b, 3)."""
-    along = unit_vectors(skeleton.tails - skeleton.heads)
-    other = np.eye(3)[np.abs(along).argmin(axis=1)]
-    return unit_vectors(other - (other * along).sum(axis=1, keepdims=True) * along)
 
 
 def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None) -> Floats:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import binary_closing, binary_opening
 
-from ...runtime.arrays import Bools, Floats
+from ...runtime.arrays import TINY, Bools, Floats
 
 _LOW = 0.08
 """How far above its lowest place a point may be that stands, in units of the leg."""
@@ -118,7 +118,7 @@ def grounded_lifts(heights: Floats, wanted: Floats, level: Floats, length: float
         The lift, none for a foot far above the ground; neither point is below the ground then unless it should be.
     """
     shares = (1 - (wanted - level) / (2 * _LOW * length)).clip(0, 1)
-    lifts = (shares**2 * (wanted - heights)).sum(axis=1) / np.maximum(shares.sum(axis=1), np.finfo(float).tiny)
+    lifts = (shares**2 * (wanted - heights)).sum(axis=1) / np.maximum(shares.sum(axis=1), TINY)
     sunk = np.minimum(wanted, level) - heights - lifts[:, None]
     return np.asarray(lifts + sunk.max(axis=1).clip(0))
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
 from ..rig.skeleton import Skeleton
 from .posed_motion import Motion
 from .segments import Segments
@@ -122,7 +122,7 @@ def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: Floats
         pairs = [number for number in range(len(way) - 2) if branches[way[number + 1]] == 1 and all(free[: number + 1])]
         if not pairs:
             continue
-        shares = lengths / np.maximum(np.array(extents), np.finfo(float).tiny)[:, None]
+        shares = lengths / np.maximum(np.array(extents), TINY)[:, None]
         low = max(pairs, key=lambda number: (shares[:, number] + shares[:, number + 1]).sum())
         last = min(low, 2)
         long = lengths[:, last : low + 2].sum(axis=1)

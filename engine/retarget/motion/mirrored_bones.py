@@ -35,7 +35,7 @@ def mirrored_bones(tree: Skeleton) -> Ints:
         return none
     centered = tree.heads - tree.heads.mean(axis=0)
     extent = np.ptp(tree.heads, axis=0).max()
-    below = np.array([_subtree(tree, bone).mean(axis=0) for bone in range(len(tree))])
+    below = np.array([tree.heads[[bone, *tree.below(bone)]].mean(axis=0) for bone in range(len(tree))])
     best = none
     for normal in np.concatenate([np.eye(3), np.linalg.svd(centered, full_matrices=False)[2]]):
         found = _images(np.stack([tree.heads, below]), normal, _NEAR * extent)
@@ -55,12 +55,3 @@ def _images(places: Floats, normal: Floats, reach: float) -> Ints:
     away, nearest = cKDTree(own).query(image)
     known = (away < reach) & (nearest[nearest] == np.arange(len(nearest)))
     return np.where(known, nearest, -1)
-
-
-def _subtree(tree: Skeleton, bone: int) -> Floats:
-    """Heads of a bone and of all that hang on it, (k, 3)."""
-    found, layer = [bone], [bone]
-    while layer:
-        layer = [int(child) for each in layer for child in tree.children(each)]
-        found += layer
-    return tree.heads[found]

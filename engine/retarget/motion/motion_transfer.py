@@ -12,7 +12,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, Steps, run
+from ...runtime.progress import Progress, Steps, at_once
 from ..rig.skeleton import Skeleton
 from .bone_pairing import BonePairing
 from .contacts import contacts_of, grounded_lifts, held_shifts
@@ -86,18 +86,6 @@ class TransferredMotion:
         return f"<TransferredMotion: {int(self.moved.sum())} of {len(self.moved)} bones turn, scale {self.scale:.3g}>"
 
 
-def transfer_motion(
-    motion: Motion,
-    pairing: BonePairing,
-    target: Skeleton,
-    settings: MotionSettings | None = None,
-    *,
-    ups: Floats | None = None,
-) -> TransferredMotion:
-    """Transfer motion; see `transfer_motion_steps`."""
-    return run(transfer_motion_steps(motion, pairing, target, settings, ups=ups))
-
-
 @can_go_beside
 def transfer_motion_steps(
     motion: Motion,
@@ -107,7 +95,7 @@ def transfer_motion_steps(
     *,
     ups: Floats | None = None,
 ) -> Steps[TransferredMotion]:
-    r"""Transfer motion from one skeleton to another, in steps.
+    r"""Transfer motion from one skeleton to another.
 
     If the source's bone turns by :math:`D` from rest, the target's surface is turned by :math:`M` against the
     source's around it, both at rest, and the target as a whole by :math:`G`, then the target's bone turns by
@@ -168,6 +156,9 @@ def transfer_motion_steps(
     return TransferredMotion(posed, body.moved, body.placed, body.rooted, body.scale)
 
 
+transfer_motion = at_once(transfer_motion_steps)
+
+
 def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: MotionSettings) -> None:
     if not len(pairing):
         raise RigError("No bones of the two rigs are paired. Pair them first.")
@@ -189,7 +180,7 @@ class _Body:
         self.moved[pairing.targets] = True
         # Of each segment the bones that hang on no other of it.
         self.tops = [
-            [int(bone) for bone in bones if not set(_ancestors(target, int(bone))) & set(bones.tolist())]
+            [int(bone) for bone in bones if not set(target.above(bone)) & set(bones.tolist())]
             for bones in self.segments.targets
         ]
         self.placed, self.rooted = np.zeros((2, len(target)), bool)
@@ -283,11 +274,7 @@ class _Body:
 
     def beyond(self, part: int) -> list[int]:
         """All segments that hang on one."""
-        found, layer = [], self.segments.below(part).tolist()
-        while layer:
-            found += layer
-            layer = [below for each in layer for below in self.segments.below(each).tolist()]
-        return found
+        return [other for other in range(len(self.segments)) if part in self.segments.above(other)]
 
     def _in_order(self) -> Ints:
         """Order the bones, each after its parent and what holds it."""
@@ -300,14 +287,6 @@ class _Body:
             known.update(ready)
             left = [bone for bone in left if bone not in known]
         return np.array(found, np.int64)
-
-
-def _ancestors(tree: Skeleton, bone: int) -> list[int]:
-    found, above = [], int(tree.parents[bone])
-    while above >= 0:
-        found.append(above)
-        above = int(tree.parents[above])
-    return found
 
 
 def _with_feet(
@@ -349,7 +328,7 @@ def _smoothed(drops: Floats, rate: float) -> Floats:
 
 def _hand_goals(body: _Body, motion: Motion, posed: Motion, arms: list[Limb]) -> list[Floats]:
     """Find where arms are to end so that hands are to the body as they are in the source, (f, 3) each."""
-    lines, owners = [], []
+    lines = []
     segments = body.segments
     for part in range(len(segments)):
         ends = []
@@ -358,14 +337,13 @@ def _hand_goals(body: _Body, motion: Motion, posed: Motion, arms: list[Limb]) ->
             last = each.heads[:, bones[below[0]][0]] if len(below) else each.tails[:, bones[part][-1]]
             ends.append(np.stack([each.heads[:, bones[part][0]], last], axis=1))
         lines.append(BodyLine(*ends))
-        owners.append(part)
     goals = []
     for limb in arms:
         own = {*limb.parts, *body.beyond(limb.parts[1])}
         others = {part for arm in arms if arm is not limb for part in (*arm.parts, *body.beyond(arm.parts[1]))}
         used = [
             replace(line, share=0.5 if part in others else 1.0)
-            for part, line in zip(owners, lines, strict=True)
+            for part, line in enumerate(lines)
             if part not in own and part != segments.parents[limb.parts[0]]
         ]
         palms = limb.source_points(motion).mean(axis=1), limb.target_points(posed).mean(axis=1)
@@ -377,14 +355,12 @@ def _hand_goals(body: _Body, motion: Motion, posed: Motion, arms: list[Limb]) ->
 def _arms(limbs: list[Limb]) -> list[Limb]:
     """Choose the limbs that come in pairs and are no legs: a neck with a head is none."""
     free = [limb for limb in limbs if not limb.foot]
-    return [
-        limb
-        for limb in free
-        if any(
-            other is not limb and abs(other.source_length - limb.source_length) < _ALIKE * limb.source_length
-            for other in free
-        )
-    ]
+
+    def alike(one: Limb, other: Limb) -> bool:
+        """Say whether two limbs could be a pair."""
+        return other is not one and abs(other.source_length - one.source_length) < _ALIKE * one.source_length
+
+    return [limb for limb in free if any(alike(limb, other) for other in free)]
 
 
 def _in_place(posed: Motion, up: Floats, roots: Ints) -> Motion:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
 from ...runtime.errors import RigError
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
@@ -127,7 +127,7 @@ def _along(points: Floats, chain: Ints, bones: Skeleton) -> Floats:
     """Share points (n, 3) out along a chain of bones (c,): they go over smoothly from one to the next, (n, c)."""
     joints = np.concatenate([bones.heads[chain], bones.tails[chain[-1]][None]])
     steps = np.diff(joints, axis=0)
-    squares = np.maximum((steps**2).sum(axis=1), np.finfo(float).tiny)
+    squares = np.maximum((steps**2).sum(axis=1), TINY)
     lengths = np.sqrt(squares)
     offsets = points[:, None] - joints[:-1]
     shares = np.einsum("ncd,cd->nc", offsets, steps) / squares
@@ -139,7 +139,7 @@ def _along(points: Floats, chain: Ints, bones: Skeleton) -> Floats:
     place = starts[closest] + shares[rows, closest].clip(0, 1) * lengths[closest]
     result = np.ones((len(points), len(chain)))
     for joint in range(1, len(chain)):
-        width = max(_WIDTH * min(lengths[joint - 1], lengths[joint]), np.finfo(float).tiny)
+        width = max(_WIDTH * min(lengths[joint - 1], lengths[joint]), TINY)
         gone = ((place - starts[joint]) / width + 0.5).clip(0, 1)
         gone = gone * gone * (3 - 2 * gone)
         result[:, :joint] *= (1 - gone)[:, None]

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, unit_vectors
 from ..rig.joint_placement import least_turns
 from ..rig.skeleton import Skeleton
 from .bone_pairing import BonePairing
@@ -21,11 +20,7 @@ by strips of walks and runs, horse to cow, and fox to dog and cat, whose paws ar
 
 
 def posed_rotations(
-    pairing: BonePairing,
-    segments: Segments,
-    limbs: Sequence[Limb],
-    trees: tuple[Skeleton, Skeleton],
-    up: Floats,
+    pairing: BonePairing, segments: Segments, limbs: Sequence[Limb], trees: tuple[Skeleton, Skeleton], up: Floats
 ) -> Floats:
     """Rotations by which the rest poses of two rigs differ, without those that come from how the bodies are built.
 

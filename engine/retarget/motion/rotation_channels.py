@@ -6,10 +6,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...runtime.arrays import Floats
+from ...runtime.arrays import TINY, Floats, unit_vectors
 from ...runtime.errors import RigError
-
-_TINY = np.finfo(float).tiny
 
 
 def rotation_matrices(channels: Floats, mode: str) -> Floats:
@@ -35,12 +33,10 @@ def rotation_matrices(channels: Floats, mode: str) -> Floats:
     _check(mode, channels.shape[1])
     if mode == "QUATERNION":
         lengths = np.linalg.norm(channels, axis=1, keepdims=True)
-        safe = np.where(lengths > 0, channels / np.maximum(lengths, _TINY), [1.0, 0, 0, 0])
+        safe = np.where(lengths > 0, channels / np.maximum(lengths, TINY), [1.0, 0, 0, 0])
         return np.asarray(Rotation.from_quat(safe[:, [1, 2, 3, 0]]).as_matrix())
     if mode == "AXIS_ANGLE":
-        lengths = np.linalg.norm(channels[:, 1:], axis=1, keepdims=True)
-        axes = channels[:, 1:] / np.maximum(lengths, _TINY)
-        return np.asarray(Rotation.from_rotvec(channels[:, :1] * axes).as_matrix())
+        return np.asarray(Rotation.from_rotvec(channels[:, :1] * unit_vectors(channels[:, 1:])).as_matrix())
     places = ["XYZ".index(letter) for letter in mode]
     return np.asarray(Rotation.from_euler(mode.lower(), channels[:, places]).as_matrix())
 

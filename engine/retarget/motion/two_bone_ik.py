@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Bools, Floats
+from ...runtime.arrays import TINY, Bools, Floats, unit_vectors
 from ..rig.joint_placement import least_turns
 
 _STRAIGHT = 1e-3
@@ -47,11 +47,9 @@ def bent_limb(joints: Floats, goals: Floats) -> tuple[Floats, Floats]:
     axes = unit_vectors(np.einsum("fij,fj->fi", swing, normals))
     bends = []
     for span in (reached, distance):
-        safe = np.maximum(span, np.finfo(float).tiny)
-        cosine = (lengths[0] ** 2 + safe**2 - lengths[1] ** 2) / np.maximum(2 * lengths[0] * safe, np.finfo(float).tiny)
-        inner = (lengths[0] ** 2 + lengths[1] ** 2 - safe**2) / np.maximum(
-            2 * lengths[0] * lengths[1], np.finfo(float).tiny
-        )
+        safe = np.maximum(span, TINY)
+        cosine = (lengths[0] ** 2 + safe**2 - lengths[1] ** 2) / np.maximum(2 * lengths[0] * safe, TINY)
+        inner = (lengths[0] ** 2 + lengths[1] ** 2 - safe**2) / np.maximum(2 * lengths[0] * lengths[1], TINY)
         bends.append((np.arccos(cosine.clip(-1, 1)), np.arccos(inner.clip(-1, 1))))
     hip = bends[0][0] - bends[1][0]  # the upper bone lies before the line to the end, seen around the axis
     knee = bends[0][1] - bends[1][1]
@@ -98,9 +96,4 @@ def _steady_normals(upper: Floats, normals: Floats, flat: Bools) -> Floats:
 
 def _around(axes: Floats, angles: Floats) -> Floats:
     """Rotations (f, 3, 3) around axes (f, 3) of length one by angles (f,)."""
-    cross = np.zeros((len(axes), 3, 3))
-    x, y, z = axes.T
-    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -z, y, -x
-    cross -= np.swapaxes(cross, 1, 2)
-    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
-    return np.eye(3) + sine * cross + (1 - cosine) * cross @ cross
+    return Rotation.from_rotvec(angles[:, None] * axes).as_matrix()

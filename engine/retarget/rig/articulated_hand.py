@@ -12,8 +12,7 @@ from scipy.spatial.transform import Rotation
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints, group_sums
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, unit_vectors
 from .digit_groups import DigitGroup
 from .skeleton import Skeleton
 
@@ -36,8 +35,6 @@ _HELD = 100.0
 _UNTWIST = 0.7
 """How much is taken back, in each round, of a digit's turn around itself, which its joints hardly allow: free to turn,
 the digits take hold of one another's surfaces."""
-
-_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +120,7 @@ class Hand:
         seen = np.flatnonzero(there)
         seen = seen[_spread_out(target.vertices[seen], _SAMPLES)]
         shares = weights[chosen][:, numbers].toarray()
-        shares /= np.maximum(shares.sum(axis=1, keepdims=True), _TINY)
+        shares /= np.maximum(shares.sum(axis=1, keepdims=True), TINY)
         return cls(
             group,
             skeleton,
@@ -170,7 +167,7 @@ class HandSolver:
         ends = np.concatenate([hand.points, np.ones((len(hand.points), 1))], axis=1)
         self._design = (hand.weights[:, :, None] * ends[:, None, :]).reshape(len(ends), 4 * count)
         mass = hand.weights.mean(axis=0)
-        centres = (hand.weights.T @ hand.points) / np.maximum(len(ends) * mass, _TINY)[:, None]
+        centres = (hand.weights.T @ hand.points) / np.maximum(len(ends) * mass, TINY)[:, None]
         spread = np.square(hand.points[:, None] - centres).sum(axis=2)
         self._moments = np.maximum((hand.weights * spread).mean(axis=0) / 3, 1e-6 * hand.length**2)
         self._moments[0] *= _HELD
@@ -178,8 +175,7 @@ class HandSolver:
         digits = hand.group.bones[1:]
         self._own = np.array([place[int(bone)] for bone in digits])
         self._above = np.array([place[int(bone)] for bone in hand.skeleton.parents[digits]])
-        axes = hand.skeleton.tails[digits] - hand.skeleton.heads[digits]
-        self._axes = unit_vectors(axes)
+        self._axes = unit_vectors(hand.skeleton.tails[digits] - hand.skeleton.heads[digits])
         self._ties = np.zeros((4 * count, 4 * count))
         for bone in hand.group.bones:
             child, parent = place[int(bone)], place[int(hand.skeleton.parents[bone])]

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, unit_vectors
 from .skeleton import Skeleton
 
 _LEAST = 2e-3

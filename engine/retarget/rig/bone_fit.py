@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ...geometry.procrustes import nearest_rotations, nearest_similarity
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints, numbered
 from .skeleton import Skeleton
 
 _ROUNDS = 12
@@ -69,12 +70,6 @@ class BoneTransforms:
     posed: Floats
 
 
-def _similarities(matrices: Floats) -> tuple[Floats, Floats]:
-    """Find the nearest rotation to each matrix (k, 3, 3), and its mean scale along the axes, (k,)."""
-    rotations = nearest_rotations(matrices)
-    return rotations, np.einsum("kij,kij->k", rotations, matrices) / 3
-
-
 def fit_bones(
     vertices: Floats, positions: Floats, areas: Floats, weights: csr_array, skeleton: Skeleton
 ) -> BoneTransforms:
@@ -106,16 +101,19 @@ def fit_bones(
     areas = np.where(np.asarray(weights.sum(axis=1)).ravel() > 0, areas, 0.0)
     areas = areas / areas.sum()
     active = np.flatnonzero(areas @ weights > _WEIGHTLESS * areas[areas > 0].min())
-    leaders = _leaders(skeleton, active)
-    above = np.where(skeleton.parents[active] >= 0, leaders[skeleton.parents[active]], len(active))
-    joints = _joints(skeleton, active, above)
+    place = np.append(numbered(active, len(skeleton)), len(active))  # the last for the body as a whole
+    above = place[skeleton.nearest_above(place[:-1] >= 0)]
+    leaders = np.where(place[:-1] >= 0, place[:-1], above)
+    child = np.flatnonzero(above[active] < len(active))
+    joints = _Joints(child, above[active[child]], skeleton.heads[active[child]])
     axes = skeleton.tails[active] - skeleton.heads[active]
     system = _System(vertices, positions, areas, csr_array(weights[:, active]), joints, axes=axes)
     linear, translations = system.solved()
     whole = nearest_similarity(vertices, positions, areas)
     linear = np.concatenate([linear, whole[0][None]])[leaders]
     translations = np.concatenate([translations, whole[1][None]])[leaders]
-    rotations, scales = _similarities(linear)
+    rotations = nearest_rotations(linear)
+    scales = np.einsum("kij,kij->k", rotations, linear) / 3
     posed = skinned(vertices, weights, linear, translations)
     loose = np.asarray(weights.sum(axis=1)).ravel() <= 0
     posed[loose] = vertices[loose] @ whole[0].T + whole[1]
@@ -128,32 +126,12 @@ def skinned(vertices: Floats, weights: csr_array, linear: Floats, translations: 
     return np.einsum("nij,nj->ni", blended, vertices) + weights @ translations
 
 
-def _leaders(skeleton: Skeleton, active: Ints) -> Ints:
-    """For each bone the place in `active` of itself or its nearest active ancestor; one past the end if none, (b,)."""
-    leaders = np.full(len(skeleton), len(active))
-    place = np.full(len(skeleton), -1)
-    place[active] = np.arange(len(active))
-    for bone in skeleton.order:
-        if place[bone] >= 0:
-            leaders[bone] = place[bone]
-        elif skeleton.parents[bone] >= 0:
-            leaders[bone] = leaders[skeleton.parents[bone]]
-    return leaders
-
-
-@dataclass(frozen=True, eq=False)
-class _Joints:
+class _Joints(NamedTuple):
     """Where active bones hang on their nearest active ancestors: numbers (j,) of both, and places (j, 3) at rest."""
 
     child: Ints
     above: Ints
     places: Floats
-
-
-def _joints(skeleton: Skeleton, active: Ints, above: Ints) -> _Joints:
-    """Find the joints of active bones, of which `above` says for each on which other one it hangs."""
-    child = np.flatnonzero(above < len(active))
-    return _Joints(child, above[child], skeleton.heads[active[child]])
 
 
 class _System:
@@ -163,7 +141,7 @@ class _System:
         self, vertices: Floats, positions: Floats, areas: Floats, weights: csr_array, joints: _Joints, *, axes: Floats
     ) -> None:
         lengths = np.linalg.norm(axes, axis=1, keepdims=True)
-        self._axes = np.where(lengths > 0, axes / np.maximum(lengths, np.finfo(float).tiny), [0.0, 0.0, 1.0])
+        self._axes = np.where(lengths > 0, axes / np.maximum(lengths, TINY), [0.0, 0.0, 1.0])
         self._positions, self._areas, count = positions, areas, weights.shape[1]
         # Around the middle of the body and in its size, so that the four columns of a bone are of one magnitude.
         self._middle = areas @ vertices
@@ -185,17 +163,18 @@ class _System:
             part = slice(dense.indptr[bone], dense.indptr[bone + 1])
             moved, weight = dense.indices[part], dense.data[part]
             share = areas[moved] * weight
-            centre = share @ local[moved] / max(share.sum(), np.finfo(float).tiny)
+            centre = share @ local[moved] / max(share.sum(), TINY)
             moments[bone] = share @ np.square(local[moved] - centre).sum(axis=1) / 3
-            sharp = np.maximum(share * weight, np.finfo(float).tiny)
+            sharp = np.maximum(share * weight, TINY)
             self._start[bone] = nearest_similarity(local[moved], positions[moved], sharp)[0]
         self._pull = np.zeros((count, 4))
         self._pull[:, :3] = _SIMILARITY * np.maximum(moments, _LEAST_MASS**2)[:, None]
 
     def _tied(self, joints: _Joints, mass: Floats) -> csr_array:
         """Weighted rows that say that both bones of a joint take it to the same place, times their transpose."""
-        child, above, count = joints.child, joints.above, len(joints.child)
-        ends = np.concatenate([(joints.places - self._middle) / self._size, np.ones((count, 1))], axis=1)
+        child, above, places = joints
+        count = len(child)
+        ends = np.concatenate([(places - self._middle) / self._size, np.ones((count, 1))], axis=1)
         rows = np.repeat(np.arange(count), 8)
         columns = np.concatenate([4 * child[:, None] + np.arange(4), 4 * above[:, None] + np.arange(4)], axis=1)
         values = np.concatenate([ends, -ends], axis=1)
@@ -239,7 +218,7 @@ class _System:
 
     def _usual(self, scales: Floats, part: float) -> Floats:
         """Draw scales (k,) of bones to that of the body."""
-        logarithms = np.log(np.maximum(scales, np.finfo(float).tiny))
+        logarithms = np.log(np.maximum(scales, TINY))
         common = self._mass @ logarithms / self._mass.sum()
         most = np.log(_MOST_SCALE)
         return np.exp(common + np.clip((1 - part) * (logarithms - common), -most, most))

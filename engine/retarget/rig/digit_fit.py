@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from ...mesh.closest_points import FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats
+from ...runtime.arrays import TINY, Floats
 from .articulated_hand import Hand, HandPose, HandSolver
 from .bone_fit import BoneTransforms, skinned
 from .digit_groups import digit_groups
@@ -34,8 +34,6 @@ _GOOD = 0.04
 
 _CLEARLY = 0.95
 """A pose is taken that costs less than this part of what the pose costs that was found first."""
-
-_TINY = np.finfo(float).tiny
 
 
 def with_digits(
@@ -182,10 +180,10 @@ def _hand_axes(hand: Hand) -> tuple[Floats, Floats]:
     """Direction from the wrist to the knuckles at rest, and that of the knuckles, (3,) each."""
     knuckles = hand.skeleton.heads[[chain[0] for chain in hand.group.chains]]
     along = knuckles.mean(axis=0) - hand.skeleton.heads[hand.group.hub]
-    along /= max(float(np.linalg.norm(along)), _TINY)
+    along /= max(float(np.linalg.norm(along)), TINY)
     across = np.linalg.svd(knuckles - knuckles.mean(axis=0))[2][0]
     across -= (across @ along) * along
-    return along, across / max(float(np.linalg.norm(across)), _TINY)
+    return along, across / max(float(np.linalg.norm(across)), TINY)
 
 
 def _turn(degrees: Floats) -> Floats:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...runtime.arrays import Bools, Floats
+from ...runtime.arrays import TINY, Bools, Floats
 from ...runtime.errors import RigError
 from .skeleton import Skeleton
 
@@ -112,7 +112,7 @@ class _Tree:
         self.leaves = [int(b) for b in np.flatnonzero(self.used) if not self._children[b]]
         self.heights = skeleton.heads @ up
         ends = np.concatenate([self.heights[deforming], (skeleton.tails @ up)[self.leaves]])
-        self.low, self.height = float(ends.min()), float(np.maximum(np.ptp(ends), np.finfo(float).tiny))
+        self.low, self.height = float(ends.min()), float(np.maximum(np.ptp(ends), TINY))
 
     def children(self, bone: int) -> list[int]:
         """Return the bones that hang directly on a bone."""
@@ -120,10 +120,7 @@ class _Tree:
 
     def above(self, bone: int) -> list[int]:
         """Return a bone and all that it hangs on."""
-        found = [bone]
-        while self.bones.parents[found[-1]] >= 0:
-            found.append(int(self.bones.parents[found[-1]]))
-        return found
+        return [bone, *self.bones.above(bone)]
 
     def below(self, bone: int) -> list[int]:
         """Return a bone and all that hangs on it."""
@@ -201,7 +198,7 @@ class _Tree:
         """Return how long the shorter half of a chain is in units of the longer one, parted at its `middle`."""
         lengths = self._lengths(way, end)
         halves = np.diff(lengths[[0, self.middle(way, end), -1]])
-        return float(halves.min() / np.maximum(halves.max(), np.finfo(float).tiny))
+        return float(halves.min() / np.maximum(halves.max(), TINY))
 
     def _lengths(self, way: Sequence[int], end: int) -> Floats:
         """Return how far each joint is along a chain."""

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.errors import RigError
 from .fitted_rig import FittedRig
 from .skeleton import Skeleton
@@ -79,7 +79,7 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
     masses = moved_areas(rig, source)
     moving = masses > 0
     places = joint_places(skeleton)
-    above = _moving_above(skeleton, moving)
+    above = skeleton.nearest_above(moving)
     of_turns = np.zeros((count, count))
     anchors = np.full(count, -1)
     below = sums_below(skeleton, masses)
@@ -114,7 +114,7 @@ def moved_areas(rig: FittedRig, source: TriangleMesh) -> Floats:
     if source.vertex_count != rig.weights.shape[0]:
         raise RigError(f"The rig moves {rig.weights.shape[0]} vertices, but the body has {source.vertex_count}.")
     moving = np.asarray(rig.weights.sum(axis=0)).ravel() > _MOVES_NOTHING
-    masses = np.where(moving, np.maximum(source.vertex_areas @ rig.weights, np.finfo(float).tiny), 0.0)
+    masses = np.where(moving, np.maximum(source.vertex_areas @ rig.weights, TINY), 0.0)
     if not moving.any():
         raise RigError("No bone of the rig moves a vertex.")
     return masses
@@ -123,7 +123,7 @@ def moved_areas(rig: FittedRig, source: TriangleMesh) -> Floats:
 def nearest_on_bones(skeleton: Skeleton, point: Floats) -> Floats:
     """Find the point of each bone that is nearest to a point, (b, 3)."""
     axes = skeleton.tails - skeleton.heads
-    squares = np.maximum(np.square(axes).sum(axis=1), np.finfo(float).tiny)
+    squares = np.maximum(np.square(axes).sum(axis=1), TINY)
     along = ((point - skeleton.heads) * axes).sum(axis=1) / squares
     return skeleton.heads + along.clip(0, 1)[:, None] * axes
 
@@ -136,16 +136,6 @@ def joint_places(skeleton: Skeleton) -> Ints:
     # The two ends of a very short bone are not one place.
     pairs = pairs[pairs[:, 1] - pairs[:, 0] != len(skeleton)]
     return joined_components(len(joints), *pairs.T)
-
-
-def _moving_above(skeleton: Skeleton, moving: Bools) -> Ints:
-    """For each bone its nearest ancestor that moves vertices, -1 if there is none, (b,)."""
-    found = np.full(len(skeleton), -1)
-    for bone in skeleton.order:
-        parent = skeleton.parents[bone]
-        if parent >= 0:
-            found[bone] = parent if moving[parent] else found[parent]
-    return found
 
 
 def sums_below(skeleton: Skeleton, masses: Floats) -> Floats:
@@ -183,5 +173,5 @@ def _nearness(skeleton: Skeleton, moving: Bools, point: Floats) -> Floats:
     """Share one among the bones, (b,), by how near each moving bone is to a point."""
     distances = np.linalg.norm(nearest_on_bones(skeleton, point) - point, axis=1)
     distances = np.where(moving, distances, np.inf)
-    parts = (max(distances.min(), np.finfo(float).tiny) / np.maximum(distances, np.finfo(float).tiny)) ** _NEARNESS
+    parts = (max(distances.min(), TINY) / np.maximum(distances, TINY)) ** _NEARNESS
     return parts / parts.sum()

@@ -9,8 +9,7 @@ import numpy as np
 
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints, group_means
+from ...runtime.arrays import TINY, Floats, Ints, group_means, unit_vectors
 from ...runtime.errors import RigError
 from .fitted_rig import FittedRig
 from .joint_carriers import carriers_of, moved_areas, nearest_on_bones, sums_below
@@ -99,7 +98,7 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
         turns[bone] = upright
         placed[carriers.places[bone]] = _rooted(rig, source, upright, bone, carriers.anchors[bone])
     heads, tails = np.split(placed[carriers.places], 2)
-    scales = np.exp(carriers.of_turns @ np.log(np.maximum(rig.scales, np.finfo(float).tiny)))
+    scales = np.exp(carriers.of_turns @ np.log(np.maximum(rig.scales, TINY)))
     axes = skeleton.tails - skeleton.heads
     free = np.flatnonzero(carriers.free & carriers.moving)
     turns[free] = _aimed(skeleton, heads, turns, moved_areas(rig, source))[free]
@@ -243,7 +242,7 @@ def across_axes(vectors: Floats, axes: Floats) -> Floats:
     """Take what of the vectors (b, 3) lies across the axes, to length one; any direction across if nothing does."""
     axes = unit_vectors(axes)
     flat = vectors - (vectors * axes).sum(axis=1, keepdims=True) * axes
-    lost = np.linalg.norm(flat, axis=1) <= 1e-6 * np.maximum(np.linalg.norm(vectors, axis=1), np.finfo(float).tiny)
+    lost = np.linalg.norm(flat, axis=1) <= 1e-6 * np.maximum(np.linalg.norm(vectors, axis=1), TINY)
     if lost.any():
         other = np.eye(3)[np.abs(axes[lost]).argmin(axis=1)]
         flat[lost] = other - (other * axes[lost]).sum(axis=1, keepdims=True) * axes[lost]

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
 from .skeleton import Skeleton
 
 _SAME = 1e-3
@@ -66,7 +66,7 @@ def mirrored_joints(skeleton: Skeleton, target: TriangleMesh, placed: Joints, sp
     alike = (across * other).sum(axis=1)
     across = np.where(np.abs(alike)[:, None] > np.sqrt(0.5), across + np.sign(alike)[:, None] * other, across)
     along = tails - heads
-    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), TINY)
     across -= (across * along).sum(axis=1, keepdims=True) * along
     return heads, tails, across / np.linalg.norm(across, axis=1, keepdims=True)
 
@@ -105,7 +105,7 @@ def _plane(
         return float(np.sqrt(search.nearest(mirrored).squared_distances).mean()) / extent
 
     found = missed(middle, axis)
-    axes = space[:3, :3] / np.maximum(np.linalg.norm(space[:3, :3], axis=0), np.finfo(float).tiny)
+    axes = space[:3, :3] / np.maximum(np.linalg.norm(space[:3, :3], axis=0), TINY)
     own = axes[:, np.abs(axes.T @ axis).argmax()]
     if np.abs(own @ axis) > np.cos(_OWN_ANGLE) and np.abs((middle - space[:3, 3]) @ own) < _OWN_PLACE * extent:
         snapped = missed(space[:3, 3], own)

@@ -44,8 +44,7 @@ class Homes:
     @classmethod
     def of(cls, body: TriangleMesh, target: TriangleMesh, matches: FoundPoints) -> Homes:
         """Take the homes from a map: the points of the body, m, that belong to the target's vertices."""
-        corners = body.vertices[body.triangles[matches.triangles]]
-        homes = np.einsum("kc,kcd->kd", matches.barycentric, corners)
+        homes = matches.interpolate(body.triangles, body.vertices)
         ends = target.triangles.ravel(), np.roll(target.triangles, -1, axis=1).ravel()
         one_way = csr_array((np.ones(len(ends[0])), ends), shape=(len(homes), len(homes)))
         around = csr_array(one_way + one_way.T + diags_array(np.ones(len(homes))))
@@ -66,14 +65,10 @@ class Homes:
         self, search: ClosestPoints, found: FoundPoints, points: Floats, there: Floats, homes: Floats
     ) -> FoundPoints:
         """Seek anew what was found farther from its home (k, 3) than allowed, from the vertex nearest to that."""
-        places = np.einsum("kc,kcd->kd", found.barycentric, there[search.triangles[found.triangles]])
+        places = found.interpolate(search.triangles, there)
         far = np.flatnonzero(np.square(places - homes).sum(axis=1) > self.reach**2)
         if not len(far):
             return found
         used = np.unique(search.triangles)
         starts = used[cKDTree(there[used]).query(homes[far])[1]]
-        again = search.walk(points[far], starts)
-        triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
-        distances = found.squared_distances.copy()
-        triangles[far], barycentric[far], distances[far] = again.triangles, again.barycentric, again.squared_distances
-        return FoundPoints(triangles, barycentric, distances)
+        return found.with_others(far, search.walk(points[far], starts))

@@ -13,9 +13,8 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
 from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import Floats
+from ...runtime.arrays import Floats, unit_vectors
 from .match_gate import Homes
 
 _SLIDING = 0.01
@@ -90,7 +89,6 @@ class PosedRegistration:
         points = (target.vertices - centre) / scale
         self._target = _Target(points, target.vertex_normals, shares / shares.sum(), centre, scale)
         self._target_search = ClosestPoints(target).moved(points)
-        self._target_search_triangles = target.triangles
         own = np.sqrt(body.vertex_areas / body.area)
         self._own_shares = own / own.sum()
 
@@ -138,9 +136,9 @@ class PosedRegistration:
         found = facing(self._target_search, now, normals, 1.0)
         if self._homes is not None:
             found = self._homes.on_target(self._target_search, found, now)
-        triangles = self._target_search_triangles[found.triangles]
-        places = np.einsum("kc,kcd->kd", found.barycentric, target.points[triangles])
-        seen = unit_vectors(np.einsum("kc,kcd->kd", found.barycentric, target.normals[triangles]))
+        triangles = self._target_search.triangles
+        places = found.interpolate(triangles, target.points)
+        seen = unit_vectors(found.interpolate(triangles, target.normals))
         trust = np.clip(np.einsum("kd,kd->k", seen, normals), 0, 1) ** 2
         trust = trust / (1 + found.squared_distances / _REACH**2)
         trust = trust if seeking is None else trust * seeking

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
+from .bone_fit import skinned
 from .fitted_rig import FittedRig
 from .joint_carriers import carriers_of, moved_areas
 from .joint_placement import PlacedJoints, root_direction, standing
@@ -226,7 +227,7 @@ def unposed(vertices: Floats, weights: csr_array, rest: RestPose) -> Floats:
     sound = np.linalg.det(blended) > _LEAST_DETERMINANT
     blended[~sound] = np.eye(3)
     inverse = np.linalg.solve(blended, (vertices - weights @ shifts)[:, :, None])[:, :, 0]
-    forward = weights @ (rest.heads - np.einsum("bij,bj->bi", rest.turns, rest.posed_heads))
-    forward += np.einsum("nij,nj->ni", (weights @ rest.turns.reshape(-1, 9)).reshape(-1, 3, 3), vertices)
+    way = rest.heads - np.einsum("bij,bj->bi", rest.turns, rest.posed_heads)
+    forward = skinned(vertices, weights, rest.turns, way)
     weighted = np.asarray(weights.sum(axis=1)).ravel() > 0
     return np.where(weighted[:, None], np.where(sound[:, None], inverse, forward), vertices)

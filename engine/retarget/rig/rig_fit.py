@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
@@ -19,17 +19,17 @@ from ...repair.cleaning import clean
 from ...runtime.arrays import Floats
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, Steps, run, within
+from ...runtime.progress import Progress, Steps, at_once, within
 from ...shapes.enclosing_surface import all_joined_steps
 from ...shapes.known_shapes import KnownShapes
 from ...shapes.proxy import MATCHED, Proxy, proxy_steps
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .digit_fit import with_digits
+from .digit_groups import stunted_digits, with_stiff_digits
 from .fitted_rig import FittedRig
 from .match_gate import Homes
 from .posed_registration import PosedRegistration
 from .skeleton import Skeleton
-from .stunted_digits import stunted_digits, with_stiff_digits
 
 _STIFFNESS = (8e-4, 8e-4, 4e-4, 4e-4, 1.5e-4, 1.5e-4, 8e-5, 8e-5, 8e-5)
 """How stiff the body is, round after round, against distances in units of the root of the target's area."""
@@ -52,22 +52,6 @@ _LEAST_COVERED = 0.85
 """Least part of the target on which it should, for the rig to be believed."""
 
 
-def fit_rig(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    source_to_target: SurfaceMap,
-    target_to_source: SurfaceMap,
-    *,
-    weights: csr_array,
-    skeleton: Skeleton,
-    refine: bool = True,
-    known: KnownShapes | None = None,
-) -> FittedRig:
-    """Fit a rig into another body; see `fit_rig_steps`."""
-    maps = source_to_target, target_to_source
-    return run(fit_rig_steps(source, target, *maps, weights=weights, skeleton=skeleton, refine=refine, known=known))
-
-
 @can_go_beside
 def fit_rig_steps(
     source: TriangleMesh,
@@ -80,7 +64,7 @@ def fit_rig_steps(
     refine: bool = True,
     known: KnownShapes | None = None,
 ) -> Steps[FittedRig]:
-    """Fit a rig into another body, in steps.
+    """Fit a rig into another body.
 
     The bones are found that pose the source as the maps say.  Then, in turn, the source slides onto the target, held
     by the shape that its bones give it, and the bones are found anew: where on a limb a point lies, the bones know
@@ -122,8 +106,7 @@ def fit_rig_steps(
     yield Progress(0.05, "Fitting the bones")
     forward = _FORWARD * body.vertex_areas / body.area * (x.main.original_vertices >= 0)
     backward = y.mesh.vertex_areas / y.mesh.area * (y.main.original_vertices >= 0)
-    images = y.mesh.vertices[y.mesh.triangles[there.triangles]]
-    positions = np.einsum("kc,kcd->kd", there.barycentric, images)
+    positions = there.interpolate(y.mesh.triangles, y.mesh.vertices)
     evidence = _Evidence(body, moving, y.mesh, skeleton)
     bones = evidence.bones(positions, back, forward, backward)
     maps = source_to_target, target_to_source
@@ -138,6 +121,9 @@ def fit_rig_steps(
     return FittedRig(
         skeleton, weights, bones.linear, bones.translations, bones.rotations, bones.scales, posed, registered, *maps
     )
+
+
+fit_rig = at_once(fit_rig_steps)
 
 
 def _cleaned_steps(meshes: tuple[TriangleMesh, TriangleMesh], known: KnownShapes | None) -> Steps[list[CleanSurface]]:
@@ -251,9 +237,7 @@ class _Evidence:
         shares = np.concatenate([forward_shares, back_shares])
         weights = csr_array(vstack([self.weights, evaluate @ self.weights]))
         fitted = fit_bones(vertices, there, shares, weights, self.skeleton)
-        return BoneTransforms(
-            fitted.linear, fitted.translations, fitted.rotations, fitted.scales, fitted.posed[: len(positions)]
-        )
+        return replace(fitted, posed=fitted.posed[: len(positions)])
 
 
 def _evaluation(points: FoundPoints | SurfacePoints, mesh: TriangleMesh) -> csr_array:
@@ -320,8 +304,7 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     yield Progress(0.85, "Mapping every vertex")
     steps = _maps_steps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back))
     maps = yield from within(steps, 0.85, 1.0)
-    bones = BoneTransforms(bones.linear, bones.translations, bones.rotations, bones.scales, whole)
-    return _Slid(bones, positions, maps)
+    return _Slid(replace(bones, posed=whole), positions, maps)
 
 
 def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Proxy) -> FoundPoints:
@@ -330,9 +313,9 @@ def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Prox
     chosen = FoundPoints(back.triangles[rows], back.barycentric[rows], back.squared_distances[rows])
     if proxy.is_identity:
         return chosen
-    corners = pair.x.mesh.triangles[chosen.triangles]
-    places = np.einsum("kc,kcd->kd", chosen.barycentric, pair.x.mesh.vertices[corners])
-    starts = proxy.points.nearest_vertices[corners[np.arange(len(corners)), chosen.barycentric.argmax(axis=1)]]
+    mesh = pair.x.mesh
+    places = chosen.interpolate(mesh.triangles, mesh.vertices)
+    starts = proxy.points.nearest_vertices[chosen.nearest_vertices(mesh.triangles)]
     return ClosestPoints(proxy.mesh).walk(places, starts)
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import RigError
 
 
@@ -70,3 +70,26 @@ class Skeleton:
     def children(self, bone: int) -> Ints:
         """Bones that hang directly on a bone."""
         return np.flatnonzero(self.parents == bone)
+
+    def above(self, bone: int) -> list[int]:
+        """All bones that a bone hangs on, the nearest first."""
+        found = [int(self.parents[bone])]
+        while found[-1] >= 0:
+            found.append(int(self.parents[found[-1]]))
+        return found[:-1]
+
+    def below(self, bone: int) -> list[int]:
+        """All bones that hang on a bone, parents before their children."""
+        found = [bone]
+        for each in found:
+            found += self.children(each).tolist()
+        return found[1:]
+
+    def nearest_above(self, chosen: Bools) -> Ints:
+        """For each bone the nearest of some bones that it hangs on, -1 if there is none, (b,)."""
+        found = np.full(len(self), -1)
+        for bone in self.order:
+            parent = self.parents[bone]
+            if parent >= 0:
+                found[bone] = parent if chosen[parent] else found[parent]
+        return found

@@ -11,10 +11,10 @@ from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, group_means
+from ...runtime.arrays import TINY, Bools, Floats, Ints, group_means
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
-from ...runtime.progress import Progress, Steps, run
+from ...runtime.progress import Progress, Steps, at_once
 from .bend_directions import kept_bends
 from .joint_carriers import joint_places
 from .joint_placement import PlacedJoints, across_axes, swung, with_lengths
@@ -52,25 +52,6 @@ _STEPS = np.linspace(0.1, 0.9, 5)
 """Where on a bone it is asked whether it is in the body."""
 
 
-def carry_standing_rig(
-    source: TriangleMesh,
-    target: TriangleMesh,
-    source_to_target: SurfaceMap,
-    target_to_source: SurfaceMap,
-    *,
-    skeleton: Skeleton,
-    normals: Floats,
-    frames: Floats | None = None,
-    space: Floats | None = None,
-) -> PlacedJoints:
-    """Carry a rig that stands in a body; see `carry_standing_rig_steps`."""
-    maps = source_to_target, target_to_source
-    steps = carry_standing_rig_steps(
-        source, target, *maps, skeleton=skeleton, normals=normals, frames=frames, space=space
-    )
-    return run(steps)
-
-
 @can_go_beside
 def carry_standing_rig_steps(
     source: TriangleMesh,
@@ -83,7 +64,7 @@ def carry_standing_rig_steps(
     frames: Floats | None = None,
     space: Floats | None = None,
 ) -> Steps[PlacedJoints]:
-    r"""Carry a rig that stands in a body, and moves nothing of it, into another body, in steps.
+    r"""Carry a rig that stands in a body, and moves nothing of it, into another body.
 
     Each joint moves with the surface around it, by the similarity that is nearest to where the map takes it: moving
     least squares [1]_ with the weights :math:`a_i / |p_i - x|^3` for places with areas :math:`a_i`, of which those
@@ -154,11 +135,14 @@ def carry_standing_rig_steps(
     return PlacedJoints(heads, tails, across, swung(turns, axes, tails - heads))
 
 
+carry_standing_rig = at_once(carry_standing_rig_steps)
+
+
 def standing_share(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools) -> float:
     """Tell what part of deforming bones (b,) lies inside of a body: near one if they stand in it, else near zero."""
     lengths = np.repeat(np.linalg.norm(skeleton.tails - skeleton.heads, axis=1)[deforming], len(_STEPS))
     inside = ~_outside(_on_bones(skeleton, deforming), mesh)
-    return float(lengths @ inside / max(lengths.sum(), np.finfo(float).tiny))
+    return float(lengths @ inside / max(lengths.sum(), TINY))
 
 
 def moved_into(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools, up: Floats) -> Skeleton:
@@ -183,7 +167,7 @@ def moved_into(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools, up: Flo
     """
     points = _on_bones(skeleton, deforming)
     heights = [np.array([(each @ up).min(), (each @ up).max()]) for each in (points, mesh.vertices)]
-    whole = scale = float(np.diff(heights[1])[0] / max(np.diff(heights[0])[0], np.finfo(float).tiny))
+    whole = scale = float(np.diff(heights[1])[0] / max(np.diff(heights[0])[0], TINY))
     middles = [(each.min(axis=0) + each.max(axis=0)) / 2 for each in (points, mesh.vertices)]
     way = middles[1] - scale * middles[0]
     search = ClosestPoints(mesh)
@@ -193,7 +177,7 @@ def moved_into(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools, up: Flo
         # What is inside may stay, and what is outside is to come in as far as it is out.
         goals = np.where((facing > 0)[:, None], 2 * nearest - now, now)
         here, there = points - points.mean(axis=0), goals - goals.mean(axis=0)
-        best = float((here * there).sum() / max(np.square(here).sum(), np.finfo(float).tiny))
+        best = float((here * there).sum() / max(np.square(here).sum(), TINY))
         scale = float(np.clip(best, whole / _MOST_SCALED, whole * _MOST_SCALED))
         way = goals.mean(axis=0) - scale * points.mean(axis=0)
     return type(skeleton)(skeleton.parents, *(scale * ends + way for ends in (skeleton.heads, skeleton.tails)))
@@ -213,9 +197,7 @@ def _outside(points: Floats, mesh: TriangleMesh) -> Bools:
 def _surface_beside(points: Floats, mesh: TriangleMesh, search: ClosestPoints) -> tuple[Floats, Floats]:
     """Find the nearest points (k, 3) of the surface, and how far it faces the points, (k,): negative inside."""
     found = search.nearest(points)
-    corners = mesh.triangles[found.triangles]
-    nearest = np.einsum("kc,kcd->kd", found.barycentric, mesh.vertices[corners])
-    normals = np.einsum("kc,kcd->kd", found.barycentric, mesh.vertex_normals[corners])
+    nearest, normals = (found.interpolate(mesh.triangles, each) for each in (mesh.vertices, mesh.vertex_normals))
     return nearest, ((points - nearest) * normals).sum(axis=1)
 
 
@@ -266,11 +248,11 @@ class _Field:
         """Move points (k, 3) with what is around them."""
         away = self.places - points[:, None]  # (k, n, 3)
         distances = np.linalg.norm(away, axis=2)
-        facing = np.einsum("knd,nd->kn", away, self.normals) / np.maximum(distances, np.finfo(float).tiny)
+        facing = np.einsum("knd,nd->kn", away, self.normals) / np.maximum(distances, TINY)
         distances = distances * (1 + (_AGAINST - 1) * np.clip(-facing, 0, 1))
         count = min(_NEAREST, distances.shape[1]) - 1
         near = np.partition(distances, count, axis=1)[:, count]
-        weights = self.areas / np.maximum(distances, np.maximum(near, np.finfo(float).tiny)[:, None]) ** _POWER
+        weights = self.areas / np.maximum(distances, np.maximum(near, TINY)[:, None]) ** _POWER
         return self._similar(points, weights / weights.sum(axis=1, keepdims=True))
 
     def upright(self, frames: Floats | None) -> Floats:
@@ -288,7 +270,7 @@ class _Field:
         covariances = (weights @ products).reshape(-1, 3, 3) - there[:, :, None] * here[:, None]
         spreads = weights @ np.square(self.places).sum(axis=1) - np.square(here).sum(axis=1)
         turns = nearest_rotations(covariances)
-        scales = np.einsum("kij,kij->k", turns, covariances) / np.maximum(spreads, np.finfo(float).tiny)
+        scales = np.einsum("kij,kij->k", turns, covariances) / np.maximum(spreads, TINY)
         return _Moved(there + scales[:, None] * np.einsum("kij,kj->ki", turns, points - here), turns, scales)
 
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.components import joined_components, triangle_components
-from ...mesh.connectivity.halfedges import following, group_half_edges, pair_half_edges
+from ...mesh.connectivity.halfedges import following, twins_of
 from ...mesh.polygons import Polygons
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.errors import MeshError
 
 
@@ -87,7 +87,7 @@ class CornerSheets:
         # The gradient of a linear function, times the area: the opposite sides turned by a right angle.
         turned = np.stack([np.cross(normals, side) for side in (c - b, a - c, b - a)], axis=1) / 2
         products = np.einsum("tcd,tcx->tdx", self.values, turned)
-        areas = np.maximum(self.surface.sum_at_vertices(self.surface.triangle_areas), np.finfo(float).tiny)
+        areas = np.maximum(self.surface.sum_at_vertices(self.surface.triangle_areas), TINY)
         columns = [self.surface.sum_at_vertices(column) for column in products.reshape(len(products), -1).T]
         return (np.stack(columns, axis=1) / areas[:, None]).reshape(-1, *products.shape[1:])
 
@@ -128,7 +128,7 @@ def cut_into_sheets(mesh: TriangleMesh, polygons: Polygons, values: Floats, tole
     if not np.isfinite(values).all():
         raise MeshError("Some values at the corners of faces are not finite numbers. Repair them, or leave them out.")
     at_triangles = values[polygons.triangle_corners]  # (t, 3, d)
-    twins = pair_half_edges(mesh.vertices, mesh.triangles, group_half_edges(mesh.triangles, mesh.vertex_count))
+    twins = twins_of(mesh.vertices, mesh.triangles)
     slots = at_triangles.reshape(-1, values.shape[1])
     one = np.flatnonzero(twins >= 0)
     other = twins[one]

@@ -12,8 +12,7 @@ from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.polygons import Polygons
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, unit_vectors
 from ...runtime.errors import MatchError, MeshError
 from .charts import cut_into_sheets
 from .deformation_gradients import surface_frames

@@ -18,12 +18,6 @@ _WELD_GUESSES = 0.5
 _UNKNOWN_WEIGHT = 1e-6
 """What a corner whose value was guessed counts where it is welded to one that is known."""
 
-_TOOTH = 0.52
-"""A face reaches into another part if more of its outline than this is against it; a little more than one half."""
-
-_LARGE = 20.0
-"""How many times the area of a face the parts on both sides have, so that no small part is eaten up."""
-
 
 def weld(values: Floats, polygons: Polygons, labels: Ints, known: Bools, tolerance: float) -> Floats:
     """Give corners that meet at an edge of two faces on one sheet the same values, if they nearly are already.

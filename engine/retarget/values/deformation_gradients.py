@@ -14,7 +14,7 @@ from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
 from ...runtime.errors import MeshError
 from ..rig.fitted_rig import FittedRig
 
@@ -43,8 +43,6 @@ root."""
 
 _MOST_AREA = 3.0
 """How much more than at the median the area of a mapped triangle may count, per area of its own."""
-
-_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,15 +110,13 @@ def surface_frames(
             f"The deformed surface needs one finite position for each of the {mesh.vertex_count} vertices, "
             f"but got an array of the shape {images.shape}."
         )
-    before, after = (
-        _sides(mesh.vertices, mesh.triangles, 1.0),
-        _sides(images, mesh.triangles, -1.0 if mirrored else 1.0),
-    )
+    before = _sides(mesh.vertices, mesh.triangles, 1.0)
+    after = _sides(images, mesh.triangles, -1.0 if mirrored else 1.0)
     # The transpose of the Jacobian times the area: large triangles count more, and needles are no division by zero.
-    areas = np.maximum(mesh.triangle_areas, _TINY)
+    areas = np.maximum(mesh.triangle_areas, TINY)
     jacobians = after @ np.linalg.pinv(before)  # (m, 3, 3)
     grown = np.linalg.norm(np.cross(after[:, :, 0], after[:, :, 1]), axis=1) / (2 * areas)
-    most = _MOST_AREA * np.maximum(_median(grown, areas), _TINY)
+    most = _MOST_AREA * np.maximum(_median(grown, areas), TINY)
     grown = np.minimum(grown, most)
     stretches, overall = np.sqrt(grown), float(np.sqrt(areas @ grown / areas.sum()))
     columns = np.concatenate([jacobians.reshape(-1, 9), stretches[:, None]], axis=1) * areas[:, None]
@@ -242,7 +238,7 @@ def _sides(points: Floats, triangles: Ints, side: float) -> Floats:
     first, second = b - a, c - a
     normal = np.cross(first, second)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
-    normal = side * normal / np.sqrt(np.maximum(length, _TINY))
+    normal = side * normal / np.sqrt(np.maximum(length, TINY))
     return np.stack([first, second, normal], axis=2)
 
 
@@ -274,7 +270,7 @@ def _spreader(mesh: TriangleMesh, radius: float) -> SuperLU:
 
 def _bounded(scales: Floats) -> Floats:
     """Bound scales (n,) around their middle."""
-    middle = float(np.maximum(np.median(scales), _TINY))
+    middle = float(np.maximum(np.median(scales), TINY))
     return scales.clip(middle / _LARGEST_STRETCH, middle * _LARGEST_STRETCH)
 
 

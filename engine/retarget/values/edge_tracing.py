@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from ...mesh.connectivity.edge_chains import edge_chains, way_to_root
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, ranges
+from ...runtime.arrays import TINY, Floats, Ints, ranges
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
 
@@ -41,8 +41,6 @@ _FAR = 4.0
 
 _TRIED = 8
 """Among how many edges with the nearest middles the nearest edge is sought."""
-
-_TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +136,7 @@ def nearest_edge_values(
     found = cKDTree(ends.mean(axis=1)).query(middles, np.arange(1, min(_TRIED, len(ends)) + 1))[1]
     start, along = ends[found, 0], ends[found, 1] - ends[found, 0]  # (e_y, tried, 3)
     offset = middles[:, None] - start
-    square = np.maximum(np.einsum("etd,etd->et", along, along), _TINY)
+    square = np.maximum(np.einsum("etd,etd->et", along, along), TINY)
     part = (np.einsum("etd,etd->et", offset, along) / square).clip(0, 1)
     away = np.linalg.norm(offset - part[..., None] * along, axis=2)
     return values[np.take_along_axis(found, away.argmin(axis=1)[:, None], axis=1)[:, 0]]
@@ -170,7 +168,7 @@ class _Tracer:
         """
         points = self._vertices[chain]
         candidates, missed = self._counterparts(chain)
-        step = max(float(np.median(self._reach[candidates])), _TINY)
+        step = max(float(np.median(self._reach[candidates])), TINY)
         if np.median(missed) > _FAR * step:
             return None
         anchors = self._anchors(points, missed, step)
@@ -235,7 +233,7 @@ class _Tracer:
         row = np.repeat(np.arange(len(inside)), np.diff(graph.indptr))
         middle = line.query((self._images[inside[row]] + self._images[inside[graph.indices]]) / 2)[0] ** 2
         mean = (away[row] + away[graph.indices] + 4 * middle) / 6
-        cost = (self._lengths[numbers] + _TINY) * (_ALONG + mean / step**2)
+        cost = (self._lengths[numbers] + TINY) * (_ALONG + mean / step**2)
         weighted = csr_array((cost, graph.indices, graph.indptr), shape=graph.shape)
         first, last = np.searchsorted(inside, [start, end])
         _, before = dijkstra(weighted, directed=True, indices=int(first), return_predecessors=True)
@@ -272,7 +270,7 @@ def _with_bends(points: Floats, chosen: list[int], step: float) -> Ints:
 def _from_segment(points: Floats, start: Floats, end: Floats) -> Floats:
     """Distances of points (k, 3) from a straight line between two others."""
     along = end - start
-    part = ((points - start) @ along / max(float(along @ along), _TINY)).clip(0, 1)
+    part = ((points - start) @ along / max(float(along @ along), TINY)).clip(0, 1)
     return np.linalg.norm(points - start - part[:, None] * along, axis=1)
 
 

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from ...mesh.closest_points import ClosestPoints, FoundPoints
 from ...mesh.polygons import Polygons
 from ...mesh.surface_map import SurfaceMap
+from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError
@@ -31,30 +32,6 @@ _REACHED = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class FaceSeats:
-    """A place on the image for each face.
-
-    Attributes
-    ----------
-    triangles : (f,) array of int
-        Triangle of each.
-    barycentric : (f, 3) array of float
-        Coordinates in it.
-    """
-
-    triangles: Ints
-    barycentric: Floats
-
-    def positions(self, surface: TriangleMesh) -> Floats:
-        """Where the places are in space, (f, 3)."""
-        return _positions(surface, self.triangles, self.barycentric)
-
-    def nearest_vertices(self, surface: TriangleMesh) -> Ints:
-        """Vertex of the surface, or of the same surface after cuts, that is nearest to each place in its triangle."""
-        return surface.triangles[self.triangles, self.barycentric.argmax(axis=1)]
-
-
-@dataclass(frozen=True, eq=False)
 class CornerPlaces:
     """Where the corners of faces lie on a cut surface, each on the sheet under the centre of its face.
 
@@ -68,7 +45,7 @@ class CornerPlaces:
         From there to where the map takes the corner's vertex: zero, unless that is on another sheet.
     near_border : (l,) array of bool
         Which corners may have a border between them and the centre of their face.
-    seats : FaceSeats
+    seats : FoundPoints
         The places of the faces that this holds for.
     """
 
@@ -76,7 +53,7 @@ class CornerPlaces:
     barycentric: Floats
     offsets: Floats
     near_border: Bools
-    seats: FaceSeats
+    seats: FoundPoints
 
     @cached_property
     def is_beyond(self) -> Bools:
@@ -124,7 +101,7 @@ class FacePlaces:
     ----------
     images : (l, 3) array of float
         Where the map takes the vertex of each corner.
-    seats : FaceSeats
+    seats : FoundPoints
         The place on the image under the centre of each face.
     centres : (f, 3) array of float
         Where that is.
@@ -152,8 +129,8 @@ class FacePlaces:
         corners = polygons.starts[:-1, None] + np.stack([0 * sizes, sizes // 3, 2 * sizes // 3], axis=1)
         starts = surface_map.nearest_vertices[polygons.corner_vertices[corners]]
         found = self._search.walk(polygons.face_means(self.images), starts)
-        self.seats = FaceSeats(found.triangles, found.barycentric)
-        self.centres = _positions(image, found.triangles, found.barycentric)
+        self.seats = found
+        self.centres = found.interpolate(image.triangles, image.vertices)
         self._extent = float(np.ptp(image.vertices, axis=0).max())
 
     @cached_property
@@ -171,7 +148,7 @@ class FacePlaces:
     def samples(self) -> FaceSamples:
         """The centre of each face, and a place towards each of its corners."""
         faces = self.polygons.corner_faces
-        nearest = self.seats.nearest_vertices(self.image)
+        nearest = self.seats.nearest_vertices(self.image.triangles)
         points = self.centres[faces] + _TOWARDS_CORNER * (self.images - self.centres[faces])
         found = self._search.walk(points, nearest[faces])
         return FaceSamples(
@@ -181,7 +158,7 @@ class FacePlaces:
         )
 
     def on_sheets(
-        self, sheets: CornerSheets, seats: FaceSeats | None = None, before: CornerPlaces | None = None
+        self, sheets: CornerSheets, seats: FoundPoints | None = None, before: CornerPlaces | None = None
     ) -> CornerPlaces:
         """Place each corner on the sheet under the centre of its face.
 
@@ -193,7 +170,7 @@ class FacePlaces:
         ----------
         sheets : CornerSheets
             The image, cut.
-        seats : FaceSeats, optional
+        seats : FoundPoints, optional
             Other places for the faces than those under their centres.
         before : CornerPlaces, optional
             Places for other seats, which are kept for all faces whose seat is still the same.
@@ -220,25 +197,23 @@ class FacePlaces:
             caught = missed & same[rest] & ~sheets.is_at_border(found.triangles, found.barycentric)
             triangles[rest[~caught]], barycentric[rest[~caught]] = found.triangles[~caught], found.barycentric[~caught]
             index = rest[missed & ~caught]
-            offsets[index] = self.images[index] - _positions(self.image, triangles[index], barycentric[index])
+            points = SurfacePoints.from_barycentric(self.image, triangles[index], barycentric[index])
+            offsets[index] = self.images[index] - points.positions
         return CornerPlaces(triangles, barycentric, offsets, near_border, seats)
 
-    def _walked(self, sheets: CornerSheets, seats: FaceSeats, corners: Ints) -> FoundPoints:
+    def _walked(self, sheets: CornerSheets, seats: FoundPoints, corners: Ints) -> FoundPoints:
         """Walk from the seats of faces towards the images of some corners (k,), within sheets."""
         faces = self.polygons.corner_faces[corners]
         images = self.images[corners]
         # First to a point a little inside: both sides of a cut are equally near to one upon it.
         inside = images + _INSIDE * (self.centres[faces] - images)
-        first = sheets.search.walk(inside, seats.nearest_vertices(sheets.surface)[faces])
-        starts = FaceSeats(first.triangles, first.barycentric).nearest_vertices(sheets.surface)
-        return sheets.search.walk(images, starts)
+        first = sheets.search.walk(inside, seats.nearest_vertices(sheets.surface.triangles)[faces])
+        return sheets.search.walk(images, first.nearest_vertices(sheets.surface.triangles))
 
-    def seated_beside(self, sheets: CornerSheets, seats: FaceSeats, faces: Ints, neighbours: Ints) -> FaceSeats:
+    def seated_beside(self, sheets: CornerSheets, seats: FoundPoints, faces: Ints, neighbours: Ints) -> FoundPoints:
         """Move some faces (k,) to the sheets on which other faces (k,) lie."""
-        found = sheets.search.walk(self.centres[faces], seats.nearest_vertices(sheets.surface)[neighbours])
-        triangles, barycentric = seats.triangles.copy(), seats.barycentric.copy()
-        triangles[faces], barycentric[faces] = found.triangles, found.barycentric
-        return FaceSeats(triangles, barycentric)
+        starts = seats.nearest_vertices(sheets.surface.triangles)[neighbours]
+        return seats.with_others(faces, sheets.search.walk(self.centres[faces], starts))
 
     def _is_clear(self, sheets: CornerSheets) -> Bools:
         """Say of each face whether no border of a sheet is within its reach."""
@@ -248,8 +223,3 @@ class FacePlaces:
         half = float(np.linalg.norm(second - first, axis=1).max()) / 2
         away = cKDTree((first + second) / 2).query(self.centres)[0]
         return away - half > self.reaches
-
-
-def _positions(mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -> Floats:
-    """Where places on a mesh are in space, (k, 3)."""
-    return np.einsum("kc,kcd->kd", barycentric, mesh.vertices[mesh.triangles[triangles]])

@@ -15,7 +15,7 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats
+from ...runtime.arrays import TINY, Bools, Floats, marked
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
@@ -32,8 +32,6 @@ or a power of ten apart: for `auto`."""
 
 _LEAST_CONFIDENCE = 0.02
 """Below it, a place is taken from its neighbours: only what is surely wrong, because that blurs the offsets."""
-
-_TINY = np.finfo(float).tiny
 
 
 @can_go_beside
@@ -126,7 +124,7 @@ def _factors(frames: LocalFrames, scaling: Scaling) -> Floats:
         return frames.scales
     if scaling == "none":
         return np.ones(len(frames))
-    unit = 10.0 ** np.round(np.log10(np.maximum(frames.overall, _TINY)))
+    unit = 10.0 ** np.round(np.log10(np.maximum(frames.overall, TINY)))
     same = scaling == "auto" and 1 / _SAME_SIZE <= frames.overall / unit <= _SAME_SIZE
     return np.full(len(frames), unit if same else frames.overall)
 
@@ -143,8 +141,7 @@ class _Filling:
             return
         stiffness = laplace_beltrami(mesh).stiffness
         labels = connected_components(stiffness, directed=False)[1]
-        reachable = np.zeros(labels.max() + 1, bool)
-        reachable[labels[known]] = True
+        reachable = marked(labels[known], labels.max() + 1)
         self._known = np.flatnonzero(known)
         self._unknown = np.flatnonzero(~known & reachable[labels])
         rows = stiffness[self._unknown]
@@ -152,7 +149,7 @@ class _Filling:
         inner = csc_array(rows[:, self._unknown])
         # Some vertices may hang on by edges without weight only: a little of what they have holds them.
         weights = np.abs(inner.diagonal())
-        self._held = np.full(len(weights), 1e-9 * np.maximum(weights.mean(), _TINY) if len(weights) else 0.0)
+        self._held = np.full(len(weights), 1e-9 * np.maximum(weights.mean(), TINY) if len(weights) else 0.0)
         if len(weights):
             inner.setdiag(inner.diagonal() + self._held)
             self._factor = symmetric_factor(inner)

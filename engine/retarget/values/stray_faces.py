@@ -7,7 +7,7 @@ import numpy as np
 
 from ...mesh.connectivity.components import joined_components
 from ...mesh.polygons import Polygons
-from ...runtime.arrays import Bools, Floats, Ints, numbered
+from ...runtime.arrays import TINY, Bools, Floats, Ints, numbered
 
 _SPLINTER = 0.005
 """Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
@@ -17,8 +17,6 @@ _TOOTH = 0.52
 
 _LARGE = 20.0
 """How many times the area of a face the parts on both sides have, so that no small part is eaten up."""
-
-_TINY = float(np.finfo(float).tiny)
 
 
 def splinters(polygons: Polygons, seams: Bools, labels: Ints, areas: Floats) -> tuple[Ints, Ints]:
@@ -96,7 +94,7 @@ def teeth(polygons: Polygons, seams: Bools, movable: Bools, areas: Floats, lengt
     faces, first = np.unique(face[reaching], return_index=True)
     beside = other[reaching][first]
     # Of two side by side only the better one goes.
-    gain = (against / np.maximum(outline[face], _TINY))[reaching][first]
+    gain = (against / np.maximum(outline[face], TINY))[reaching][first]
     rank = numbered(faces[np.lexsort((-faces, gain))], polygons.face_count)
     best = np.full(polygons.face_count, -1)
     np.maximum.at(best, sides[:, 0], rank[sides[:, 1]])

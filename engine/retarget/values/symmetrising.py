@@ -13,7 +13,7 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.errors import MatchError
 from .deformation_gradients import LocalFrames, surface_frames
 
@@ -130,7 +130,7 @@ def _sides(mesh: TriangleMesh, mirror: SurfaceMap, hints: Floats) -> Floats:
         )
     odd = odd / largest
     laplace = laplace_beltrami(mesh)
-    mass = np.maximum(laplace.mass / laplace.area, np.finfo(float).tiny)
+    mass = np.maximum(laplace.mass / laplace.area, TINY)
     trust = _HINT * mass * np.abs(odd)
     hold = np.full(len(mass), 1e-9 * float(mass.mean()))  # for parts without any hint
     factor = symmetric_factor(laplace.stiffness + diags_array(trust + hold))

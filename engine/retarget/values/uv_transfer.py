@@ -136,7 +136,7 @@ def _laid_out(places: FacePlaces, sheets: CornerSheets, corners: CornerPlaces, t
     face = places.polygons.corner_faces[near]
     triangles, barycentric = seats.triangles[face], seats.barycentric[face]
     centres = sheets.at(triangles, barycentric)
-    away = places.images[near] - seats.positions(places.image)[face]
+    away = places.images[near] - seats.interpolate(places.image.triangles, places.image.vertices)[face]
     expected = sheets.beyond(triangles, barycentric, away)
     usual = np.maximum(np.linalg.norm(expected, axis=1), sheets.density * np.linalg.norm(away, axis=1))
     astray = np.linalg.norm(carried[near] - centres, axis=1) > _MOST_STRETCH * usual

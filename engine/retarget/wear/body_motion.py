@@ -13,8 +13,7 @@ from scipy.spatial.distance import pdist
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, unit_vectors
 from ..values.deformation_gradients import surface_frames
 
 _TURN_RADIUS = 0.02

@@ -13,8 +13,7 @@ from scipy.sparse import csr_array
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
 
 _MOST_PARTS = 6
 """Into how many parts the side of a triangle is divided at most, so that nothing pokes through it unseen."""

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array
 
-from ...mesh.unit_vectors import unit_vectors
-from ...runtime.arrays import Floats
+from ...mesh.connectivity.adjacency import pair_matrix
+from ...runtime.arrays import TINY, Floats, unit_vectors
 from .surface_cells import SurfaceCells
 
 _BY_CURVATURE = 0.75
@@ -24,8 +24,6 @@ _CURVATURE_ROUNDS = 3
 
 _FLAT = 1e-6
 """Mean curvature, in units of 1 / sqrt(area), below which there is none but rounding."""
-
-_TINY = np.finfo(float).tiny
 
 
 def vertex_density(cells: SurfaceCells) -> Floats:
@@ -53,9 +51,8 @@ def vertex_density(cells: SurfaceCells) -> Floats:
     """
     a, b = cells.pairs.T
     count = cells.count
-    one_way = csr_array((np.ones(len(a)), (a, b)), shape=(count, count))
-    areas = np.maximum(cells.areas, _TINY)
-    around = csr_array((one_way + one_way.T + eye_array(count)) @ diags_array(areas))
+    areas = np.maximum(cells.areas, TINY)
+    around = csr_array((pair_matrix(cells.pairs, np.ones(len(a)), count) + eye_array(count)) @ diags_array(areas))
     average = csr_array(diags_array(1 / around.sum(axis=1)) @ around)
     normals = cells.normals
     for _ in range(_NORMAL_ROUNDS):

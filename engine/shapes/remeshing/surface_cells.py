@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from ...mesh.connectivity.adjacency import pair_matrix
 from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints, group_sums, marked, numbered
@@ -97,12 +98,7 @@ class SurfaceCells:
         """Distances between the centres of neighbouring cells, (c, c), symmetric."""
         a, b = self.pairs.T
         lengths = np.linalg.norm(self.positions[a] - self.positions[b], axis=1) + _LEAST_LENGTH * self.unit
-        return csr_array(
-            coo_array(
-                (np.concatenate([lengths, lengths]), (np.concatenate([a, b]), np.concatenate([b, a]))),
-                shape=(self.count, self.count),
-            )
-        )
+        return pair_matrix(self.pairs, lengths, self.count)
 
     @cached_property
     def component_labels(self) -> Ints:

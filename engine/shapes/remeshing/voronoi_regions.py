@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, group_sums, marked
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, marked
 from ...runtime.progress import Progress, Steps
 from .dual_triangulation import DualTriangulation, dual_triangulation
 from .sizing_field import vertex_density
@@ -128,7 +128,7 @@ def spread_regions_steps(cells: SurfaceCells, count: int) -> Steps[VoronoiRegion
         _, labels = _nearest_seeds(cells, seeds)
         sums = np.bincount(labels, weights, len(seeds))
         moments = group_sums(labels, weights[:, None] * cells.positions, len(seeds))
-        centres = moments / np.maximum(sums, np.finfo(float).tiny)[:, None]
+        centres = moments / np.maximum(sums, TINY)[:, None]
         offsets = cells.positions - centres[labels]
         seeds = nearest_members(labels, np.einsum("cd,cd->c", offsets, offsets), len(seeds))
     yield Progress(1 - 0.5 / (_LLOYD_STEPS + 1), _LABEL)

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from hiermatch.engine import HierMatchError, MatchSettings, close_helpers, use_processes
 from hiermatch.engine.mesh.closest_points import ClosestPoints
-from hiermatch.engine.registration.registration import points_at
 from hiermatch.engine.runtime.worker import call_background
 from hiermatch.hiermatch_addon.jobs.job import JobOptions, MatchJob, job_options
 from hiermatch.hiermatch_addon.jobs.transfer_job import TransferJob, TransferOptions
@@ -88,7 +87,7 @@ def assert_previewed(seen, pair, result):
         for mesh, points in zip(surfaces, (preview.source, preview.target), strict=True)
     ]
     assert max(np.sqrt(one.squared_distances).max() for one in found) < 0.02 * size
-    images = points_at(found[0], surfaces[0].triangles, result.source_to_target.positions)
+    images = found[0].interpolate(surfaces[0].triangles, result.source_to_target.positions)
     assert np.linalg.norm(images - preview.target, axis=1).mean() < 0.1 * size
 
 

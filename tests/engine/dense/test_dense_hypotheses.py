@@ -65,8 +65,8 @@ def symmetric():
 
 def test_the_true_map_comes_first(poses, proposed):
     best = proposed[0]
-    assert error(poses[2], best.images_on_y) < 0.02
-    assert error(poses[2], best.images_on_x) < 0.02
+    assert error(poses[2], best.images.on_y) < 0.02
+    assert error(poses[2], best.images.on_x) < 0.02
     assert best.orientation > 0.6
     assert best.isometric_defect < 0.1
     assert best.origin == "extremities"
@@ -80,25 +80,25 @@ def test_hypotheses_are_ordered_few_and_distinct(poses, proposed):
     places = poses[1].mesh.vertices
     for i, first in enumerate(proposed):
         for second in proposed[:i]:
-            assert np.linalg.norm(places[first.images_on_y] - places[second.images_on_y], axis=1).mean() > 0.02
+            assert np.linalg.norm(places[first.images.on_y] - places[second.images.on_y], axis=1).mean() > 0.02
 
 
 def test_maps_are_close_to_inverse_to_each_other(poses, proposed):
     best = proposed[0]
-    there_and_back = best.images_on_x[best.images_on_y]
+    there_and_back = best.images.on_x[best.images.on_y]
     assert error(poses[2], there_and_back) < 0.01
 
 
 def test_the_mirror_image_is_found_and_flagged(symmetric):
     x, y, rest = symmetric
     found = hypotheses(x, y)
-    assert error(rest, found[0].images_on_y) < 0.03
+    assert error(rest, found[0].images.on_y) < 0.03
     assert found[0].orientation > 0.5
     mirrored = rest * [1, -1, 1]
     reversing = [h for h in found if h.orientation < 0]
     assert reversing
-    assert min(error(rest, h.images_on_y, mirrored) for h in reversing) < 0.05
-    assert all(error(rest, h.images_on_y, mirrored) > 0.05 for h in found if h.orientation > 0.3)
+    assert min(error(rest, h.images.on_y, mirrored) for h in reversing) < 0.05
+    assert all(error(rest, h.images.on_y, mirrored) > 0.05 for h in found if h.orientation > 0.3)
 
 
 def test_a_mirrored_target_gives_maps_that_mirror(poses):
@@ -106,13 +106,13 @@ def test_a_mirrored_target_gives_maps_that_mirror(poses):
     reflected = prepared(y.mesh.vertices * [1, -1, 1], y.mesh.triangles[:, ::-1])
     reversing = [h for h in hypotheses(x, reflected) if h.orientation < 0]
     assert reversing
-    assert error(rest, reversing[0].images_on_y) < 0.03
+    assert error(rest, reversing[0].images.on_y) < 0.03
 
 
 def test_without_mirrored_maps_the_others_are_the_same(poses, proposed):
     found = hypotheses(*poses[:2], mirrored=False)
     assert all(h.orientation > 0 for h in found)
-    assert error(poses[2], found[0].images_on_y) < 0.02
+    assert error(poses[2], found[0].images.on_y) < 0.02
     assert found[0].score == pytest.approx(proposed[0].score, abs=0.2)
 
 
@@ -120,15 +120,15 @@ def test_the_map_to_all_vertices_is_the_same_in_steps(poses):
     x, y, _ = poses
     first, second = (hypotheses(x, y)[0] for _ in range(2))
     steps = run(first.images_steps())
-    assert (steps.on_y == second.images_on_y).all()
-    assert (steps.on_x == second.images_on_x).all()
+    assert (steps.on_y == second.images.on_y).all()
+    assert (steps.on_x == second.images.on_x).all()
     assert run(first.images_steps()) is first.images
 
 
 def test_a_shape_is_mapped_to_itself_by_the_identity(poses):
     x, _, rest = poses
     best = hypotheses(x, x)[0]
-    assert (best.images_on_y == np.arange(len(rest))).mean() > 0.99
+    assert (best.images.on_y == np.arange(len(rest))).mean() > 0.99
     assert best.orientation > 0.99
     assert best.score < -10
 
@@ -149,7 +149,7 @@ def test_scores_do_not_depend_on_place_scale_or_order(poses, proposed, change):
     found = hypotheses(x, prepared(vertices, triangles))
     assert found[0].score == pytest.approx(proposed[0].score, abs=0.05)
     assert found[0].orientation == pytest.approx(proposed[0].orientation, abs=0.02)
-    moved = np.linalg.norm(rest[np.argsort(new)[found[0].images_on_y]] - rest[proposed[0].images_on_y], axis=1)
+    moved = np.linalg.norm(rest[np.argsort(new)[found[0].images.on_y]] - rest[proposed[0].images.on_y], axis=1)
     assert (moved > 0.05).mean() < 0.01
 
 
@@ -158,8 +158,8 @@ def test_more_samples_than_used_do_not_matter_and_the_answer_is_the_same_every_t
     again = prepared(y.mesh.vertices, y.mesh.triangles)
     run(again.sample_steps(SAMPLES + 100))
     for first, second in zip(hypotheses(x, again), proposed, strict=True):
-        np.testing.assert_array_equal(first.images_on_y, second.images_on_y)
-        np.testing.assert_array_equal(first.images_on_x, second.images_on_x)
+        np.testing.assert_array_equal(first.images.on_y, second.images.on_y)
+        np.testing.assert_array_equal(first.images.on_x, second.images.on_x)
         assert first.terms == second.terms
 
 
@@ -171,7 +171,7 @@ def test_known_landmarks_enter_the_comparison(poses):
     places = x.samples[20:60]  # not the extremities; the vertices of both poses have the same numbers
     rows_x, rows_y = (np.stack([_row(shape, place) for place in places]) for shape in (x, y))
     found = hypotheses(x, y, [LandmarkStart(rows_x, rows_y, "friend")])
-    assert error(rest, found[0].images_on_y) < 0.02
+    assert error(rest, found[0].images.on_y) < 0.02
     assert {h.origin for h in found} <= {"extremities", "friend"}
 
 
@@ -180,7 +180,7 @@ def test_landmarks_are_enough_without_a_search(poses):
     rows = (np.stack([_row(shape, place) for place in x.samples[:30]]) for shape in (x, y))
     (only,) = hypotheses(x, y, [LandmarkStart(*rows)], search=False)
     assert only.origin == "landmarks"
-    assert error(rest, only.images_on_y) < 0.02
+    assert error(rest, only.images.on_y) < 0.02
 
 
 def test_a_start_can_be_taken_as_it_is(poses, proposed):
@@ -188,8 +188,8 @@ def test_a_start_can_be_taken_as_it_is(poses, proposed):
     known = x.samples[:30]
     start = LandmarkStart(x.solver.distances(known) / x.scale, y.solver.distances(known) / y.scale, "known")
     found = unrefined_hypothesis(proposed[0].domains, start)
-    assert error(rest, found.images_on_y) < 0.02
-    assert error(rest, found.images_on_x) < 0.02
+    assert error(rest, found.images.on_y) < 0.02
+    assert error(rest, found.images.on_x) < 0.02
     assert found.orientation > 0.6
     assert found.origin == "known"
 
@@ -208,7 +208,7 @@ def test_matchings_are_proposed_as_they_are_from_either_side(poses, proposed):
     for hypothesis in found:
         assert hypothesis.origin == "matching"
         assert hypothesis.orientation > 0.3
-    assert min(error(rest, h.images_on_y) for h in found) < 0.04
+    assert min(error(rest, h.images.on_y) for h in found) < 0.04
 
 
 def test_a_matching_that_only_the_target_offers_is_turned_round(poses, proposed, monkeypatch):
@@ -222,8 +222,8 @@ def test_a_matching_that_only_the_target_offers_is_turned_round(poses, proposed,
 
     monkeypatch.setattr(map_hypotheses, "fitting_maps_steps", only_back)
     (found,) = run(unrefined_hypotheses_steps((x, y)))
-    assert error(rest, found.images_on_y) < 0.03
-    assert error(rest, found.images_on_x) < 0.03
+    assert error(rest, found.images.on_y) < 0.03
+    assert error(rest, found.images.on_x) < 0.03
 
 
 def test_a_map_that_functional_maps_refine_is_scored_like_hypotheses(poses, proposed):
@@ -231,7 +231,7 @@ def test_a_map_that_functional_maps_refine_is_scored_like_hypotheses(poses, prop
     refined = run(refined_hypothesis_steps(proposed[0].domains, PointMaps(everywhere, everywhere), "truth"))
     assert refined.score == pytest.approx(proposed[0].score, abs=0.3)
     assert refined.origin == "truth"
-    assert error(poses[2], refined.images_on_y) < 0.02
+    assert error(poses[2], refined.images.on_y) < 0.02
 
 
 def test_maps_between_all_vertices_are_scored_like_hypotheses(poses, proposed):
@@ -254,7 +254,7 @@ def test_a_wrong_start_does_not_win(poses):
     start = LandmarkStart(x.sample_rows[:30], y.sample_rows[rng.permutation(30)], "stranger")
     best = hypotheses(x, y, [start])[0]
     assert best.origin == "extremities"
-    assert error(rest, best.images_on_y) < 0.02
+    assert error(rest, best.images.on_y) < 0.02
 
 
 def test_landmarks_that_do_not_fit_are_refused(poses):
@@ -277,8 +277,8 @@ def test_meshes_with_few_vertices_are_mapped(mesh):
     count = x.mesh.vertex_count
     assert found
     for h in found:
-        assert h.images_on_y.shape == h.images_on_x.shape == (count,)
-        assert 0 <= h.images_on_y.min() <= h.images_on_y.max() < count
+        assert h.images.on_y.shape == h.images.on_x.shape == (count,)
+        assert 0 <= h.images.on_y.min() <= h.images.on_y.max() < count
         assert np.isfinite(h.score)
         assert -1 <= h.orientation <= 1
 
@@ -287,7 +287,7 @@ def test_shapes_of_very_different_vertex_counts_are_mapped(poses):
     x, _, rest = poses
     vertices, triangles, other = creature(1.0, 7)
     found = hypotheses(x, prepared(vertices, triangles))
-    assert np.linalg.norm(other[found[0].images_on_y] - rest, axis=1).mean() < 0.2
+    assert np.linalg.norm(other[found[0].images.on_y] - rest, axis=1).mean() < 0.2
 
 
 def _row(shape, vertex):

@@ -10,6 +10,7 @@ import pytest
 
 from engine.dense import landmark_selection
 from engine.dense.dense_hypotheses import LandmarkStart
+from engine.dense.functional_maps import PointMaps
 from engine.dense.landmark_selection import agrees, landmark_distance, steered_hypotheses_steps
 from engine.runtime.progress import Progress, run
 from engine.shapes.landmarks import LandmarkPlaces, Landmarks
@@ -33,14 +34,18 @@ class Line:
 
 @dataclass(frozen=True)
 class LineMap:
-    """A map that takes vertex i to images_on_y[i], and back."""
+    """A map that takes vertex i to on_y[i], and back."""
 
-    images_on_y: np.ndarray
-    images_on_x: np.ndarray
+    on_y: np.ndarray
+    on_x: np.ndarray
     score: float = 0.0
     orientation: float = 1.0
     origin: str = ""
     domains: tuple = ()
+
+    @property
+    def images(self):
+        return PointMaps(self.on_y, self.on_x)
 
 
 def scene(pairs):
@@ -76,7 +81,7 @@ def test_maps_agree_up_to_what_rough_ones_are_off():
     x, y, landmarks = scene([(5, 5), (15, 15)])
     assert agrees(x, y, landmarks, LineMap(SAME, SAME))
     one, two = (LineMap(moved, moved) for moved in ((SAME + off).clip(max=COUNT - 1) for off in (1, 2)))
-    assert agrees(x, y, landmarks, LineMap(one.images_on_y, SAME))
+    assert agrees(x, y, landmarks, LineMap(one.on_y, SAME))
     assert not agrees(x, y, landmarks, two)
 
 
@@ -90,7 +95,7 @@ def test_where_the_best_map_agrees_no_reflection_is_tried(monkeypatch):
     assert not found.mirrored
     # What contradicts the landmark comes last though it seemed better.
     assert [h.score for h in found.hypotheses] == pytest.approx([3.0, 0.5 + 20 * 1.0])
-    assert found.hypotheses[0].images_on_y is SAME
+    assert found.hypotheses[0].images.on_y is SAME
 
 
 def test_a_landmark_on_the_other_side_mirrors_the_map(monkeypatch):
@@ -99,7 +104,7 @@ def test_a_landmark_on_the_other_side_mirrors_the_map(monkeypatch):
     found = run(steered_hypotheses_steps(x, y, [], landmarks))
     assert found.mirrored
     assert found.x.is_reflection
-    assert found.hypotheses[0].images_on_y is MIRROR
+    assert found.hypotheses[0].images.on_y is MIRROR
     assert found.hypotheses[0].score == pytest.approx(0.3)
 
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays made of indices."""
+"""Arrays of indices and of vectors."""
 
 import numpy as np
+import pytest
+from scipy.spatial.distance import cdist
 
-from engine.runtime.arrays import group_means, group_sums, marked, numbered, ranges
+from engine.runtime.arrays import group_means, group_sums, marked, numbered, ranges, squared_differences, unit_vectors
 
 
 def test_places_are_marked_whatever_the_shape_of_their_array():
@@ -30,3 +32,47 @@ def test_rows_are_averaged_by_group():
 def test_ranges_follow_one_another():
     np.testing.assert_array_equal(ranges(np.array([5, 0, 9]), np.array([2, 0, 3])), [5, 6, 9, 10, 11])
     assert len(ranges(np.empty(0, np.int64), np.empty(0, np.int64))) == 0
+
+
+def test_directions_stay_and_lengths_become_one():
+    vectors = np.random.default_rng(0).normal(size=(50, 3)) * np.logspace(-150, 150, 50)[:, None]
+    units = unit_vectors(vectors)
+    np.testing.assert_allclose(np.linalg.norm(units, axis=1), 1, rtol=1e-12)
+    np.testing.assert_allclose(np.cross(units, vectors) / np.linalg.norm(vectors, axis=1, keepdims=True), 0, atol=1e-12)
+    assert (np.einsum("nd,nd->n", units, vectors) > 0).all()
+
+
+def test_zero_and_what_is_as_short_as_said_become_zero():
+    vectors = np.array([[0.0, 0, 0], [1e-7, 0, 0], [0, 2e-6, 0]])
+    np.testing.assert_array_equal(unit_vectors(vectors), [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    np.testing.assert_array_equal(unit_vectors(vectors, 1e-6), [[0, 0, 0], [0, 0, 0], [0, 1, 0]])
+
+
+@pytest.mark.parametrize("shape", [(1, 1, 1), (7, 4, 3), (5, 9, 20), (0, 3, 2), (4, 0, 2)])
+def test_they_are_the_squares_of_the_distances(shape):
+    n, m, d = shape
+    rng = np.random.default_rng(0)
+    first, second = rng.normal(size=(n, d)), rng.normal(size=(m, d))
+    found = squared_differences(first, second)
+    assert found.shape == (n, m)
+    np.testing.assert_allclose(found, cdist(first, second, "sqeuclidean"), rtol=1e-10, atol=1e-12)
+
+
+def test_exact_on_whole_numbers():
+    first, second = np.array([[0.0, 0], [3, 4]]), np.array([[3.0, 4], [0, 0], [-3, 4]])
+    np.testing.assert_array_equal(squared_differences(first, second), [[25, 0, 25], [0, 25, 36]])
+
+
+def test_rounding_makes_none_negative():
+    rows = np.random.default_rng(1).normal(size=(200, 3)) + 1e5
+    found = squared_differences(rows, rows)
+    # Without a limit, half of the zeros on the diagonal would be below.
+    assert (found >= 0).all()
+    assert np.isfinite(np.sqrt(found)).all()
+    assert np.diag(found).max() < 1e-4
+
+
+def test_exchanging_the_arrays_transposes():
+    rng = np.random.default_rng(2)
+    first, second = rng.random((6, 5)), rng.random((8, 5))
+    np.testing.assert_allclose(squared_differences(first, second), squared_differences(second, first).T, atol=1e-14)

