@@ -50,8 +50,12 @@ class _Overlay:
     """What is drawn, and the batches on the graphics card that draw it."""
 
     def __init__(self) -> None:
-        self.pending: tuple[str, int] | None = None
         self.handles: list[Any] = []
+        self.forget()
+
+    def forget(self) -> None:
+        """Keep nothing of what was drawn: batches that are left until Blender ends outlive the graphics system."""
+        self.pending: tuple[str, int] | None = None
         self.edited = False
         self._signature: tuple[object, ...] | None = None
         self._drawing = Drawing()
@@ -236,6 +240,7 @@ def stop_overlay() -> None:
     cast("Any", bpy.app.handlers).depsgraph_update_post.remove(_on_update)
     while _overlay.handles:
         bpy.types.SpaceView3D.draw_handler_remove(_overlay.handles.pop(), "WINDOW")
+    _overlay.forget()
 
 
 def _eye(context: bpy.types.Context) -> tuple[NDArray[np.float64], tuple[int, int]]:

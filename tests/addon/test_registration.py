@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import inspect
+import weakref
 from dataclasses import fields
 
 import bpy
 import pytest
 from hiermatch.engine import MatchSettings
+from hiermatch.hiermatch_addon.overlay import drawing
 from hiermatch.hiermatch_addon.properties import freshness
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, SETTING_NAMES, match_settings
 from hiermatch.hiermatch_addon.registration import CLASSES
@@ -53,6 +55,20 @@ def test_unregister_leaves_nothing_and_register_comes_back(extension):
     assert bpy.context.scene.hiermatch.points == MatchSettings().points
     assert len(our_handlers()) == 5
     assert {cls.bl_idname.split(".")[1] for cls in OPERATORS} == set(dir(bpy.ops.hiermatch))
+
+
+def test_unregister_frees_what_the_overlay_has_drawn(extension):
+    """Batches that are left when Blender ends are told of as memory that was not freed."""
+    batch = type("Batch", (), {})()
+    kept = weakref.ref(batch)
+    drawing._overlay._lines = [(batch, 1.0)]  # noqa: SLF001
+    drawing._overlay._previewed = (None, [(batch, batch, 1.0)])  # noqa: SLF001
+    del batch
+    extension.unregister()
+    try:
+        assert kept() is None
+    finally:
+        extension.register()
 
 
 @pytest.mark.parametrize("owner", ["hiermatch.match", "scene"])

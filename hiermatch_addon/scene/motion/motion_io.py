@@ -242,9 +242,9 @@ def write_action(
 def _leave_action(armature: bpy.types.Object, moved: set[tuple[str, str]]) -> None:
     """Put channels of bones to rest that the action played now moves, if it was carried over, and the next does not."""
     before = played_action(armature)
-    if before is None or _MARKER not in before:
+    if before is None or _MARKER not in cast("Any", before):
         return
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones: Any = cast("bpy.types.Pose", armature.pose).bones
     for bone, channel in {(bone, channel) for bone, channel, _ in bone_curves(before, armature)} - moved:
         setattr(bones[bone], channel, bones[bone].bl_rna.properties[channel].default_array)
 
