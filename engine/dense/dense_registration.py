@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from operator import itemgetter
+from operator import attrgetter
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..runtime.errors import MatchError
 from ..runtime.progress import Preview, Progress, Steps, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
-from .credibility import EVEN, RISE, is_clear_choice
+from .credibility import is_clear_choice, may_become_likely, place_credit
 from .dense_hypotheses import USUAL, LandmarkStart, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
 from .initial_maps import RoughSearch
 from .landmark_selection import steered_hypotheses_steps
@@ -57,6 +57,8 @@ class RegisteredPair:
     alternatives : tuple of FoundPoints
         Where other maps that are as credible take the vertices of the source, the most credible first: of a body that
         is the same from several sides.  They are known about as well as they had to be to be compared.
+    in_place : float
+        How probably the map is right because it leaves everything where it stands, see `Follower.in_place`.
     """
 
     x: Shape
@@ -71,11 +73,42 @@ class RegisteredPair:
     mirrored: bool = False
     trips: tuple[Floats, Floats] | None = None
     alternatives: tuple[FoundPoints, ...] = ()
+    in_place: float = 0.0
 
     @property
     def likeness(self) -> float | None:
         """How credible the best candidate was, whatever the others; None with landmarks or without candidates."""
         return self.candidates[0].likeness if self.landmarks is None and self.candidates else None
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """Another map than the one that is chosen.
+
+    Attributes
+    ----------
+    map : Registration or MapHypothesis
+        Where it was registered, or the map that was not.
+    behind : float
+        By how much it is less credible.
+    behind_elsewhere : float
+        The same if nothing is made of what either leaves in place.
+    """
+
+    map: Registration | MapHypothesis
+    behind: float
+    behind_elsewhere: float
+
+    @classmethod
+    def of(cls, other: Candidate | CloseFit, best: Candidate | CloseFit) -> Rival:
+        """Compare two that were registered in one way."""
+        behind = other.score - best.score
+        return cls(other.registration, behind, behind + other.credit - best.credit)
+
+    @property
+    def least(self) -> float:
+        """The smaller of both, 0 at least: the limbs of what is chosen may have been put right."""
+        return max(min(self.behind, self.behind_elsewhere), 0.0)
 
 
 def registered_pair_steps(
@@ -153,7 +186,7 @@ def registered_pair_steps(
     if alike < selection.least:
         raise MatchError("The surfaces are not enough alike to be matched.")
     # Where no map is looked for, the one that is given is followed as it is; and where none can be right, the best one.
-    hopeful = alike >= EVEN - RISE
+    hopeful = landmarks is not None or any(may_become_likely(c.likeness, c.in_place) for c in candidates)
     proposers = PROPOSERS if search and hopeful else ()
     contest = Contest(follow, landmarks, selection)
     for number, propose in enumerate(proposers):
@@ -170,7 +203,8 @@ def registered_pair_steps(
     rivals = _rivals(best, others, fits, () if as_they_are else untried, source.mass)
     margin, alternatives = yield from alternatives_steps(follow, rivals, closest)
     registered = closest.registration, closest.reverse, (best, *others)
-    return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips, alternatives)
+    in_place = follow.in_place(closest.registration.positions)
+    return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips, alternatives, in_place)
 
 
 def _preview(hypothesis: MapHypothesis, registration: Registration | None = None) -> Preview:
@@ -192,28 +226,29 @@ def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[
 
 def _rivals(
     best: Candidate, others: list[Candidate], fits: list[CloseFit], untried: Sequence[MapHypothesis], areas: Floats
-) -> list[tuple[float, Registration | MapHypothesis]]:
-    """List other maps, and by how much each is less credible, by its own score if it was not registered."""
+) -> list[Rival]:
+    """List other maps, and how each compares, by its own score if it was not registered."""
     # Starts that differ in a limb may lead to the same place at last.
     last = fits[0].registration.positions
     others_closely = [fit for fit in fits[1:] if are_distinct(last, fit.registration.positions, areas)]
-    rivals: list[tuple[float, Registration | MapHypothesis]]
-    rivals = [(fit.score - fits[0].score, fit.registration) for fit in others_closely]
+    rivals = [Rival.of(fit, fits[0]) for fit in others_closely]
     closely = {id(fit.candidate) for fit in fits}
     for other in others:
         taken = other.registration.positions
         if id(other) not in closely and are_distinct(best.registration.positions, taken, areas):
-            rivals.append((other.score - best.score, other.registration))
-    return rivals + [(hypothesis.score - best.hypothesis.score, hypothesis) for hypothesis in untried]
+            rivals.append(Rival.of(other, best))
+    unregistered = [(each, each.score - best.hypothesis.score) for each in untried]
+    return rivals + [Rival(each, behind, behind) for each, behind in unregistered]
 
 
 def alternatives_steps(
-    follow: Follower, rivals: list[tuple[float, Registration | MapHypothesis]], chosen: CloseFit
+    follow: Follower, rivals: list[Rival], chosen: CloseFit
 ) -> Steps[tuple[float | None, tuple[FoundPoints, ...]]]:
     """Choose the maps that are about as credible as the one that is taken, and differ from it and each other.
 
     Where neither of two maps finds a partner, as for a hat if the other body has none, it says nothing that they lead
-    elsewhere.
+    elsewhere.  What is left in place makes the choice clear, but what would be as credible without that is offered all
+    the same: a table may be meant to be turned.
 
     Returns
     -------
@@ -226,21 +261,23 @@ def alternatives_steps(
     taken = [chosen.registration.positions]
     found: list[FoundPoints] = []
     margin = None
-    for gap, rival in sorted(rivals, key=itemgetter(0)):
-        # With limbs put right, the hypothesis is another one than those that were sorted out by their scores.
-        distance = max(gap, 0.0)
-        if is_clear_choice(distance):
-            return distance if margin is None else margin, tuple(found)
+    ranked = sorted(rivals, key=attrgetter("least"))
+    for number, each in enumerate(ranked):
+        if is_clear_choice(each.least):
+            nearest = min(other.behind for other in ranked[number:])
+            return nearest if margin is None else margin, tuple(found)
+        rival, behind = each.map, each.behind
         if isinstance(rival, MapHypothesis):
             images = yield from within(rival.images_steps(), 1.0, 1.0)
             positions, points = follow.start(images), at_vertices(follow.target, images.on_y)
             back = at_vertices(follow.source, images.on_x)
+            behind += max(chosen.credit - place_credit(follow.in_place(positions)), 0.0)
         else:
             positions, points, back = rival.positions, rival.on_target, rival.on_source
         areas = follow.source.mass * (partnered | follow.partnered(points, back))
         distinct = [are_distinct(positions, other, areas) for other in taken]
-        if distinct[0] and margin is None:
-            margin = distance
+        if distinct[0]:
+            margin = max(behind, 0.0) if margin is None else min(margin, max(behind, 0.0))
         if all(distinct):
             taken.append(positions)
             found.append(points)

@@ -212,9 +212,10 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
         back = pinned(main_y, main_x, back, partners, here, search=x.dense_search)
     yield Progress(0.8, "Judging the map")
     doubts = _doubts(pair)
-    quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=pair.likeness, doubt=doubts[0])
+    alike, in_place = pair.likeness, pair.in_place
+    quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=alike, in_place=in_place, doubt=doubts[0])
     yield Progress(0.85, "Mapping every vertex")
-    credibility = vertex_credibility(quality.orientation, pair.margin, pair.likeness)
+    credibility = vertex_credibility(quality.orientation, pair.margin, alike, in_place)
     steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, credibility=credibility, doubts=doubts)
     whole = yield from within(steps, 0.85, 1.0)
     forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)

@@ -12,7 +12,7 @@ from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats
-from .credibility import EVEN, is_clear_choice, is_less_alike, probability_chosen, probability_right
+from .credibility import is_clear_choice, is_likely, probability_chosen, probability_right
 from .missing_parts import round_trips, with_partner
 
 _TRUSTED_ROUND_TRIP = 0.02
@@ -66,7 +66,9 @@ class MatchQuality:
         Part of the surface of either mesh, of the one that has more of it, that is in separate pieces without a
         counterpart on the other.
     alternatives : int
-        How many other maps are about as credible, and offered.
+        How many other maps are about as credible, wherever things stand, and offered.
+    in_place : float
+        How probably the map is right because it leaves everything where it stands, see `probability_in_place`.
     """
 
     orientation: float
@@ -80,6 +82,7 @@ class MatchQuality:
     likeness: float | None = None
     pieces_alone: float = 0.0
     alternatives: int = 0
+    in_place: float = 0.0
 
 
 def map_confidence(
@@ -143,6 +146,7 @@ def assess_maps(
     margin: float | None,
     *,
     likeness: float | None = None,
+    in_place: float = 0.0,
     doubt: Floats | float = 0.0,
 ) -> MatchQuality:
     """Measure a pair of maps between two surfaces.
@@ -157,6 +161,8 @@ def assess_maps(
         How clear the choice of the map was.
     likeness : float, optional
         How credible the map was.
+    in_place : float
+        How probably it is right because it leaves everything where it stands.
     doubt : (n,) array of float, optional
         How far images may err, see `map_confidence`.
     """
@@ -169,9 +175,9 @@ def assess_maps(
     trips = _trips(source, there, back, doubt)
     disagreement = float(np.average(trips, weights=source.vertex_areas))
     confidence = float(np.average(_confidence(source, target, there, known, trips), weights=source.vertex_areas))
-    confidence *= max(orientation, 0.0) * probability_chosen(margin) * probability_right(likeness)
+    confidence *= max(orientation, 0.0) * probability_chosen(margin) * probability_right(likeness, in_place)
     numbers = orientation, distortion, coverage, disagreement, margin, confidence
-    return _worded(MatchQuality(*numbers, "", source_coverage, likeness))
+    return _worded(MatchQuality(*numbers, "", source_coverage, likeness, in_place=in_place))
 
 
 def with_pieces(quality: MatchQuality, alone: float, share: float) -> MatchQuality:
@@ -210,10 +216,12 @@ def _doubt(quality: MatchQuality) -> str:
     """Say why the map as a whole may be wrong; nothing if there is no reason."""
     if quality.orientation < 0.3:
         return "The map turns large parts of the surface over: do not trust it; try landmarks."
-    if is_less_alike(quality.likeness, EVEN):
+    if not is_likely(quality.likeness, quality.in_place):
         return "The shapes have too little in common: leave out what only one of them has, or try landmarks."
     if quality.alternatives:
         count = quality.alternatives + 1
+        if is_clear_choice(quality.margin):
+            return f"{count} maps are about as likely by their shape, and this one leaves all in place: check it."
         return f"{count} maps are about as likely: choose another answer if this one is wrong, or add a landmark."
     if not is_clear_choice(quality.margin):
         return "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong."

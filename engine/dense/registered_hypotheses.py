@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..geometry.procrustes import agreement_in_place
 from ..mesh.closest_points import FoundPoints
 from ..mesh.surface_points import SurfacePoints
 from ..registration.axial_twists import rolled_back, untwisted
@@ -32,8 +33,9 @@ from ..registration.registration import (
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
+from ..shapes.borders import has_border
 from ..shapes.shape import Shape
-from .credibility import likeness, registered_score
+from .credibility import likeness, place_credit, probability_in_place, registered_score
 from .dense_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
 from .functional_maps import PointMaps
 from .missing_parts import with_partner
@@ -99,6 +101,8 @@ class Candidate:
         logarithm of what the deformation costs.
     isometry : float
         From 0, bodies of unlike build, to 1, one body in two poses, by wave kernel signatures where it was registered.
+    in_place : float
+        How probably the map is right because it leaves everything where it stands, see `Follower.in_place`.
     """
 
     hypothesis: MapHypothesis
@@ -106,9 +110,15 @@ class Candidate:
     score: float
     likeness: float
     isometry: float
+    in_place: float = 0.0
+
+    @property
+    def credit(self) -> float:
+        """By how much its score is smaller because of what it leaves in place."""
+        return place_credit(self.in_place)
 
 
-_Judged = tuple[Registration, float, float, float]
+_Judged = tuple[Registration, float, float, float, float]
 """All of a candidate but its hypothesis."""
 
 
@@ -127,12 +137,15 @@ class CloseFit:
     score : float
         Smaller is more credible: the mean of the scores of the soft registration and of the close one.  A rough start
         may lead the soft one of the true map to where the surfaces meet badly, and a close one fits wrong maps as well.
+    credit : float
+        By how much that is smaller because of what is left in place.
     """
 
     candidate: Candidate
     registration: Registration
     reverse: Registration
     score: float
+    credit: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,6 +182,11 @@ class Follower:
     def _functions(self) -> Floats:
         """All functions of the source, (n_x, k)."""
         return self.x.unit_functions()
+
+    @cached_property
+    def _are_closed(self) -> bool:
+        """Whether nothing can have been cut off."""
+        return not (has_border(self.x) or has_border(self.y))
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out what the surfaces stand for, and what is made in no time."""
@@ -245,10 +263,11 @@ class Follower:
 
     def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
         """Say how credible a hypothesis is by the soft registration that it led to."""
-        score, terms = self._assessed(hypothesis, registration)
+        score, terms, in_place = self._assessed(hypothesis, registration)
         # The rough map that it began with may be no isometry though the bodies are alike.
         isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))
-        return Candidate(hypothesis, registration, score, likeness(hypothesis.score, registration.cost), isometry)
+        alike = likeness(hypothesis.score, registration.cost)
+        return Candidate(hypothesis, registration, score, alike, isometry, in_place)
 
     def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
         """Register several candidates closely; see `close_steps`."""
@@ -271,8 +290,9 @@ class Follower:
         else:  # what landmarks hold stays the way round it is
             (first,) = yield from within(register_all_steps([positions]), 0.0, 0.2)
         reverse, final = yield from within(self.again_steps(candidate, first), 0.2, 1.0)
-        score = (candidate.score + self._assessed(candidate.hypothesis, final)[0]) / 2
-        return CloseFit(candidate, final, reverse, score)
+        score, _, in_place = self._assessed(candidate.hypothesis, final)
+        credit = (candidate.credit + place_credit(in_place)) / 2
+        return CloseFit(candidate, final, reverse, (candidate.score + score) / 2, credit)
 
     def settled_steps(self, fit: CloseFit) -> Steps[tuple[CloseFit, Trips]]:
         """Go on from either side in turn, while the two disagree and come nearer to each other by that.
@@ -336,10 +356,23 @@ class Follower:
         steps = restart(source, target, self.x.unit_functions(_DETAILED), matches, ties=self.ties, guides=guides)
         return reverse, (yield from within(steps, 0.5, 1.0))
 
-    def _assessed(self, hypothesis: MapHypothesis, registration: Registration) -> tuple[float, Mapping[str, float]]:
-        """Score what a hypothesis has led to; and the terms of the score, without the gaps that are left."""
+    def _assessed(
+        self, hypothesis: MapHypothesis, registration: Registration
+    ) -> tuple[float, Mapping[str, float], float]:
+        """Score what a hypothesis has led to; the terms of the score without the gaps; how probably it is in place."""
         lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
-        return registered_score(lead.score, registration.gaps), lead.terms
+        in_place = self.in_place(registration.positions)
+        return registered_score(lead.score, registration.gaps, in_place), lead.terms, in_place
+
+    def in_place(self, positions: Floats) -> float:
+        """Estimate how probably it is right where the source lies because it is left as it stands, 0 to 1.
+
+        It is 0 where something may have been cut off: of a part, another map may leave more in place than the true one.
+        """
+        if not self._are_closed:
+            return 0.0
+        points = self.source.mesh.vertices
+        return probability_in_place(agreement_in_place(points, positions, self.source.mass))
 
     def start(self, images: PointMaps) -> Floats:
         """Place the source where a map between all vertices puts it, smoothly."""
@@ -393,13 +426,15 @@ def _lying_steps(follow: Follower, item: tuple[Candidate, Floats]) -> Steps[_Jud
 
 def _judged(found: Candidate) -> _Judged:
     """Take what is sent of a candidate, the hypothesis of which is known."""
-    return found.registration, found.score, found.likeness, found.isometry
+    return found.registration, found.score, found.likeness, found.isometry, found.in_place
 
 
-def _closely_followed_steps(follow: Follower, candidate: Candidate) -> Steps[tuple[Registration, Registration, float]]:
+def _closely_followed_steps(
+    follow: Follower, candidate: Candidate
+) -> Steps[tuple[Registration, Registration, float, float]]:
     """Find what `Follower.close_steps` does, beside the candidate."""
     found = yield from follow.close_steps(candidate)
-    return found.registration, found.reverse, found.score
+    return found.registration, found.reverse, found.score, found.credit
 
 
 def _registered_steps(follow: Follower, item: tuple[Floats, Stage, float]) -> Steps[Registration]:

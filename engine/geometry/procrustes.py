@@ -30,6 +30,40 @@ _BLOCK = 4096
 """Matrices at once: what is computed from them stays in the cache."""
 
 
+_FLAT = 1e-4
+"""Part of the largest variance that points have along every axis at least: rounding decides below."""
+
+
+def agreement_in_place(points: Floats, images: Floats, weights: Floats) -> float:
+    """Say how well images lie in space as the points do, -1 to 1, if both are stretched to the same extent every way.
+
+    Parameters
+    ----------
+    points, images : (n, 3) array of float
+        The points, and where a map takes them.
+    weights : (n,) array of float
+        How much each counts.
+
+    Returns
+    -------
+    float
+        The mean correlation of the coordinates once either cloud has no correlation and unit variances: 1 if the map
+        stretches along any axes, wherever to, -1/3 if it is a half turn.  It does not change if both are turned alike.
+    """
+    shares = (weights / weights.sum())[:, None]
+    here, there = points - (shares * points).sum(axis=0), images - (shares * images).sum(axis=0)
+    crossed = (
+        _unit_root(here.T @ (shares * here)) @ (here.T @ (shares * there)) @ _unit_root(there.T @ (shares * there))
+    )
+    return float(np.trace(crossed) / 3)
+
+
+def _unit_root(covariance: Floats) -> Floats:
+    """Return the symmetric matrix that takes points of that covariance to such of unit covariance."""
+    variances, axes = np.linalg.eigh(covariance)
+    return (axes / np.sqrt(np.maximum(variances, max(_FLAT * variances[-1], TINY)))) @ axes.T
+
+
 def nearest_similarity(
     before: Floats, after: Floats, weights: Floats | None = None, scale: float | None = None
 ) -> tuple[Floats, Floats]:

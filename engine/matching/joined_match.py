@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..dense.credibility import EVEN, MUCH_ALIKE, RISE
+from ..dense.credibility import EVEN, MUCH_ALIKE, RISE, is_likely
 from ..runtime.arrays import Bools
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
+from ..shapes.borders import has_border
 from ..shapes.enclosing_surface import all_with_limbs_steps
 from ..shapes.landmarks import landmark_pairs
 from ..shapes.shape import Shape
-from .partial_match import has_border
 from .pieced_body import PiecedBody, common_cut, resized_share, torn_share, without_partner
 from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
@@ -168,8 +168,9 @@ def _likeness(result: MatchResult) -> float:
 
 
 def _is_plausible(result: MatchResult) -> bool:
-    """Say whether bodies that were joined seem to be matched rightly."""
-    return _likeness(result) >= EVEN
+    """Say whether bodies seem to be matched rightly."""
+    quality = result.quality
+    return quality is None or is_likely(quality.likeness, quality.in_place)
 
 
 def _is_clear(result: MatchResult) -> bool:
@@ -179,6 +180,8 @@ def _is_clear(result: MatchResult) -> bool:
 
 def _is_better(joined: MatchResult, pieces: MatchResult, together: float) -> bool:
     """Say whether a match of joined bodies is more credible than one by pieces, so much of which goes together."""
+    if _is_plausible(joined) and not _is_plausible(pieces):
+        return True
     if _partnered(joined) <= together + _MORE:
         return False
     return _is_plausible(joined) or _likeness(pieces) < _likeness(joined)

@@ -17,16 +17,15 @@ from ..runtime.errors import MatchError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, at_once, within
 from ..runtime.worker import call_helpers
+from ..shapes.borders import has_border, longest_border
 from ..shapes.known_shapes import KnownShapes
 from ..shapes.prepared_surface import PreparedSurface, prepared_steps
 from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import CLEAR, OverlapMatch, overlap_match_steps
 from .partial_match import (
-    has_border,
     is_as_alike,
     is_better_part,
-    longest_border,
     part_credibility,
     part_matched_steps,
     piece_matched_steps,

@@ -10,18 +10,15 @@ from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import share_of, with_piece_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, RISE, is_less_alike
-from ..mesh.connectivity.components import joined_components
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
+from ..shapes.borders import has_border
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.shape import Shape
 from .overlap_region import continued, covered_parts_steps
 from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
-
-_LEAST_BORDER = 0.1
-"""Length of a border, in sqrt(area), from which on something may have been cut off a surface: around a hand."""
 
 _MISSING = 0.95
 """Part of either surface with a partner from which on what is missing does not matter: the size hardly differs."""
@@ -43,20 +40,6 @@ _ROUNDS = 2
 
 _FOUND = 0.45
 """Part of the work after which these pieces are known."""
-
-
-def longest_border(shape: Shape) -> float:
-    """Measure the longest border of a surface, in sqrt(area): faces that are missing here and there make short ones."""
-    mesh = shape.mesh
-    tails, heads = mesh.boundary_edges.T
-    lengths = np.linalg.norm(mesh.vertices[tails] - mesh.vertices[heads], axis=1)
-    borders = joined_components(mesh.vertex_count, tails, heads)[tails]
-    return float(np.bincount(borders, lengths).max(initial=0)) / shape.scale
-
-
-def has_border(shape: Shape) -> bool:
-    """Say whether something may have been cut off a surface, which is open there."""
-    return longest_border(shape) > _LEAST_BORDER
 
 
 def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:

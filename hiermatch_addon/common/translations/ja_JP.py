@@ -1800,6 +1800,9 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} maps are about as likely: choose another answer if this one is wrong, or add a landmark.": (
         "{0}個のマップが同じくらい有力です。これが誤っていれば別の解を選ぶか、ランドマークを追加してください。"
     ),
+    "{0} maps are about as likely by their shape, and this one leaves all in place: check it.": (
+        "形状だけなら{0}個のマップが同じくらい有力で、このマップはすべてを元の位置に保ちます。確認してください。"
+    ),
     "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong.": (
         "別のマップもほぼ同じくらい有力でした。左右と手足を確認し、誤っていればランドマークを追加してください。"
     ),

@@ -1496,6 +1496,9 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} maps are about as likely: choose another answer if this one is wrong, or add a landmark.": (
         "{0} 个映射的可能性差不多：如果这个有误，请选择另一个解，或添加一个地标。"
     ),
+    "{0} maps are about as likely by their shape, and this one leaves all in place: check it.": (
+        "按形状有 {0} 个映射的可能性差不多，这个让一切保持原位：请检查。"
+    ),
     "Another map was almost as likely: check the sides and each limb, and add a landmark if one is wrong.": (
         "另一个映射几乎同样可能：请检查左右和各个肢体，如果有误，请添加一个地标。"
     ),

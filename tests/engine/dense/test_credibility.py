@@ -11,9 +11,13 @@ from engine.dense.credibility import (
     closeness,
     is_clear_choice,
     is_less_alike,
+    is_likely,
     likeness,
     map_score,
+    may_become_likely,
+    place_credit,
     probability_chosen,
+    probability_in_place,
     probability_right,
     registered_score,
     vertex_credibility,
@@ -80,3 +84,33 @@ def test_vertices_are_trusted_no_more_than_the_map_as_a_whole(orientation, margi
 @pytest.mark.parametrize(("orientation", "known"), [(-1.0, 30.0), (0.0, 30.0), (1.0, -100.0)])
 def test_only_what_has_no_partner_is_not_trusted_at_all(orientation, known):
     assert vertex_credibility(orientation, None, known) == 0.1
+
+
+def test_a_map_is_right_by_its_likeness_or_by_what_it_leaves_in_place():
+    assert probability_right(EVEN, 0.0) == pytest.approx(0.5)
+    assert probability_right(EVEN, 0.5) == pytest.approx(0.75)
+    assert probability_right(-20.0, 0.9) == pytest.approx(0.9)
+    assert is_likely(-20.0, 0.5)
+    assert not is_likely(FAILED, 0.1)
+    assert is_likely(None)
+
+
+def test_half_turns_are_not_in_place_and_poses_are():
+    assert probability_in_place(-1 / 3) < 1e-6
+    assert probability_in_place(0.95) > 0.95
+
+
+def test_the_credit_of_a_place_divides_the_chances_of_other_maps():
+    """A map that is not in place, with the same shape, is right as often as this one is wrong."""
+    for in_place in (0.1, 0.5, 0.9):
+        rest = np.exp(-place_credit(in_place))
+        assert rest == pytest.approx(1 - in_place)
+        assert registered_score(-9.0, (0.1, 0.1), in_place) == registered_score(-9.0, (0.1, 0.1)) - place_credit(
+            in_place
+        )
+
+
+def test_hope_ends_where_neither_can_become_likely():
+    assert may_become_likely(EVEN, 0.0)
+    assert may_become_likely(-20.0, probability_in_place(0.66))
+    assert not may_become_likely(FAILED - 5, probability_in_place(0.5))

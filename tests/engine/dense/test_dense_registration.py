@@ -10,12 +10,14 @@ import pytest
 from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
 from engine.dense import dense_registration as dense_map
 from engine.dense import proposers
+from engine.dense.credibility import probability_in_place
 from engine.dense.dense_hypotheses import LandmarkStart, Selection, assessed_everywhere, map_hypotheses_steps
 from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from engine.dense.densify import dense_match_steps
 from engine.dense.functional_maps import PointMaps
 from engine.dense.landmark_selection import Steered
 from engine.dense.registered_hypotheses import Follower, Settling
+from engine.geometry.procrustes import agreement_in_place
 from engine.registration.elastic import ElasticSurface
 from engine.registration.positional_constraints import Ties
 from engine.registration.registration import SOFT, register_steps
@@ -110,7 +112,8 @@ def test_candidates_are_ordered_and_cost_what_their_registration_costs(registere
             )
         )
         cost = 4 * np.log(found.energy + 20 * found.misfit)
-        assert candidate.score == pytest.approx(assessed_everywhere(domains, maps).score + 4 * np.log(found.gaps).sum())
+        anywhere = assessed_everywhere(domains, maps).score + 4 * np.log(found.gaps).sum()
+        assert candidate.score + candidate.credit == pytest.approx(anywhere)
         assert candidate.likeness == pytest.approx(-candidate.hypothesis.score - cost)
         waves = assessed_everywhere(domains, maps).terms["waves"]
         assert candidate.isometry == pytest.approx(np.clip((0.48 - waves) / 0.1, 0, 1))
@@ -450,7 +453,8 @@ def test_motion_and_scale_do_not_matter(registered, bodies):
     other = shape(0.01 * y.mesh.vertices @ turn.T + [7, 8, 9], y.mesh.triangles)
     pair = run(registered_pair_steps(x, other))
     np.testing.assert_allclose(pair.registration.positions, registered.registration.positions @ turn.T, atol=1e-4)
-    assert pair.candidates[0].score == pytest.approx(registered.candidates[0].score, rel=1e-3)
+    best, before = pair.candidates[0], registered.candidates[0]
+    assert best.score + best.credit == pytest.approx(before.score + before.credit, rel=1e-3)
 
 
 def test_progress_rises(watched):
@@ -480,7 +484,7 @@ def test_where_no_map_can_be_right_the_best_alone_is_followed(bodies, both_start
     x, y = bodies[:2]
     asked = []
     monkeypatch.setattr(dense_map, "PROPOSERS", (lambda *_: asked.append(1),))
-    monkeypatch.setattr(dense_map, "EVEN", np.inf)
+    monkeypatch.setattr(dense_map, "may_become_likely", lambda *_: False)
     with_soft_score(monkeypatch, "true", 100.0)
     selection = replace(BOTH, contested=1000.0)
     pair = run(registered_pair_steps(x, y, both_starts, selection=selection))
@@ -520,6 +524,36 @@ def test_maps_that_differ_only_where_neither_finds_a_partner_are_one_answer(move
     chosen = SimpleNamespace(registration=registered(at_rest, known["body"]), reverse=SimpleNamespace(on_target=None))
     follow = SimpleNamespace(source=SimpleNamespace(mass=np.ones(100)), partnered=lambda there, _: there)
     far = 50.0
-    margin, found = run(dense_map.alternatives_steps(follow, [(far, rival), (0.1, rival)], chosen))
+    rivals = [dense_map.Rival(rival, each, each) for each in (far, 0.1)]
+    margin, found = run(dense_map.alternatives_steps(follow, rivals, chosen))
     assert margin == (0.1 if distinct else far)
     assert len(found) == distinct
+
+
+@pytest.mark.parametrize(("behind", "elsewhere", "offered"), [(5.0, 0.1, 1), (0.1, 5.0, 1), (5.0, 5.0, 0)])
+def test_what_is_left_in_place_makes_the_choice_clear_and_other_maps_are_offered_all_the_same(
+    behind, elsewhere, offered
+):
+    rest = np.zeros((100, 3))
+    rival = SimpleNamespace(positions=rest + 0.5, on_target=np.ones(100, bool), on_source=None)
+    held = SimpleNamespace(positions=rest, on_target=np.ones(100, bool))
+    chosen = SimpleNamespace(registration=held, reverse=held)
+    follow = SimpleNamespace(source=SimpleNamespace(mass=np.ones(100)), partnered=lambda there, _: there)
+    rivals = [dense_map.Rival(rival, behind, elsewhere)]
+    margin, found = run(dense_map.alternatives_steps(follow, rivals, chosen))
+    assert margin == behind
+    assert len(found) == offered
+
+
+def test_a_turned_body_is_another_map_than_one_left_in_place(bodies, both_starts):
+    """The score counts what stands where it stood, but for surfaces from which something may have been cut off."""
+    x, y = bodies[:2]
+    pair = run(registered_pair_steps(x, y, both_starts, selection=BOTH))
+    areas, points = pair.source.mass, x.mesh.vertices
+    for candidate in pair.candidates:
+        agreement = agreement_in_place(points, candidate.registration.positions, areas)
+        assert candidate.in_place == pytest.approx(probability_in_place(agreement))
+        assert candidate.credit == pytest.approx(-np.log1p(-candidate.in_place))
+    assert pair.in_place == pytest.approx(
+        probability_in_place(agreement_in_place(points, pair.registration.positions, areas))
+    )

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from engine.geometry import procrustes
-from engine.geometry.procrustes import nearest_rotations, nearest_similarity
+from engine.geometry.procrustes import agreement_in_place, nearest_rotations, nearest_similarity
 
 SMALL = 1e-12
 
@@ -119,3 +119,42 @@ def test_points_at_one_place_are_moved_as_they_are():
     linear, shift = nearest_similarity(np.ones((3, 3)), np.full((3, 3), 2.0))
     assert np.linalg.det(linear) == pytest.approx(1)
     np.testing.assert_allclose(np.ones(3) @ linear.T + shift, 2)
+
+
+@pytest.fixture
+def cloud(rng):
+    """Points that spread to another extent along every axis, and how much each counts."""
+    return rng.standard_normal((200, 3)) * [1, 3, 0.5], rng.random(200)
+
+
+def test_what_is_stretched_and_moved_is_in_place(cloud):
+    points, weights = cloud
+    assert agreement_in_place(points, points * 7 + [1, 2, 3], weights) == pytest.approx(1)
+    axes = Rotation.from_rotvec([0.3, -1, 0.4]).as_matrix()
+    points = points @ np.linalg.inv(np.linalg.cholesky(np.cov(points.T, aweights=weights))).T
+    assert agreement_in_place(points, points @ (axes * [1, 4, 0.2]) @ axes.T, weights) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_what_makes_half_a_turn_is_not(cloud, axis):
+    points, weights = cloud
+    middle = np.average(points, axis=0, weights=weights)
+    _, axes = np.linalg.eigh(np.cov(points.T, aweights=weights))
+    turn = Rotation.from_rotvec(np.pi * axes[:, axis]).as_matrix()
+    assert agreement_in_place(points, (points - middle) @ turn, weights) == pytest.approx(-1 / 3)
+
+
+def test_turning_both_alike_changes_nothing(cloud, rng):
+    points, weights = cloud
+    images = points + rng.standard_normal(points.shape)
+    turn = Rotation.from_rotvec([1, 2, -0.5]).as_matrix()
+    before = agreement_in_place(points, images, weights)
+    assert agreement_in_place(points @ turn, images @ turn, weights) == pytest.approx(before)
+    assert 0.2 < before < 0.95
+
+
+def test_what_is_flat_or_at_one_place_has_an_agreement(cloud):
+    points, weights = cloud
+    flat = points * [1, 1, 0]
+    assert agreement_in_place(flat, flat, weights) == pytest.approx(2 / 3)
+    assert agreement_in_place(points, np.zeros_like(points), weights) == pytest.approx(0)

@@ -6,11 +6,11 @@ import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh, densify, match, match_steps
 from engine.matching.overlap_region import CoveredPart
-from engine.matching.partial_match import has_border, longest_border, part_matched_steps
+from engine.matching.partial_match import part_matched_steps
 from engine.matching.refinement import refine_map
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
-from tests.shapes import compacted, creature, cylinder, icosphere, permuted, rotation
+from tests.shapes import compacted, creature, permuted, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
 
@@ -138,13 +138,6 @@ def test_with_a_piece_that_is_of_no_use_the_first_match_stays(useless, whole, ha
     assert asked
 
 
-def test_only_open_surfaces_have_a_border(whole, half):
-    assert not has_border(Shape(whole[0]))
-    assert has_border(Shape(half[0]))
-    vertices, triangles = icosphere(8)
-    assert not has_border(Shape(TriangleMesh(vertices, triangles[1:])))
-
-
 def test_refining_keeps_to_what_the_half_shows(result, whole, half):
     nose, nose_of_half = (int(rest[:, 0].argmax()) for rest in (whole[1], half[1]))
     maps = result.source_to_target, result.target_to_source
@@ -160,10 +153,3 @@ def test_another_correspondence_is_extended_over_what_the_half_shows(result, who
     dense = densify(whole[0], half[0], result.source_points, result.target_points, maps=maps)
     assert np.mean(errors(dense.target_to_source, half[1], whole[1])) < 0.02
     assert (dense.source_to_target.confidence[whole[1][:, 0] < -0.15] == 0).mean() > 0.95
-
-
-def test_the_longest_border_counts_and_not_all_of_them_together():
-    vertices, triangles = cylinder(60, 40)
-    one_end = 2 * np.pi / np.sqrt(2 * np.pi * 2)  # of a tube of radius 1 and height 2, in the root of its area
-    assert longest_border(Shape(TriangleMesh(vertices, triangles))) == pytest.approx(one_end, rel=0.01)
-    assert longest_border(Shape(TriangleMesh(*icosphere(8)))) == 0
