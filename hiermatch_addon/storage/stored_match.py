@@ -107,6 +107,8 @@ class Quality:
         How credible the map is as a whole, where that was measured.
     alternatives : int
         How many other answers are about as likely.
+    in_place : float
+        How probably the map is right because it leaves everything where it stands.
     """
 
     orientation: float
@@ -120,6 +122,7 @@ class Quality:
     likeness: float | None = None
     pieces_alone: float = 0.0
     alternatives: int = 0
+    in_place: float = 0.0
 
     @classmethod
     def of(cls, quality: MatchQuality) -> Quality:
