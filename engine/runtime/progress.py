@@ -72,6 +72,7 @@ def at_once(function: Callable[Given, Steps[Result]]) -> Callable[Given, Result]
 
     @wraps(function)
     def done(*args: Given.args, **given: Given.kwargs) -> Result:
+        """Do all steps; it takes the documentation of the function in steps."""
         return run(function(*args, **given))
 
     done.__name__ = done.__qualname__ = function.__name__.removesuffix("_steps")

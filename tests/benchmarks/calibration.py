@@ -59,12 +59,13 @@ class Row:
     near: float  # part of the places that is near the truth; NaN if there is none
     lost: float
     seconds: float
+    in_place: float
 
     @property
     def credible(self):
         """What is known of the map as a whole."""
         return credibility.vertex_credibility(
-            self.orientation, None if np.isnan(self.margin) else self.margin, self.likeness
+            self.orientation, None if np.isnan(self.margin) else self.margin, self.likeness, self.in_place
         )
 
 
@@ -95,11 +96,11 @@ def measured(shapes, first, second, *, one_kind):
     if one_kind:
         errors = target.vertex_errors(there.nearest_vertices[source.samples])
         near, lost = float((errors < NEAR).mean()), float((errors > LOST).mean())
-    whole = credibility.vertex_credibility(quality.orientation, quality.margin, quality.likeness)
+    whole = credibility.vertex_credibility(quality.orientation, quality.margin, quality.likeness, quality.in_place)
     local = float(there.confidence[source.samples].mean()) / whole
     margin = NAN if quality.margin is None else quality.margin
     said = quality.likeness, margin, quality.orientation, quality.confidence
-    return Row(first, second, lost <= WRONG, *said, local, near, lost, seconds)
+    return Row(first, second, lost <= WRONG, *said, local, near, lost, seconds, quality.in_place)
 
 
 def platt(likeness, right):
