@@ -158,6 +158,16 @@ def is_likely(known: float | None, in_place: float = 0.0) -> bool:
     return probability_right(known, in_place) >= 0.5
 
 
+def is_placed(in_place: float) -> bool:
+    """Say whether a map is right rather than not by what it leaves in place alone."""
+    return is_likely(-np.inf, in_place)
+
+
+def has_failed(known: float | None, in_place: float = 0.0) -> bool:
+    """Say whether a map is less probably right than surfaces as much alike as `FAILED` are, see `probability_right`."""
+    return probability_right(known, in_place) < probability_right(FAILED)
+
+
 def may_become_likely(known: float, in_place: float) -> bool:
     """Say whether a map that has been registered softly may still lead to one that is right rather than not."""
     return known + RISE >= EVEN or in_place >= PLACED_ROUGHLY

@@ -35,7 +35,7 @@ from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, within
 from ..shapes.borders import has_border
 from ..shapes.shape import Shape
-from .credibility import likeness, place_credit, probability_in_place, registered_score
+from .credibility import is_placed, likeness, place_credit, probability_in_place, registered_score
 from .dense_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
 from .functional_maps import PointMaps
 from .missing_parts import with_partner
@@ -215,11 +215,13 @@ class Follower:
         """Turn a long body back where it is turned about its axis, and try how else it might lie as a whole.
 
         Returned are for each candidate all ways to lie, the most credible first, or the candidate alone.  What
-        landmarks hold stays the way round it is.
+        landmarks hold stays the way round it is, and no other way is tried if the first one leaves all in place.
         """
         if self.ties is not None:
             return [[candidate] for candidate in candidates]
         turned = yield from within(shared_steps(_turned_back_steps, self, candidates), 0.0, 0.4)
+        if is_placed(candidates[0].in_place):
+            turned = [(judged, []) for judged, _ in turned]
         found = []
         items: list[tuple[Candidate, Floats]] = []
         for candidate, (judged, ways) in zip(candidates, turned, strict=True):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import share_of, with_piece_only
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, FAILED, MUCH_ALIKE, RISE, is_less_alike
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, RISE, has_failed, is_less_alike
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
@@ -64,7 +64,7 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
     if quality is None or there is None or back is None:
         return result
     parts = has_border(x), has_border(y)
-    if not any(parts) and not is_less_alike(quality.likeness, FAILED):
+    if not any(parts) and not has_failed(quality.likeness, quality.in_place):
         return result
     if not is_less_alike(quality.likeness, CREDIBLE) and min(quality.coverage, quality.source_coverage) >= _MISSING:
         return result

@@ -9,9 +9,11 @@ from engine.dense.credibility import (
     FAILED,
     MUCH_ALIKE,
     closeness,
+    has_failed,
     is_clear_choice,
     is_less_alike,
     is_likely,
+    is_placed,
     likeness,
     map_score,
     may_become_likely,
@@ -92,6 +94,11 @@ def test_a_map_is_right_by_its_likeness_or_by_what_it_leaves_in_place():
     assert probability_right(-20.0, 0.9) == pytest.approx(0.9)
     assert is_likely(-20.0, 0.5)
     assert not is_likely(FAILED, 0.1)
+    assert is_placed(0.5)
+    assert not is_placed(0.49)
+    assert has_failed(FAILED - 0.1)
+    assert not has_failed(FAILED + 0.1)
+    assert not has_failed(FAILED - 5, 0.5)
     assert is_likely(None)
 
 

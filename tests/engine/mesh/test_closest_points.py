@@ -262,6 +262,38 @@ def test_a_further_start_is_followed_where_it_is_better(star):
     np.testing.assert_allclose(both.mean(), np.minimum(first, second).mean(), rtol=0.02)
 
 
+def test_a_walk_far_from_the_origin_is_the_same(star):
+    points = star.vertices[::3] + 0.05
+    starts = np.arange(star.vertex_count)[::3]
+    near = ClosestPoints(star).walk(points, starts)
+    far = ClosestPoints(star).moved(star.vertices + 1e6).walk(points + 1e6, starts)
+    np.testing.assert_array_equal(far.triangles, near.triangles)
+    np.testing.assert_allclose(far.barycentric, near.barycentric, atol=1e-7)
+
+
+def test_a_walk_over_needles_errs_across_them_alone():
+    """A strip that is a hundred thousand times as long as it is wide: products do not tell its triangles apart."""
+    count = 12
+    along = np.linspace(0, 1, count)
+    vertices = np.concatenate([np.stack([along, np.full(count, y), np.zeros(count)], axis=1) for y in (0, 1e-6)])
+    first = np.arange(count - 1)
+    triangles = np.concatenate(
+        [
+            np.stack([first, first + 1, first + count], axis=1),
+            np.stack([first + 1, first + count + 1, first + count], axis=1),
+        ]
+    )
+    rng = np.random.default_rng(0)
+    points = np.stack([rng.uniform(0, 1, 200), rng.uniform(-1e-6, 2e-6, 200), rng.uniform(-0.1, 0.1, 200)], axis=1)
+    search = ClosestPoints(TriangleMesh(vertices, triangles))
+    found = search.walk(points, search.nearest_vertices(points))
+    exact = points * [1, 1, 0]
+    exact[:, 1] = np.clip(exact[:, 1], 0, 1e-6)
+    off = np.abs(found.interpolate(search.triangles, vertices) - exact).max(axis=0)
+    assert off[0] < 1e-9
+    assert off[1] < 5e-7
+
+
 def test_steps_limit_a_walk():
     mesh = TriangleMesh(*plane(20))
     found = ClosestPoints(mesh).walk(np.array([[1.0, 1.0, 0.0]]), np.array([0]), steps=1)
