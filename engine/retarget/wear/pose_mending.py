@@ -170,7 +170,6 @@ class _PosedBody:
         self.unit = float(np.sqrt(body.area))
         self.search = ClosestPoints(body)
         self.skin = Surface(body, self.search)
-        self.subtrees = _subtrees(skeleton.parents)
 
 
 def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
@@ -201,7 +200,7 @@ def _deepest_steps(posed: _PosedBody, ways: Sequence[tuple[_Tried, Bools, list[c
     deepest = [np.zeros((len(weights), len(chosen))) for _, chosen, weights in ways]
     for number, bone in enumerate(used):
         yield Progress(number / len(used), "Trying poses")
-        hanging = posed.subtrees[bone]
+        hanging = skeleton.subtrees[bone]
         on_skin = row_sums(posed.weights[:, hanging])
         if on_skin @ body.vertex_areas < _LARGE_PART * body.area:
             continue
@@ -225,18 +224,6 @@ def _deepest_steps(posed: _PosedBody, ways: Sequence[tuple[_Tried, Bools, list[c
 
 def _column_sums(weights: csr_array) -> Floats:
     return np.asarray(weights.sum(axis=0)).ravel()
-
-
-def _subtrees(parents: Ints) -> Bools:
-    """Tell for each bone which bones hang on it, itself as well, (b, b)."""
-    count = len(parents)
-    hanging = np.eye(count, dtype=bool)
-    for bone in range(count):
-        above = int(parents[bone])
-        while above >= 0:
-            hanging[above, bone] = True
-            above = int(parents[above])
-    return hanging
 
 
 def _bends(along: Floats) -> list[Floats]:

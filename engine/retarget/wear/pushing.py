@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
 from .contact import Surface
 
 _ROUNDS = 8
@@ -51,6 +51,14 @@ the same unit: else it is another limb."""
 
 _MOSTLY = 0.3
 """Part of a place of the item by its corners that has to have lain outside, for the skin not to show above it."""
+
+_ALONG = 0.3
+"""Least cosine between the normals of two layers of cloth, of either sign, for the one to lie on the other: what comes
+out of a hem or ends at it, as trousers at a jacket that is closed below, crosses it."""
+
+_ONE = 1e-6
+"""Distance, in the same unit, up to which two layers of cloth are one, as where two parts of a body were cut apart:
+neither is the upper one."""
 
 _INSIDE = -0.001
 """Distance from the surface below, in the same unit, down to which a place counts as lying on it: what is further
@@ -99,9 +107,10 @@ def layer_of(
     surface_before: Surface,
     surface: Surface,
     samples: csr_array,
-    before: Floats,
+    before: TriangleMesh,
     *,
     places: Ints | None,
+    buried: Bools | None,
     scales: Floats,
     unit: float,
     least: float,
@@ -115,10 +124,13 @@ def layer_of(
         The skin, or an item below, on the first body and as it is now.
     samples : (s, n) csr_array of float
         Samples of the item.
-    before : (n, 3) array of float
-        The item on the first body.
+    before : TriangleMesh
+        The item on the first body, n vertices.
     places : (m,) array of int, optional
-        For each vertex of the surface before, the vertex of the other that it came to be; none if they are the same.
+        For each vertex of the skin before, the vertex of the other that it came to be; none for an item below.
+    buried : (m,) array of bool, optional
+        Vertices of the skin before that lie deep within the body, as where parts of a character are closed: nothing
+        has to lie outside of them.
     scales : (n,) array of float
         How many times as large it becomes.
     unit : float
@@ -128,13 +140,18 @@ def layer_of(
     margin : float
         Least distance, now, of all that lay outside.
     """
-    points = samples @ before
-    found = surface_before.clearance(points)
-    reached = found.known & (found.distances < _NEAR * unit) & (found.distances > _INSIDE * unit)
+    n = before.vertex_count
+    found = surface_before.clearance(samples @ before.vertices)
+    outside = (found.distances > _INSIDE * unit) | ~found.known
+    near = found.known & (found.distances < _NEAR * unit)
+    if places is None:
+        along = np.einsum("si,si->s", unit_vectors(samples @ before.vertex_normals), found.normals)
+        outside &= ~near | (np.abs(along) > _ALONG) & (np.abs(found.distances) > _ONE * unit)
+    if buried is not None:
+        outside &= ~buried[found.vertices]
     wanted = np.minimum((samples @ scales) * found.distances.clip(min=0), least)
     starts = found.vertices if places is None else places[found.vertices]
-    outside = (found.distances[: len(before)] > _INSIDE * unit) | ~found.known[: len(before)]
-    return Layer(surface, np.where(reached, np.maximum(wanted, margin), -np.inf), starts, outside)
+    return Layer(surface, np.where(near & outside, np.maximum(wanted, margin), -np.inf), starts, outside[:n])
 
 
 def pushed_out(

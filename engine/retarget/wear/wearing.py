@@ -15,11 +15,12 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
 from ...runtime.progress import Progress, Steps, within
 from .body_motion import BodyMotion, BodySkin, Carriers, Motion
+from .buried_vertices import buried_vertices
 from .contact import Clearance, Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
 from .rigid_pieces import placed_rigidly, rigid_pieces
@@ -72,10 +73,11 @@ class DressedItem:
 
 @dataclass(frozen=True, eq=False)
 class DressedBody:
-    """A body with what it wears, which can be fitted to any number of others."""
+    """A body with what it wears, which can be fitted to any number of others; buried are vertices deep within it."""
 
     skin: BodySkin
     surface: Surface
+    buried: Bools
     items: tuple[DressedItem, ...]
 
 
@@ -161,7 +163,7 @@ def dressed_steps(
             pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
         carriers = skin.carriers(item.mesh.vertices, reach, item.bones)
         found.append(DressedItem(item, welded, below, carriers, pieces, laplace_beltrami(item.mesh)))
-    return DressedBody(skin, surface, tuple(found))
+    return DressedBody(skin, surface, buried_vertices(source), tuple(found))
 
 
 def fitted_steps(
@@ -191,6 +193,7 @@ def fitted_steps(
             below,
             (skin_before, skin),
             source_to_target.nearest_vertices,
+            dressed.buried,
             units=(unit, new_unit),
             spacing=spacing,
         )
@@ -256,6 +259,7 @@ def _push(
     below: Sequence[_Work],
     skins: tuple[Surface, Surface],
     places: Ints,
+    buried: Bools,
     *,
     units: tuple[float, float],
     spacing: float,
@@ -274,8 +278,9 @@ def _push(
         layer_of(
             *skins,
             samples,
-            mesh.vertices,
+            mesh,
             places=places,
+            buried=buried,
             scales=scales,
             unit=unit,
             least=_ENOUGH * new_unit,
@@ -289,7 +294,17 @@ def _push(
         surfaces = Surface(beneath), Surface(TriangleMesh(other.positions, beneath.triangles))
         least = _LAYERS * new_unit
         layers.append(
-            layer_of(*surfaces, samples, mesh.vertices, places=None, scales=scales, unit=unit, least=least, margin=0.0)
+            layer_of(
+                *surfaces,
+                samples,
+                mesh,
+                places=None,
+                buried=None,
+                scales=scales,
+                unit=unit,
+                least=least,
+                margin=0.0,
+            )
         )
     rigid = work.pieces >= 0
     fixed = rigid if item.left is None else rigid | item.left
