@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...geometry.directions import spread_directions
 from ...mesh.area_samples import AreaSamples, even_samples
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats
+from ...runtime.arrays import Bools, Floats, Ints, marked
+from .contact import Surface
 
 _DIRECTIONS = 40
 """From how many sides is looked at the surface, to find quickly what may lie within."""
@@ -33,23 +36,41 @@ _CHUNK = 256
 """Points treated at once, which bounds the memory."""
 
 
-def buried_vertices(mesh: TriangleMesh) -> Bools:
-    """Tell which vertices lie deep within a solid, (n,), and so do not belong to its outside.
+@dataclass(frozen=True, eq=False)
+class BuriedVertices:
+    """Vertices that do not belong to the outside of a body.
 
-    No side shows them, and above them is no air, as there is between thighs, but the inside.
-
-    Parameters
+    Attributes
     ----------
-    mesh : TriangleMesh
-        The surface: it may be open, and made of many parts that cross.
+    hidden : (h,) array of int
+        Those that lie deep behind others from whatever side one looks, as also between thighs.
+    within : (h,) array of bool
+        Which of them lie within: above them is no air but the inside.
     """
-    mesh = TriangleMesh(mesh.vertices - mesh.vertices.mean(axis=0), mesh.triangles)  # rounding grows away from there
-    samples = even_samples(mesh, mesh.area / _SAMPLES)
-    buried = _hidden(mesh, samples)
-    candidates = np.flatnonzero(buried)
-    above = mesh.vertices[candidates] + _ABOVE * np.sqrt(mesh.area) * mesh.vertex_normals[candidates]
-    buried[candidates] = _winding_numbers(mesh, samples, above) > _WITHIN
-    return buried
+
+    hidden: Ints
+    within: Bools
+
+    @classmethod
+    def of(cls, mesh: TriangleMesh) -> BuriedVertices:
+        """Look for them on a surface, which may be open, and made of many parts that cross."""
+        mesh = TriangleMesh(
+            mesh.vertices - mesh.vertices.mean(axis=0), mesh.triangles
+        )  # rounding grows away from there
+        samples = even_samples(mesh, mesh.area / _SAMPLES)
+        hidden = np.flatnonzero(_hidden(mesh, samples))
+        above = mesh.vertices[hidden] + _ABOVE * np.sqrt(mesh.area) * mesh.vertex_normals[hidden]
+        return cls(hidden, _winding_numbers(mesh, samples, above) > _WITHIN)
+
+    def on(self, surface: Surface, images: Floats) -> Bools:
+        """Tell which vertices are buried, (n,), if they come to images (n, 3) at another body.
+
+        Where parts are closed by faces that are turned over it cannot be told by the one body alone what is within;
+        but these have no place on the other one, and come to lie deep in it.
+        """
+        found = surface.clearance(images[self.hidden])
+        deep = found.known & (found.distances < -_DEEP * np.sqrt(surface.mesh.area))
+        return marked(self.hidden[self.within | deep], len(images))
 
 
 def _hidden(mesh: TriangleMesh, samples: AreaSamples) -> Bools:

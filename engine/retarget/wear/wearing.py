@@ -15,12 +15,12 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
 from ...runtime.progress import Progress, Steps, within
 from .body_motion import BodyMotion, BodySkin, Carriers, Motion
-from .buried_vertices import buried_vertices
+from .buried_vertices import BuriedVertices
 from .contact import Clearance, Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
 from .rigid_pieces import placed_rigidly, rigid_pieces
@@ -73,11 +73,11 @@ class DressedItem:
 
 @dataclass(frozen=True, eq=False)
 class DressedBody:
-    """A body with what it wears, which can be fitted to any number of others; buried are vertices deep within it."""
+    """A body with what it wears, which can be fitted to any number of others."""
 
     skin: BodySkin
     surface: Surface
-    buried: Bools
+    buried: BuriedVertices
     items: tuple[DressedItem, ...]
 
 
@@ -163,7 +163,7 @@ def dressed_steps(
             pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
         carriers = skin.carriers(item.mesh.vertices, reach, item.bones)
         found.append(DressedItem(item, welded, below, carriers, pieces, laplace_beltrami(item.mesh)))
-    return DressedBody(skin, surface, buried_vertices(source), tuple(found))
+    return DressedBody(skin, surface, BuriedVertices.of(source), tuple(found))
 
 
 def fitted_steps(
@@ -174,6 +174,7 @@ def fitted_steps(
     motion, unit = BodyMotion(dressed.skin, images), dressed.skin.size
     new_unit = motion.overall * unit
     skin_before, skin = dressed.surface, Surface(target)
+    buried = dressed.buried.on(skin, images)
     works: list[_Work] = []
     count = max(len(dressed.items), 1)
     for number, one in enumerate(dressed.items):
@@ -183,7 +184,7 @@ def fitted_steps(
         _elastic(works[-1], one.laplace, unit)
     for work in works:
         _place_pieces(work, works, motion, unit)
-    order = sorted(range(len(works)), key=lambda number: (_height(works[number]), number))
+    order = _inner_first(works, unit)
     spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
     for done, number in enumerate(order):
         yield Progress(0.5 + 0.45 * done / count, "Pushing items out")
@@ -193,7 +194,7 @@ def fitted_steps(
             below,
             (skin_before, skin),
             source_to_target.nearest_vertices,
-            dressed.buried,
+            buried,
             units=(unit, new_unit),
             spacing=spacing,
         )
@@ -249,9 +250,32 @@ def _place_pieces(work: _Work, works: Sequence[_Work], motion: BodyMotion, unit:
     work.positions = positions
 
 
-def _height(work: _Work) -> float:
-    """How far an item is from the skin where it lies on it."""
-    return float(np.quantile(work.below.distances, 0.25))
+def _inner_first(works: Sequence[_Work], unit: float) -> list[int]:
+    """Put items in the order in which they lie on the body, (w,).
+
+    How far they are from the skin where they lie on it counts; of those that are the skin themselves, as all clothes
+    of a character for games, how much of each lies over the others.
+    """
+    heights = np.array([np.quantile(work.below.distances, 0.25) for work in works])
+    heights[np.abs(heights) < _NOTHING * unit] = 0.0
+    over = np.zeros(len(works))
+    at_skin = np.flatnonzero(heights == 0)
+    for number in at_skin:
+        surface = Surface(works[number].item.mesh)
+        for other in at_skin[at_skin != number]:
+            mesh = works[other].item.mesh
+            if _near(mesh.vertices, surface.mesh.vertices, unit):
+                share = _lying_over(surface, mesh, unit)
+                over[other] += share
+                over[number] -= share
+    return sorted(range(len(works)), key=lambda number: (heights[number], over[number], number))
+
+
+def _lying_over(surface: Surface, item: TriangleMesh, unit: float) -> float:
+    """Tell what part of an item near a surface lies over it, less what lies under it, -1 to 1."""
+    found = surface.clearance(item.vertices)
+    areas = item.vertex_areas * (found.known & (np.abs(found.distances) < _AT_SKIN * unit))
+    return float(areas @ np.sign(found.distances) / max(areas.sum(), TINY))
 
 
 def _push(

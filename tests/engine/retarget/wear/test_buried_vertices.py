@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.retarget.wear.buried_vertices import buried_vertices
+from engine.retarget.wear.buried_vertices import BuriedVertices
+from engine.retarget.wear.contact import Surface
 from tests.shapes import icosphere, rotation
 
 
@@ -18,6 +19,11 @@ def joined(*meshes):
 def ball(centre, size=(1.0, 1.0, 1.0)):
     vertices, triangles = icosphere(10)
     return TriangleMesh(vertices * size + np.array(centre), triangles)
+
+
+def buried_vertices(mesh):
+    """Vertices that are buried if the body stays as it is."""
+    return BuriedVertices.of(mesh).on(Surface(mesh), mesh.vertices)
 
 
 def thigh(x):
@@ -54,3 +60,19 @@ def test_the_inside_of_a_bowl_is_air():
     # A deep bowl: the upper half is folded inwards.
     folded = np.where(outer[:, 2:] > 0, outer * [0.9, 0.9, -0.9], outer)
     assert not buried_vertices(TriangleMesh(folded, ball((0, 0, 0)).triangles)).any()
+
+
+def test_what_is_hidden_and_comes_to_lie_deep_in_the_other_body_is_buried():
+    """A disc across a ball, whose faces are turned over."""
+    outer, (vertices, triangles) = ball((0, 0, 0)), icosphere(8)
+    disc = TriangleMesh(vertices * [0.8, 0.8, 1e-3], triangles)
+    body = joined(TriangleMesh(outer.vertices, outer.triangles[:, ::-1]), disc)
+    assert not BuriedVertices.of(body).within.any()
+    buried = BuriedVertices.of(body).on(Surface(outer), body.vertices)
+    inner = np.linalg.norm(body.vertices, axis=1) < 0.7
+    assert buried[inner].all()
+    assert not buried[: outer.vertex_count].any()
+    # What is hidden between thighs comes to lie on the other's skin.
+    between = joined(thigh(-0.32), thigh(0.32))
+    assert len(BuriedVertices.of(between).hidden)
+    assert not BuriedVertices.of(between).on(Surface(between), between.vertices).any()

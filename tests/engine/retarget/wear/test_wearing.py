@@ -233,7 +233,8 @@ def solid(low, high, radius):
     return TriangleMesh(points * [1, 1, high - low] + [0, 0, low], triangles)
 
 
-def test_ends_of_clothes_that_are_the_body_stay_within_it():
+@pytest.mark.parametrize("trousers_first", [False, True])
+def test_ends_of_clothes_that_are_the_body_stay_within_it(trousers_first):
     """A character of a closed jacket and closed trousers that go up into it becomes a narrower body of one piece."""
     jacket, trousers = solid(0.0, 2.0, 0.5), solid(-2.0, 0.2, 0.45)
     first = jacket.vertex_count
@@ -246,8 +247,11 @@ def test_ends_of_clothes_that_are_the_body_stay_within_it():
     images[first:] *= [1.1, 1.1, 1.0]
     places = ClosestPoints(target).nearest(images)
     there = SurfaceMap.from_barycentric(target, places.triangles, places.barycentric)
-    fitted = run(wear_steps(body, target, there, images, [WornItem(jacket), WornItem(trousers)]))
-    for item, one, end in zip((jacket, trousers), fitted, (0.0, 0.2), strict=True):
+    items = [jacket, trousers]
+    order = [1, 0] if trousers_first else [0, 1]
+    made = run(wear_steps(body, target, there, images, [WornItem(items[number]) for number in order]))
+    fitted = [made[order.index(number)] for number in range(2)]
+    for item, one, end in zip(items, fitted, (0.0, 0.2), strict=True):
         inner = (np.abs(item.vertices[:, 2] - end) < 1e-6) & (np.linalg.norm(item.vertices[:, :2], axis=1) < 0.3)
         assert inner.any()
         np.testing.assert_allclose(one.positions[inner, 2], end, atol=0.1)
@@ -255,6 +259,14 @@ def test_ends_of_clothes_that_are_the_body_stay_within_it():
         assert around.max() < 0.46  # it was pushed out over the other by more than that
         outer = (np.linalg.norm(item.vertices[:, :2], axis=1) > 0.44) & (np.abs(np.abs(item.vertices[:, 2]) - 1) < 0.7)
         assert around[outer].min() > 0.39
+    # Whatever comes first, the jacket is over the trousers.
+    over = (jacket.vertices[:, 2] > 0.02) & (jacket.vertices[:, 2] < 0.2)
+    assert over.any()
+    under = ClosestPoints(TriangleMesh(fitted[1].positions, trousers.triangles))
+    found = under.nearest(fitted[0].positions[over])
+    corners = trousers.triangles[found.triangles]
+    feet = np.einsum("kc,kci->ki", found.barycentric, fitted[1].positions[corners])
+    assert (np.linalg.norm(fitted[0].positions[over, :2], axis=1) >= np.linalg.norm(feet[:, :2], axis=1) - 1e-3).all()
 
 
 def test_trousers_that_come_out_of_a_closed_jacket_are_not_pushed_over_it():
