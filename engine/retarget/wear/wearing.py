@@ -18,7 +18,9 @@ from ...registration.elastic import ElasticSurface
 from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
+from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ...runtime.progress import Progress, Steps, within
+from ...runtime.worker import call_helpers
 from .body_motion import BodyMotion, BodySkin, Carriers, Motion
 from .buried_vertices import BuriedVertices
 from .contact import Clearance, Surface, surface_samples
@@ -141,6 +143,7 @@ def wear_steps(
     """
     if images.shape != source.vertices.shape or len(source_to_target) != source.vertex_count:
         raise MeshError("The map belongs to other meshes than the bodies. Match them again.")
+    call_helpers()
     dressed = yield from within(dressed_steps(source, items, bones=bones), 0.0, 0.3)
     return (yield from within(fitted_steps(dressed, target, source_to_target, images), 0.3, 1.0))
 
@@ -150,20 +153,26 @@ def dressed_steps(
 ) -> Steps[DressedBody]:
     """Find how a body wears items, see `wear_steps`: all that does not depend on what it becomes."""
     skin = BodySkin(source, bones)
-    surface, unit = Surface(source, skin.search), float(np.sqrt(source.area))
-    found = []
-    for number, given in enumerate(items):
-        yield Progress(number / len(items), "Moving items along")
-        item, welded = sewn(given)
-        below = surface.clearance(item.mesh.vertices)
-        reach = np.abs(below.distances) + 0.05 * unit * (item.fit == "LOOSE")
-        pieces = item.pieces
-        if pieces is None:
-            named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
-            pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
-        carriers = skin.carriers(item.mesh.vertices, reach, item.bones)
-        found.append(DressedItem(item, welded, below, carriers, pieces, laplace_beltrami(item.mesh)))
+    surface = Surface(source, skin.search)
+    few = sum(mesh.vertex_count for mesh in (source, *(item.mesh for item in items))) <= MOST_SENT
+    share = shared_steps if few else here_steps
+    found = yield from share(_dressed_item_steps, (skin, surface), items)
     return DressedBody(skin, surface, BuriedVertices.of(source), tuple(found))
+
+
+def _dressed_item_steps(body: tuple[BodySkin, Surface], given: WornItem) -> Steps[DressedItem]:
+    """Find how a body wears an item."""
+    yield Progress(0.0, "Moving items along")
+    (skin, surface), unit = body, body[0].size
+    item, welded = sewn(given)
+    below = surface.clearance(item.mesh.vertices)
+    reach = np.abs(below.distances) + 0.05 * unit * (item.fit == "LOOSE")
+    pieces = item.pieces
+    if pieces is None:
+        named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
+        pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
+    carriers = skin.carriers(item.mesh.vertices, reach, item.bones)
+    return DressedItem(item, welded, below, carriers, pieces, laplace_beltrami(item.mesh))
 
 
 def fitted_steps(
