@@ -54,9 +54,8 @@ class BuriedVertices:
     @classmethod
     def of(cls, mesh: TriangleMesh) -> BuriedVertices:
         """Look for them on a surface, which may be open, and made of many parts that cross."""
-        mesh = TriangleMesh(
-            mesh.vertices - mesh.vertices.mean(axis=0), mesh.triangles
-        )  # rounding grows away from there
+        centre = mesh.vertices.mean(axis=0)  # away from which rounding grows
+        mesh = TriangleMesh(mesh.vertices - centre, mesh.triangles)
         samples = even_samples(mesh, mesh.area / _SAMPLES)
         hidden = np.flatnonzero(_hidden(mesh, samples))
         above = mesh.vertices[hidden] + _ABOVE * np.sqrt(mesh.area) * mesh.vertex_normals[hidden]

@@ -249,7 +249,7 @@ def _needed(
             rows.append(csr_array(samples[at]))
             moves.append(needed[chosen])
             weights.append(sample_mass[at])
-        poked = under.poking(item, free)
+        poked = under.poking(item, free, every=not all_places)
         if poked is not None:
             rows.append(poked[0])
             moves.append(poked[1])
@@ -295,8 +295,9 @@ class _Above:
 class _Under:
     """Places of a layer that may come through an item: its vertices, and the middles of its triangles.
 
-    Only those are looked at that the item may have come to since, as in `_Above`: under it, it has to come as near as
-    it is; and only those near which the item lay, as the skin of another limb is none of its business.
+    Only those are looked at near which the item lay, as the skin of another limb is none of its business; and of these
+    only those that it may have come to since, as in `_Above`: what is under it, it has to come as near to as it is.
+    The last rounds, which move places one by one, look at all near which it lay.
     """
 
     def __init__(self, layer: Layer, item_count: int, unit: float) -> None:
@@ -310,8 +311,11 @@ class _Under:
         self._corners = np.zeros((len(self._points), 3), np.int64)
         self._seen = np.zeros((len(self._points), 3, 3))
 
-    def poking(self, item: Surface, free: Bools) -> tuple[csr_array, Floats] | None:
-        """Find places of the layer that are above the item, and the moves of the item over them."""
+    def poking(self, item: Surface, free: Bools, *, every: bool) -> tuple[csr_array, Floats] | None:
+        """Find places of the layer that are above the item, of every one or of those it may have come to.
+
+        Returns shares of the item's vertices (k, n) where they are, and its moves over them (k, 3); none if none is.
+        """
         layer, unit, reach = self._layer, self._unit, _POKING * self._unit
         mesh, positions = item.mesh, item.mesh.vertices
         loose = positions[mesh.triangles[free[mesh.triangles].any(axis=1)]].reshape(-1, 3)  # what is fixed stays
@@ -320,7 +324,7 @@ class _Under:
         low, high = loose.min(axis=0) - reach, loose.max(axis=0) + reach
         near = np.flatnonzero(self._near_home & ((self._points > low) & (self._points < high)).all(axis=1))
         moved = np.linalg.norm(positions[self._corners[near]] - self._seen[near], axis=2).max(axis=1)
-        near = near[2 * moved >= self._room[near]]
+        near = near[every | (2 * moved >= self._room[near])]
         if not len(near):
             return None
         points, normals = self._points[near], self._normals[near]
