@@ -42,7 +42,7 @@ from .retarget.values.face_transfer import carry_face_values
 from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
 from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
-from .retarget.wear.body_ends import continues_body
+from .retarget.wear.body_ends import continues_body, ends_at_joint
 from .retarget.wear.handed_weights import handed_weights
 from .retarget.wear.item_bones import bones_of_items, moved_with_items
 from .retarget.wear.key_following import follow_keys_steps
@@ -137,6 +137,7 @@ __all__ = [
     "densify_steps",
     "distances_to_vertices_steps",
     "distortion_after",
+    "ends_at_joint",
     "evened_frames",
     "find_symmetry",
     "find_symmetry_steps",

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
+    "FITTED_TO",
     "Character",
     "Side",
     "SideReference",
@@ -49,6 +50,9 @@ __all__ = [
     "vertex_count",
     "vertex_ranges",
 ]
+
+FITTED_TO: Final = "hiermatch_body"
+"""Custom property of a fitted copy of clothes: the name of the body that it was fitted to, of which it is no part."""
 
 _SUCCESSOR: Final = "hiermatch_successor"
 """Custom property of an armature: the one that has taken its place, as a pointer that follows renaming."""
@@ -155,7 +159,7 @@ def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -
     chosen : bpy.types.ID or Character
         A mesh object, which is meant alone; an armature, with all meshes that it moves; an empty, with all meshes
         that hang on it; or a collection, with all meshes in it.  Other objects, and armatures and empties without
-        such meshes, are returned as they are.
+        such meshes, are returned as they are.  What was fitted to a body is no part of that.
     view_layer : bpy.types.ViewLayer
         Where the parts are.  Those that are hidden, or have no faces, are left out.
 
@@ -176,6 +180,7 @@ def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -
             )
         return joined(chosen.name, parts)
     obj: Any = chosen
+    shown = [part for part in shown if FITTED_TO not in cast("Any", part)]
     if obj.type == "ARMATURE":
         rigs = {obj, successor(obj)}
         parts = [part for part in shown if not rigs.isdisjoint(armatures_above(part))]

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 from mathutils import Matrix
+from scipy.sparse import csr_array, vstack
 
-from ...engine import continues_body
+from ...engine import continues_body, ends_at_joint
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
-from .armatures import find_armature, moving_armatures
-from .character import joined, joined_mesh, parts_of
+from .armatures import find_armature, moving_armatures, read_rig
+from .character import FITTED_TO, joined, joined_mesh, parts_of, vertex_ranges
 from .garment_shape_io import mirror_axes
 from .key_drivers import counterparts, point_key_drivers
 from .mesh_io import read_mesh
@@ -42,7 +43,7 @@ __all__ = [
     "undressed",
 ]
 
-ITEM, BODY = "hiermatch_item", "hiermatch_body"
+ITEM, BODY = "hiermatch_item", FITTED_TO
 """Custom properties of a fitted copy: the names of the original, and of the body that it was fitted to."""
 
 _SHAPES = frozenset({"MESH", "CURVE", "CURVES", "SURFACE", "FONT", "META"})
@@ -116,10 +117,22 @@ def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph
     if len(worn) == 1:
         return body
     meshes = {part: read_mesh(part, depsgraph, use_modifiers=False) for part in parts}
+    rig, ranges = read_rig(body), dict(zip(parts, vertex_ranges(body), strict=True))
+
+    def is_body(item: bpy.types.Object, rest: Sequence[bpy.types.Object]) -> bool:
+        """Tell whether an item is a part of the body that the rest lacks."""
+        below = joined_mesh([meshes[part] for part in rest])
+        if continues_body(below, meshes[item]):
+            return True
+        if rig is None:
+            return False
+        weights = csr_array(vstack([rig.weights[ranges[part]] for part in rest]))
+        return ends_at_joint(below, meshes[item], (weights, rig.weights[ranges[item]]), rig.skeleton)
+
     # The largest first: of a jacket over a shirt it is the shirt that stands for the chest.
     for item in sorted(parts, key=lambda part: -meshes[part].area):
         rest = [part for part in parts if part is not item]
-        if item.name in items and not continues_body(joined_mesh([meshes[part] for part in rest]), meshes[item]):
+        if item.name in items and not is_body(item, rest):
             parts = tuple(rest)
     return joined(body.name, parts)
 

@@ -67,6 +67,15 @@ class Skeleton:
             layer = np.flatnonzero(np.isin(self.parents, layer))
         return np.array(found, np.int64)
 
+    @cached_property
+    def subtrees(self) -> Bools:
+        """Tell for each bone which bones hang on it, itself as well, (b, b)."""
+        hanging = np.eye(len(self), dtype=bool)
+        for bone in self.order[::-1]:
+            if self.parents[bone] >= 0:
+                hanging[self.parents[bone]] |= hanging[bone]
+        return hanging
+
     def children(self, bone: int) -> Ints:
         """Bones that hang directly on a bone."""
         return np.flatnonzero(self.parents == bone)

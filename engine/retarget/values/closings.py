@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags_array
 
+from ...geometry.directions import spread_directions
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints, facing
@@ -232,7 +233,7 @@ class _Seeking:
     def _open(self, places: Floats, lines: Floats) -> Bools:
         """Tell which middles of lines (p, 3) that begin at places (p, 3) see out of the surface."""
         low, high = self._mesh.vertices.min(axis=0), self._mesh.vertices.max(axis=0)
-        directions = _directions(_DIRECTIONS)
+        directions = spread_directions(_DIRECTIONS)
         points = np.repeat(places + 0.5 * lines, len(directions), axis=0)
         ways, out = np.tile(directions, (len(places), 1)), np.zeros(len(points), bool)
         least = np.repeat(_TOUCHED * np.linalg.norm(lines, axis=1), len(directions))
@@ -245,14 +246,6 @@ class _Seeking:
             out[active[outside]] = True
             active = active[~outside]
         return out.reshape(len(places), _DIRECTIONS).mean(axis=1) >= _SEEN
-
-
-def _directions(count: int) -> Floats:
-    """Spread unit vectors evenly over all directions, (count, 3), along a spiral."""
-    heights = 1 - (2 * np.arange(count) + 1) / count
-    angles = np.pi * (1 + np.sqrt(5)) * np.arange(count)
-    radii = np.sqrt(1 - heights**2)
-    return np.stack([radii * np.cos(angles), radii * np.sin(angles), heights], axis=1)
 
 
 class _Ways:

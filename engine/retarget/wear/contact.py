@@ -13,10 +13,13 @@ from scipy.sparse import csr_array
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, marked, unit_vectors
 
 _MOST_PARTS = 6
 """Into how many parts the side of a triangle is divided at most, so that nothing pokes through it unseen."""
+
+_FEW = 0.25
+"""Part of the vertices, each as often as it is asked for, up to which only their normals are computed."""
 
 _INSIDE = 0.02
 """Barycentric coordinate from which on a point counts as inside its triangle, whose own normal then tells its sides."""
@@ -91,6 +94,12 @@ class Surface:
             return self.sewn.surface.normals[self.sewn.parts.welded]
         return _angle_normals(self.mesh)
 
+    def _normals_at(self, corners: Ints) -> Floats:
+        """Return the normals of some vertices (k, 3), (k, 3, 3); of few of them no others are computed."""
+        if "normals" in self.__dict__ or self.sewn is not None or corners.size > _FEW * self.mesh.vertex_count:
+            return self.normals[corners]
+        return _angle_normals(self.mesh, np.unique(corners))[corners]
+
     def moved(self, vertices: Floats) -> Surface:
         """Return the surface with its vertices elsewhere, (n, 3); what depends on the triangles alone is shared."""
         other = copy(self)
@@ -116,7 +125,7 @@ class Surface:
         corners, barycentric = self.mesh.triangles[found.triangles], found.barycentric
         feet = np.einsum("kc,kci->ki", barycentric, self.mesh.vertices[corners])
         inside = (barycentric > _INSIDE).all(axis=1)
-        blended = unit_vectors(np.einsum("kc,kci->ki", barycentric, self.normals[corners]))
+        blended = unit_vectors(np.einsum("kc,kci->ki", barycentric, self._normals_at(corners)))
         normals = np.where(inside[:, None], self.mesh.triangle_normals[found.triangles], blended)
         away = points - feet
         distances = np.sqrt(found.squared_distances)
@@ -186,14 +195,18 @@ def surface_samples(mesh: TriangleMesh, spacing: float) -> csr_array:
     return samples
 
 
-def _angle_normals(mesh: TriangleMesh) -> Floats:
-    """Find the normals of the vertices, weighted by the angles of the triangles, (n, 3)."""
+def _angle_normals(mesh: TriangleMesh, wanted: Ints | None = None) -> Floats:
+    """Find the normals of vertices, weighted by the angles of the triangles, (n, 3), of all or of those wanted."""
+    triangles, normals = mesh.triangles, mesh.triangle_normals
+    if wanted is not None:
+        around = marked(wanted, mesh.vertex_count)[triangles].any(axis=1)
+        triangles, normals = triangles[around], normals[around]
     sums = np.zeros((mesh.vertex_count, 3))
-    corners = [mesh.vertices[corner] for corner in mesh.triangles.T]
+    corners = [mesh.vertices[corner] for corner in triangles.T]
     sides = [unit_vectors(corners[(corner + 1) % 3] - corners[corner]) for corner in range(3)]
     for corner in range(3):
         angle = np.arccos((-np.einsum("mi,mi->m", sides[corner], sides[corner - 1])).clip(-1, 1))
-        weighted = angle[:, None] * mesh.triangle_normals
+        weighted = angle[:, None] * normals
         for axis in range(3):
-            sums[:, axis] += np.bincount(mesh.triangles[:, corner], weighted[:, axis], mesh.vertex_count)
+            sums[:, axis] += np.bincount(triangles[:, corner], weighted[:, axis], mesh.vertex_count)
     return unit_vectors(sums)

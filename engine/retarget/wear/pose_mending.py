@@ -14,7 +14,9 @@ from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
+from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ...runtime.progress import Progress, Steps, within
+from ...runtime.worker import call_helpers
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 from .contact import Surface
@@ -45,6 +47,9 @@ _CLEARLY = 0.009
 
 _WORSE = 0.002
 """By how much deeper, in the same unit, a neighbor of such vertices may get by taking its share."""
+
+_PARTS = 2
+"""Into how many parts the bones are divided, to be tried by as many processes."""
 
 _SMOOTHING = 2
 """How many rings of neighbours share in what is mended."""
@@ -122,6 +127,7 @@ def mend_weights_steps(
     list of MendedWeights
         The weights of each item.
     """
+    call_helpers()
     posed = _PosedBody(body, skin_weights, skeleton)
     tried = [_tried(item, posed) for item in items]
     found = yield from within(_deepest_steps(posed, [(one, one.lying, [one.item.weights]) for one in tried]), 0.0, 0.7)
@@ -165,12 +171,14 @@ class _Tried:
 class _PosedBody:
     """A body whose joints are bent one by one."""
 
+    is_sent_once = True
+    """See `parallel_map.shared_steps`."""
+
     def __init__(self, body: TriangleMesh, weights: csr_array, skeleton: Skeleton) -> None:
         self.body, self.weights, self.skeleton = body, weights, skeleton
         self.unit = float(np.sqrt(body.area))
         self.search = ClosestPoints(body)
         self.skin = Surface(body, self.search)
-        self.subtrees = _subtrees(skeleton.parents)
 
 
 def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
@@ -191,17 +199,29 @@ def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
     return _Tried(item, parts, of_skin, starts, lying)
 
 
-def _deepest_steps(posed: _PosedBody, ways: Sequence[tuple[_Tried, Bools, list[csr_array]]]) -> Steps[list[Floats]]:
+_Ways = Sequence[tuple[_Tried, Bools, list[csr_array]]]
+"""Items, which of their vertices are looked at (n,), and the weights that are tried."""
+
+
+def _deepest_steps(posed: _PosedBody, ways: _Ways) -> Steps[list[Floats]]:
     """Find how deep some vertices (n,) of items get into the skin at most, by each of w weights: (w, n) for each item.
 
     Those that never do, are not looked at, or that no joint bends have zero.
     """
-    body, skeleton = posed.body, posed.skeleton
     used = np.flatnonzero(sum(sum(_column_sums(weights) for weights in way[2]) for way in ways) if ways else [])
+    share = shared_steps if posed.body.vertex_count <= MOST_SENT else here_steps
+    found = yield from share(_deepest_of_steps, (posed, ways), [used[part::_PARTS] for part in range(_PARTS)])
+    return [np.max(depths, axis=0) for depths in zip(*found, strict=True)]
+
+
+def _deepest_of_steps(common: tuple[_PosedBody, _Ways], bones: Ints) -> Steps[list[Floats]]:
+    """Do so for some bones."""
+    (posed, ways), skeleton = common, common[0].skeleton
+    body = posed.body
     deepest = [np.zeros((len(weights), len(chosen))) for _, chosen, weights in ways]
-    for number, bone in enumerate(used):
-        yield Progress(number / len(used), "Trying poses")
-        hanging = posed.subtrees[bone]
+    for number, bone in enumerate(bones):
+        yield Progress(number / len(bones), "Trying poses")
+        hanging = skeleton.subtrees[bone]
         on_skin = row_sums(posed.weights[:, hanging])
         if on_skin @ body.vertex_areas < _LARGE_PART * body.area:
             continue
@@ -225,18 +245,6 @@ def _deepest_steps(posed: _PosedBody, ways: Sequence[tuple[_Tried, Bools, list[c
 
 def _column_sums(weights: csr_array) -> Floats:
     return np.asarray(weights.sum(axis=0)).ravel()
-
-
-def _subtrees(parents: Ints) -> Bools:
-    """Tell for each bone which bones hang on it, itself as well, (b, b)."""
-    count = len(parents)
-    hanging = np.eye(count, dtype=bool)
-    for bone in range(count):
-        above = int(parents[bone])
-        while above >= 0:
-            hanging[above, bone] = True
-            above = int(parents[above])
-    return hanging
 
 
 def _bends(along: Floats) -> list[Floats]:

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
 from .contact import Surface
 
 _ROUNDS = 8
@@ -49,8 +49,19 @@ _ALIKE, _HOME = 0.3, 0.06
 """Least cosine between the normals there and where the item lay before, and the largest distance between the two, in
 the same unit: else it is another limb."""
 
+_MARGIN = 0.0005
+"""How far over such a vertex, in the same unit, the item is moved."""
+
 _MOSTLY = 0.3
 """Part of a place of the item by its corners that has to have lain outside, for the skin not to show above it."""
+
+_ALONG = 0.3
+"""Least cosine between the normals of two layers of cloth, of either sign, for the one to lie on the other: what comes
+out of a hem or ends at it, as trousers at a jacket that is closed below, crosses it."""
+
+_ONE = 1e-6
+"""Distance, in the same unit, up to which two layers of cloth are one, as where two parts of a body were cut apart:
+neither is the upper one."""
 
 _INSIDE = -0.001
 """Distance from the surface below, in the same unit, down to which a place counts as lying on it: what is further
@@ -99,9 +110,10 @@ def layer_of(
     surface_before: Surface,
     surface: Surface,
     samples: csr_array,
-    before: Floats,
+    before: TriangleMesh,
     *,
     places: Ints | None,
+    buried: Bools | None,
     scales: Floats,
     unit: float,
     least: float,
@@ -115,10 +127,13 @@ def layer_of(
         The skin, or an item below, on the first body and as it is now.
     samples : (s, n) csr_array of float
         Samples of the item.
-    before : (n, 3) array of float
-        The item on the first body.
+    before : TriangleMesh
+        The item on the first body, n vertices.
     places : (m,) array of int, optional
-        For each vertex of the surface before, the vertex of the other that it came to be; none if they are the same.
+        For each vertex of the skin before, the vertex of the other that it came to be; none for an item below.
+    buried : (m,) array of bool, optional
+        Vertices of the skin before that lie deep within the body, as where parts of a character are closed: nothing
+        has to lie outside of them.
     scales : (n,) array of float
         How many times as large it becomes.
     unit : float
@@ -128,13 +143,25 @@ def layer_of(
     margin : float
         Least distance, now, of all that lay outside.
     """
-    points = samples @ before
-    found = surface_before.clearance(points)
-    reached = found.known & (found.distances < _NEAR * unit) & (found.distances > _INSIDE * unit)
+    n, points = before.vertex_count, samples @ before.vertices
+    # Away from the surface only vertices are asked on which side they are.
+    low, high = surface_before.mesh.vertices.min(axis=0), surface_before.mesh.vertices.max(axis=0)
+    asked = ((points > low - _NEAR * unit) & (points < high + _NEAR * unit)).all(axis=1)
+    asked[:n] = True
+    samples = samples[asked]
+    found = surface_before.clearance(points[asked])
+    outside = (found.distances > _INSIDE * unit) | ~found.known
+    near = found.known & (found.distances < _NEAR * unit)
+    if places is None:
+        along = np.einsum("si,si->s", unit_vectors(samples @ before.vertex_normals), found.normals)
+        outside &= ~near | (np.abs(along) > _ALONG) & (np.abs(found.distances) > _ONE * unit)
+    if buried is not None:
+        outside &= ~buried[found.vertices]
     wanted = np.minimum((samples @ scales) * found.distances.clip(min=0), least)
-    starts = found.vertices if places is None else places[found.vertices]
-    outside = (found.distances[: len(before)] > _INSIDE * unit) | ~found.known[: len(before)]
-    return Layer(surface, np.where(reached, np.maximum(wanted, margin), -np.inf), starts, outside)
+    all_wanted, starts = np.full(len(points), -np.inf), np.zeros(len(points), np.int64)
+    all_wanted[asked] = np.where(near & outside, np.maximum(wanted, margin), -np.inf)
+    starts[asked] = found.vertices if places is None else places[found.vertices]
+    return Layer(surface, all_wanted, starts, outside[:n])
 
 
 def pushed_out(
@@ -176,10 +203,11 @@ def pushed_out(
     sample_mass = samples @ (mass / np.maximum(shares, 1))
     tolerance = 1e-4 * unit
     through = 0.0
-    surface, above = Surface(mesh), [_Above(layer, samples.shape[0]) for layer in layers]
+    surface = Surface(mesh)
+    sides = [(_Above(layer, samples.shape[0]), _Under(layer, len(positions), unit)) for layer in layers]
     for number in range(_ROUNDS):
         item, all_places = surface.moved(positions), number < _SMOOTHLY
-        rows, moves, counts = _needed(item, samples, sample_mass, above, free=free, unit=unit, all_places=all_places)
+        rows, moves, counts = _needed(item, samples, sample_mass, sides, free=free, all_places=all_places)
         if rows is None:
             through = 0.0
             break
@@ -201,10 +229,9 @@ def _needed(
     item: Surface,
     samples: csr_array,
     sample_mass: Floats,
-    above: Sequence[_Above],
+    sides: Sequence[tuple[_Above, _Under]],
     *,
     free: Bools,
-    unit: float,
     all_places: bool,
 ) -> tuple[csr_array | None, Floats, Floats]:
     """Places of the item that have to move: shares of the vertices (k, n), the moves (k, 3), and weights (k,)."""
@@ -213,17 +240,16 @@ def _needed(
     moves: list[Floats] = []
     weights: list[Floats] = []
     movable = np.asarray(samples @ free.astype(float)).ravel() > 0.5
-    for one in above:
-        layer = one.layer
-        lying = np.flatnonzero(np.isfinite(layer.wanted) & movable)
+    for above, under in sides:
+        lying = np.flatnonzero(np.isfinite(above.layer.wanted) & movable)
         if all_places:
-            needed = one.lacking(points[lying], lying)
+            needed = above.lacking(points[lying], lying)
             chosen = np.flatnonzero(needed.any(axis=1))
             at = lying[chosen]
             rows.append(csr_array(samples[at]))
             moves.append(needed[chosen])
             weights.append(sample_mass[at])
-        poked = _poking(item, layer, free, unit)
+        poked = under.poking(item, free, every=not all_places)
         if poked is not None:
             rows.append(poked[0])
             moves.append(poked[1])
@@ -266,46 +292,75 @@ class _Above:
         return moves
 
 
-def _poking(item: Surface, layer: Layer, free: Bools, unit: float) -> tuple[csr_array, Floats] | None:
-    """Find places of the surface below that are above the item, and the moves of the item over them."""
-    surface, reach = layer.surface, _POKING * unit
-    mesh, positions = item.mesh, item.mesh.vertices
-    centres = surface.mesh.vertices[surface.mesh.triangles].mean(axis=1)
-    vertices = np.concatenate([surface.mesh.vertices, centres])
-    normals = np.concatenate([surface.normals, surface.mesh.triangle_normals])
-    loose = positions[mesh.triangles[free[mesh.triangles].any(axis=1)]].reshape(-1, 3)  # what is fixed is not pushed
-    if not len(loose):
-        return None
-    low, high = loose.min(axis=0) - reach, loose.max(axis=0) + reach
-    near = np.flatnonzero(((vertices > low) & (vertices < high)).all(axis=1))
-    if not len(near):
-        return None
-    found = item.search.nearest(vertices[near])
-    corners = mesh.triangles[found.triangles]
-    feet = np.einsum("kc,kci->ki", found.barycentric, positions[corners])
-    away = feet - vertices[near]
-    height = np.einsum("ki,ki->k", away, normals[near])
-    distance = np.sqrt(found.squared_distances)
-    under = (height < 0) & (distance < reach) & (-height > _STRAIGHT * distance)
-    under &= np.einsum("kc,kc->k", found.barycentric, layer.outside[corners]) > _MOSTLY
-    under &= free[corners].any(axis=1)
-    # The skin of another limb is none of its business.
-    at = found.barycentric.argmax(axis=1)
-    home = layer.starts[np.take_along_axis(corners, at[:, None], axis=1)[:, 0]]
-    under &= np.einsum("ki,ki->k", normals[home], normals[near]) > _ALIKE
-    under &= np.linalg.norm(vertices[home] - vertices[near], axis=1) < _HOME * unit
-    # What is at the rim of the item is beside it, not above it.
-    rim = item.rim[corners]
-    under &= ~((found.barycentric > 1e-3) <= rim).all(axis=1)
-    if not under.any():
-        return None
-    k = int(under.sum())
-    rows = csr_array(
-        (found.barycentric[under].ravel(), corners[under].ravel(), np.arange(0, 3 * k + 1, 3)),
-        shape=(k, len(positions)),
-    )
-    margin = 0.0005 * unit
-    return rows, (margin - height[under])[:, None] * normals[near[under]]
+class _Under:
+    """Places of a layer that may come through an item: its vertices, and the middles of its triangles.
+
+    Only those are looked at near which the item lay, as the skin of another limb is none of its business; and of these
+    only those that it may have come to since, as in `_Above`: what is under it, it has to come as near to as it is.
+    The last rounds, which move places one by one, look at all near which it lay.
+    """
+
+    def __init__(self, layer: Layer, item_count: int, unit: float) -> None:
+        mesh = layer.surface.mesh
+        self._layer, self._unit = layer, unit
+        self._points = np.concatenate([mesh.vertices, mesh.vertices[mesh.triangles].mean(axis=1)])
+        self._normals = np.concatenate([layer.surface.normals, mesh.triangle_normals])
+        homes = mesh.vertices[np.unique(layer.starts[:item_count])]
+        self._near_home = _near_cells(self._points, homes, _HOME * unit)
+        self._room = np.zeros(len(self._points))
+        self._corners = np.zeros((len(self._points), 3), np.int64)
+        self._seen = np.zeros((len(self._points), 3, 3))
+
+    def poking(self, item: Surface, free: Bools, *, every: bool) -> tuple[csr_array, Floats] | None:
+        """Find places of the layer that are above the item, of every one or of those it may have come to.
+
+        Returns shares of the item's vertices (k, n) where they are, and its moves over them (k, 3); none if none is.
+        """
+        layer, unit, reach = self._layer, self._unit, _POKING * self._unit
+        mesh, positions = item.mesh, item.mesh.vertices
+        loose = positions[mesh.triangles[free[mesh.triangles].any(axis=1)]].reshape(-1, 3)  # what is fixed stays
+        if not len(loose):
+            return None
+        low, high = loose.min(axis=0) - reach, loose.max(axis=0) + reach
+        near = np.flatnonzero(self._near_home & ((self._points > low) & (self._points < high)).all(axis=1))
+        moved = np.linalg.norm(positions[self._corners[near]] - self._seen[near], axis=2).max(axis=1)
+        near = near[every | (2 * moved >= self._room[near])]
+        if not len(near):
+            return None
+        points, normals = self._points[near], self._normals[near]
+        found = item.search.nearest(points)
+        corners = mesh.triangles[found.triangles]
+        away = np.einsum("kc,kci->ki", found.barycentric, positions[corners]) - points
+        height = np.einsum("ki,ki->k", away, normals)
+        distance = np.sqrt(found.squared_distances)
+        self._corners[near], self._seen[near] = corners, positions[corners]
+        self._room[near] = np.where(height < 0, (distance - reach).clip(min=0), distance)
+        under = (height < 0) & (distance < reach) & (-height > _STRAIGHT * distance)
+        under &= np.einsum("kc,kc->k", found.barycentric, layer.outside[corners]) > _MOSTLY
+        under &= free[corners].any(axis=1)
+        at = found.barycentric.argmax(axis=1)
+        home = layer.starts[np.take_along_axis(corners, at[:, None], axis=1)[:, 0]]
+        under &= np.einsum("ki,ki->k", self._normals[home], normals) > _ALIKE
+        under &= np.linalg.norm(self._points[home] - points, axis=1) < _HOME * unit
+        # What is at the rim of the item is beside it, not above it.
+        under &= ~((found.barycentric > 1e-3) <= item.rim[corners]).all(axis=1)
+        if not under.any():
+            return None
+        k = int(under.sum())
+        starts = np.arange(0, 3 * k + 1, 3)
+        rows = csr_array((found.barycentric[under].ravel(), corners[under].ravel(), starts), shape=(k, len(positions)))
+        return rows, (_MARGIN * unit - height[under])[:, None] * normals[under]
+
+
+def _near_cells(points: Floats, places: Floats, size: float) -> Bools:
+    """Tell which points (k, 3) are in the cell of a place (p, 3) or in one beside it, (k,)."""
+    low = np.minimum(points.min(axis=0), places.min(axis=0)) - size
+    counts = np.floor((np.maximum(points.max(axis=0), places.max(axis=0)) - low) / size).astype(np.int64) + 2
+    cells = [np.floor((each - low) / size).astype(np.int64) for each in (points, places)]
+    numbers = [(each[:, 0] * counts[1] + each[:, 1]) * counts[2] + each[:, 2] for each in cells]
+    x, y, z = (step.ravel() - 1 for step in np.indices((3, 3, 3)))
+    steps = (x * counts[1] + y) * counts[2] + z
+    return np.isin(numbers[0], (np.unique(numbers[1])[:, None] + steps).ravel())
 
 
 def _directly(rows: csr_array, moves: Floats) -> Floats:

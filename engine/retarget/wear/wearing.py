@@ -15,11 +15,14 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
+from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ...runtime.progress import Progress, Steps, within
+from ...runtime.worker import call_helpers
 from .body_motion import BodyMotion, BodySkin, Carriers, Motion
+from .buried_vertices import BuriedVertices
 from .contact import Clearance, Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
 from .rigid_pieces import placed_rigidly, rigid_pieces
@@ -76,6 +79,7 @@ class DressedBody:
 
     skin: BodySkin
     surface: Surface
+    buried: BuriedVertices
     items: tuple[DressedItem, ...]
 
 
@@ -139,6 +143,7 @@ def wear_steps(
     """
     if images.shape != source.vertices.shape or len(source_to_target) != source.vertex_count:
         raise MeshError("The map belongs to other meshes than the bodies. Match them again.")
+    call_helpers()
     dressed = yield from within(dressed_steps(source, items, bones=bones), 0.0, 0.3)
     return (yield from within(fitted_steps(dressed, target, source_to_target, images), 0.3, 1.0))
 
@@ -148,20 +153,26 @@ def dressed_steps(
 ) -> Steps[DressedBody]:
     """Find how a body wears items, see `wear_steps`: all that does not depend on what it becomes."""
     skin = BodySkin(source, bones)
-    surface, unit = Surface(source, skin.search), float(np.sqrt(source.area))
-    found = []
-    for number, given in enumerate(items):
-        yield Progress(number / len(items), "Moving items along")
-        item, welded = sewn(given)
-        below = surface.clearance(item.mesh.vertices)
-        reach = np.abs(below.distances) + 0.05 * unit * (item.fit == "LOOSE")
-        pieces = item.pieces
-        if pieces is None:
-            named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
-            pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
-        carriers = skin.carriers(item.mesh.vertices, reach, item.bones)
-        found.append(DressedItem(item, welded, below, carriers, pieces, laplace_beltrami(item.mesh)))
-    return DressedBody(skin, surface, tuple(found))
+    surface = Surface(source, skin.search)
+    few = sum(mesh.vertex_count for mesh in (source, *(item.mesh for item in items))) <= MOST_SENT
+    share = shared_steps if few else here_steps
+    found = yield from share(_dressed_item_steps, (skin, surface), items)
+    return DressedBody(skin, surface, BuriedVertices.of(source), tuple(found))
+
+
+def _dressed_item_steps(body: tuple[BodySkin, Surface], given: WornItem) -> Steps[DressedItem]:
+    """Find how a body wears an item."""
+    yield Progress(0.0, "Moving items along")
+    (skin, surface), unit = body, body[0].size
+    item, welded = sewn(given)
+    below = surface.clearance(item.mesh.vertices)
+    reach = np.abs(below.distances) + 0.05 * unit * (item.fit == "LOOSE")
+    pieces = item.pieces
+    if pieces is None:
+        named = np.ones(item.mesh.vertex_count, bool) if item.fit == "RIGID" else item.rigid
+        pieces = rigid_pieces(item.mesh, unit, named, search=item.find_rigid)
+    carriers = skin.carriers(item.mesh.vertices, reach, item.bones)
+    return DressedItem(item, welded, below, carriers, pieces, laplace_beltrami(item.mesh))
 
 
 def fitted_steps(
@@ -172,6 +183,7 @@ def fitted_steps(
     motion, unit = BodyMotion(dressed.skin, images), dressed.skin.size
     new_unit = motion.overall * unit
     skin_before, skin = dressed.surface, Surface(target)
+    buried = dressed.buried.on(skin, images)
     works: list[_Work] = []
     count = max(len(dressed.items), 1)
     for number, one in enumerate(dressed.items):
@@ -181,7 +193,7 @@ def fitted_steps(
         _elastic(works[-1], one.laplace, unit)
     for work in works:
         _place_pieces(work, works, motion, unit)
-    order = sorted(range(len(works)), key=lambda number: (_height(works[number]), number))
+    order = _inner_first(works, unit)
     spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
     for done, number in enumerate(order):
         yield Progress(0.5 + 0.45 * done / count, "Pushing items out")
@@ -191,6 +203,7 @@ def fitted_steps(
             below,
             (skin_before, skin),
             source_to_target.nearest_vertices,
+            buried,
             units=(unit, new_unit),
             spacing=spacing,
         )
@@ -246,9 +259,32 @@ def _place_pieces(work: _Work, works: Sequence[_Work], motion: BodyMotion, unit:
     work.positions = positions
 
 
-def _height(work: _Work) -> float:
-    """How far an item is from the skin where it lies on it."""
-    return float(np.quantile(work.below.distances, 0.25))
+def _inner_first(works: Sequence[_Work], unit: float) -> list[int]:
+    """Put items in the order in which they lie on the body, (w,).
+
+    How far they are from the skin where they lie on it counts; of those that are the skin themselves, as all clothes
+    of a character for games, how much of each lies over the others.
+    """
+    heights = np.array([np.quantile(work.below.distances, 0.25) for work in works])
+    heights[np.abs(heights) < _NOTHING * unit] = 0.0
+    over = np.zeros(len(works))
+    at_skin = np.flatnonzero(heights == 0)
+    for number in at_skin:
+        surface = Surface(works[number].item.mesh)
+        for other in at_skin[at_skin != number]:
+            mesh = works[other].item.mesh
+            if _near(mesh.vertices, surface.mesh.vertices, unit):
+                share = _lying_over(surface, mesh, unit)
+                over[other] += share
+                over[number] -= share
+    return sorted(range(len(works)), key=lambda number: (heights[number], over[number], number))
+
+
+def _lying_over(surface: Surface, item: TriangleMesh, unit: float) -> float:
+    """Tell what part of an item near a surface lies over it, less what lies under it, -1 to 1."""
+    found = surface.clearance(item.vertices)
+    areas = item.vertex_areas * (found.known & (np.abs(found.distances) < _AT_SKIN * unit))
+    return float(areas @ np.sign(found.distances) / max(areas.sum(), TINY))
 
 
 def _push(
@@ -256,6 +292,7 @@ def _push(
     below: Sequence[_Work],
     skins: tuple[Surface, Surface],
     places: Ints,
+    buried: Bools,
     *,
     units: tuple[float, float],
     spacing: float,
@@ -274,8 +311,9 @@ def _push(
         layer_of(
             *skins,
             samples,
-            mesh.vertices,
+            mesh,
             places=places,
+            buried=buried,
             scales=scales,
             unit=unit,
             least=_ENOUGH * new_unit,
@@ -289,7 +327,17 @@ def _push(
         surfaces = Surface(beneath), Surface(TriangleMesh(other.positions, beneath.triangles))
         least = _LAYERS * new_unit
         layers.append(
-            layer_of(*surfaces, samples, mesh.vertices, places=None, scales=scales, unit=unit, least=least, margin=0.0)
+            layer_of(
+                *surfaces,
+                samples,
+                mesh,
+                places=None,
+                buried=None,
+                scales=scales,
+                unit=unit,
+                least=least,
+                margin=0.0,
+            )
         )
     rigid = work.pieces >= 0
     fixed = rigid if item.left is None else rigid | item.left

@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.scene.character import joined, parts_of
+from hiermatch.hiermatch_addon.scene.character import joined, parts_of, side_of
 from hiermatch.hiermatch_addon.scene.garments import undressed
 from mathutils import Vector
 
@@ -209,6 +209,19 @@ def test_all_that_the_armature_moves_gets_the_weights_of_the_other_rig(pair):
     np.testing.assert_allclose(weights, 1, atol=1e-3)
 
 
+def test_what_a_target_wears_already_is_no_part_of_it(pair):
+    """Picked by its armature, it is the same body when it is dressed."""
+    source, target, _, _ = pair
+    rig = add_armature("Rig B")
+    target.vertex_groups.new(name="neck").add(range(len(target.data.vertices)), 1.0, "REPLACE")
+    target.modifiers.new("Armature", "ARMATURE").object = rig
+    for _ in range(2):
+        assert wear("Shirt", target="Rig B", wear_poses=False) == {"FINISHED"}
+        assert fitted("Shirt", target.name).modifiers["Armature"].object == rig
+        assert parts_of(side_of(rig, bpy.context.view_layer)) == (target,)
+    assert source.name == "Source"
+
+
 def test_bones_of_an_item_come_along_onto_the_other_rig(pair):
     source, target, shirt, coat = pair
     rigs = [add_armature("Rig A"), add_armature("Rig B")]
@@ -377,3 +390,24 @@ def test_of_layers_over_nothing_the_inner_one_stands_for_the_body(pair):
     worn = undressed(body, ["Vest", "Cloak"], depsgraph)
     assert [part.name for part in parts_of(worn)] == ["Head", "Legs", "Vest"]
     assert undressed(source, ["Shirt"], depsgraph) is source
+
+
+def test_shoes_below_closed_legs_are_part_of_a_body_with_a_rig(pair):
+    del pair
+    rig = add_armature("Doll Rig")
+    foot, above = rig.data.bones["head"], "neck"
+    joint = rig.matrix_world @ foot.head_local
+    made = []
+    for name, height, moved_by in (("Leg", 1.0, above), ("Shoe", -0.3, foot.name)):
+        bpy.ops.mesh.primitive_uv_sphere_add(location=joint + Vector((0, 0, height)))
+        obj = bpy.context.object
+        obj.name, obj.scale = name, (0.2, 0.2, height if height > 0 else 0.25)
+        obj.vertex_groups.new(name=moved_by).add(range(len(obj.data.vertices)), 1.0, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+        made.append(obj)
+    bpy.context.view_layer.update()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    body = joined("Doll", made)
+    assert parts_of(undressed(body, ["Shoe"], depsgraph)) == tuple(made)
+    made[1].vertex_groups[0].name = above
+    assert parts_of(undressed(body, ["Shoe"], depsgraph)) == (made[0],)

@@ -35,3 +35,10 @@ def test_no_bones_are_a_skeleton():
 def test_what_is_no_skeleton_is_refused(parents, heads, message):
     with pytest.raises(RigError, match=message):
         Skeleton(np.array(parents), heads, np.ones((2, 3)))
+
+
+def test_subtrees_hold_all_that_hangs_on_a_bone():
+    tree = skeleton([2, 0, -1, 2])  # not in order
+    found = [set(np.flatnonzero(row)) for row in tree.subtrees]
+    assert found == [{0, 1}, {1}, {0, 1, 2, 3}, {3}]
+    assert found == [{bone, *tree.below(bone)} for bone in range(4)]

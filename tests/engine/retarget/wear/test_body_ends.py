@@ -3,8 +3,9 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
-from engine import TriangleMesh, continues_body
+from engine import Skeleton, TriangleMesh, continues_body, ends_at_joint
 from tests.shapes import cylinder, icosphere, rotation
 
 LEG = TriangleMesh(*cylinder(24, 20, 0.5, 4.0))
@@ -57,3 +58,58 @@ def test_what_holds_a_body_together_is_part_of_it():
 
 def test_a_closed_body_is_whole():
     assert not continues_body(TriangleMesh(*icosphere(6)), tube(2.0, 9.0, 0.5))
+
+
+def moved_by(bone, mesh, count=3):
+    return csr_array(
+        (np.ones(mesh.vertex_count), (np.arange(mesh.vertex_count), np.full(mesh.vertex_count, bone))),
+        shape=(mesh.vertex_count, count),
+    )
+
+
+def ball(centre, size):
+    vertices, triangles = icosphere(6)
+    return TriangleMesh(vertices * size + np.array(centre), triangles)
+
+
+HEADS = np.array([[0, 0, 4.0], [0, 0, 2.0], [0, 0, 0.0]])
+BONES = Skeleton(np.array([-1, 0, 1]), HEADS, np.array([[0, 0, 2.0], [0, 0, 0], [0, -1.0, 0]]))
+"""A limb of two bones, and one at its lower end."""
+
+SHIN = ball((0.0, 0.0, 2.0), (0.4, 0.4, 2.0))
+SHOE = ball((0.0, -0.4, -0.3), (0.4, 0.9, 0.3))
+
+
+def ends(body, item, bone, of_body=1, skeleton=BONES):
+    return ends_at_joint(body, item, (moved_by(of_body, body), moved_by(bone, item)), skeleton)
+
+
+def test_a_shoe_below_a_closed_leg_is_its_foot():
+    assert not continues_body(SHIN, SHOE)  # by its shape alone it might hang there
+    assert ends(SHIN, SHOE, 2)
+    turn = rotation([1.0, -2.0, 0.5], 0.8)
+    bones = Skeleton(BONES.parents, *(37.0 * each @ turn.T + [5.0, 0.0, -90.0] for each in (BONES.heads, BONES.tails)))
+    body, item = turned(SHIN), turned(SHOE)
+    assert ends(body, item, 2, skeleton=bones)
+
+
+def test_what_moves_with_the_skin_is_worn():
+    assert not ends(SHIN, SHOE, 1)
+    foot = ball((0.0, -0.4, -0.3), (0.35, 0.8, 0.25))
+    triangles = np.concatenate([SHIN.triangles, foot.triangles + SHIN.vertex_count])
+    body = TriangleMesh(np.concatenate([SHIN.vertices, foot.vertices]), triangles)
+    bones = csr_array(np.concatenate([moved_by(1, SHIN).toarray(), moved_by(2, foot).toarray()]))
+    assert not ends_at_joint(body, SHOE, (bones, moved_by(2, SHOE)), BONES)
+
+
+def test_a_plait_with_a_bone_of_its_own_is_no_part_of_the_head():
+    head = ball((0.0, 0.0, 1.0), 1.0)
+    plait = ball((0.0, 1.2, 0.6), (0.15, 0.3, 1.0))
+    heads = np.array([[0, 0, -1.0], [0, 0, 0.2], [0, 1.0, 1.2]])
+    bones = Skeleton(np.array([-1, 0, 1]), heads, heads + np.array([0, 0, 0.5]))
+    assert not ends(head, plait, 2, skeleton=bones)
+
+
+def test_an_item_without_weights_is_worn():
+    nothing = csr_array((SHOE.vertex_count, 3))
+    assert not ends_at_joint(SHIN, SHOE, (moved_by(1, SHIN), nothing), BONES)

@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Weights of clothes that are tried in poses."""
 
+import time
+
 import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
 from engine import Skeleton, TriangleMesh, run
 from engine.retarget.wear.pose_mending import WeightedItem, mend_weights_steps
+from engine.retarget.wear.wearing import dressed_steps
+from engine.retarget.wear.worn_item import WornItem
+from engine.runtime.worker import call_helpers, close_helpers, present_helpers, use_processes
 from tests.shapes import cylinder
+
+PATIENCE = 60
 
 BONES = Skeleton(np.array([-1, 0]), np.array([[0, 0, 0], [0, 0, 2.0]]), np.array([[0, 0, 2.0], [0, 0, 4.0]]))
 
@@ -67,3 +74,43 @@ def test_each_item_is_mended_by_itself(limb):
     assert not kept.changed.any()
     np.testing.assert_allclose(mended.weights.toarray(), alone.weights.toarray())
     assert mend(limb) == []
+
+
+@pytest.fixture
+def helper():
+    """A second process that is ready, once it is called for."""
+    use_processes(1)
+
+    def called():
+        use_processes(2)
+        call_helpers()
+        (found,) = present_helpers()
+        end = time.monotonic() + PATIENCE
+        while not found.is_ready:
+            assert time.monotonic() < end
+            found.look(0.01)
+        return found
+
+    yield called
+    close_helpers()
+    use_processes()
+
+
+def test_two_processes_find_the_same(limb, helper):
+    """To the last bit; so they do of how a body wears items."""
+    body, sleeve = limb
+    weights = [smooth_weights(sleeve.vertices, sharpness) for sharpness in (4.0, 40.0)]
+
+    def found():
+        return mend(limb, *weights), run(dressed_steps(body, [WornItem(sleeve), WornItem(sleeve, fit="LOOSE")]))
+
+    mended, dressed = found()
+    helper()
+    other_mended, other_dressed = found()
+    for one, other in zip(mended, other_mended, strict=True):
+        assert abs(one.weights - other.weights).max() == 0
+        np.testing.assert_array_equal(one.changed, other.changed)
+    for one, other in zip(dressed.items, other_dressed.items, strict=True):
+        np.testing.assert_array_equal(one.carriers.away, other.carriers.away)
+        np.testing.assert_array_equal(one.below.distances, other.below.distances)
+        assert abs(one.carriers.places - other.carriers.places).max() == 0

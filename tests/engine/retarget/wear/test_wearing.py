@@ -218,3 +218,66 @@ def test_a_body_that_is_cut_open_at_every_edge_is_dressed_as_a_whole():
     assert whole.pushed.max() > 0.05
     assert opened.clearance.min() >= 0
     np.testing.assert_allclose(opened.positions, whole.positions, atol=0.02)
+
+
+def solid(low, high, radius):
+    """A closed cylinder of many triangles."""
+    vertices, triangles = icosphere(10)
+    height = vertices[:, 2]
+    side = np.linalg.norm(vertices[:, :2], axis=1)
+    # The rounder thirds of a sphere become the flat ends.
+    flat = np.abs(height) > 0.7
+    rim = np.sqrt(1 - 0.7**2)
+    wide = np.where(flat, side / rim, 1.0) * radius / np.maximum(side, 1e-9)
+    points = np.column_stack([vertices[:, :2] * wide[:, None], height.clip(-0.7, 0.7) / 1.4 + 0.5])
+    return TriangleMesh(points * [1, 1, high - low] + [0, 0, low], triangles)
+
+
+@pytest.mark.parametrize("trousers_first", [False, True])
+def test_ends_of_clothes_that_are_the_body_stay_within_it(trousers_first):
+    """A character of a closed jacket and closed trousers that go up into it becomes a narrower body of one piece."""
+    jacket, trousers = solid(0.0, 2.0, 0.5), solid(-2.0, 0.2, 0.45)
+    first = jacket.vertex_count
+    body = TriangleMesh(
+        np.concatenate([jacket.vertices, trousers.vertices]),
+        np.concatenate([jacket.triangles, trousers.triangles + first]),
+    )
+    target = solid(-2.0, 2.0, 0.4)
+    images = body.vertices * [0.78, 0.78, 1.0]
+    images[first:] *= [1.1, 1.1, 1.0]
+    places = ClosestPoints(target).nearest(images)
+    there = SurfaceMap.from_barycentric(target, places.triangles, places.barycentric)
+    items = [jacket, trousers]
+    order = [1, 0] if trousers_first else [0, 1]
+    made = run(wear_steps(body, target, there, images, [WornItem(items[number]) for number in order]))
+    fitted = [made[order.index(number)] for number in range(2)]
+    for item, one, end in zip(items, fitted, (0.0, 0.2), strict=True):
+        inner = (np.abs(item.vertices[:, 2] - end) < 1e-6) & (np.linalg.norm(item.vertices[:, :2], axis=1) < 0.3)
+        assert inner.any()
+        np.testing.assert_allclose(one.positions[inner, 2], end, atol=0.1)
+        around = np.linalg.norm(one.positions[:, :2], axis=1)
+        assert around.max() < 0.46  # it was pushed out over the other by more than that
+        outer = (np.linalg.norm(item.vertices[:, :2], axis=1) > 0.44) & (np.abs(np.abs(item.vertices[:, 2]) - 1) < 0.7)
+        assert around[outer].min() > 0.39
+    # Whatever comes first, the jacket is over the trousers.
+    over = (jacket.vertices[:, 2] > 0.02) & (jacket.vertices[:, 2] < 0.2)
+    assert over.any()
+    under = ClosestPoints(TriangleMesh(fitted[1].positions, trousers.triangles))
+    found = under.nearest(fitted[0].positions[over])
+    corners = trousers.triangles[found.triangles]
+    feet = np.einsum("kc,kci->ki", found.barycentric, fitted[1].positions[corners])
+    assert (np.linalg.norm(fitted[0].positions[over, :2], axis=1) >= np.linalg.norm(feet[:, :2], axis=1) - 1e-3).all()
+
+
+def test_trousers_that_come_out_of_a_closed_jacket_are_not_pushed_over_it():
+    skin = ball(9).vertices * [0.3, 0.3, 2.2]
+    body = TriangleMesh(skin, ball(9).triangles)
+    jacket, trousers = solid(0.0, 2.0, 0.5), solid(-2.0, 0.0, 0.45)
+    # The trousers come up a little.
+    item = TriangleMesh(trousers.vertices + np.array([0, 0, -0.02]), trousers.triangles)
+    images = body.vertices.copy()
+    low = body.vertices[:, 2] < -0.2
+    images[low] += [0.0, 0.0, 0.15]
+    fitted = run(wear_steps(body, body, SurfaceMap.identity(body), images, [WornItem(jacket), WornItem(item)]))
+    around = np.linalg.norm(fitted[1].positions[:, :2], axis=1)
+    assert around.max() < 0.49

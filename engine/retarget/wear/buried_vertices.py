@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Places of a surface that lie within the solid that it encloses, as where parts of a character are closed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.directions import spread_directions
+from ...mesh.area_samples import AreaSamples, even_samples
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints, marked
+from .contact import Surface
+
+_DIRECTIONS = 40
+"""From how many sides is looked at the surface, to find quickly what may lie within."""
+
+_SAMPLES = 20_000
+"""Points that stand for the surface."""
+
+_CELL = 2.5
+"""How wide the cells are that it is looked at in, in distances between these points, so that hardly any is empty."""
+
+_DEEP = 0.015
+"""How far behind what is in front of it, in sqrt(area), a place lies at least: 2 cm on a human, more than layers of
+cloth are apart."""
+
+_ABOVE = 0.007
+"""How far above it, in the same unit, has to be within as well: as far as the points are apart."""
+
+_WITHIN = 0.5
+"""Winding number from which on a point is within."""
+
+_CHUNK = 256
+"""Points treated at once, which bounds the memory."""
+
+
+@dataclass(frozen=True, eq=False)
+class BuriedVertices:
+    """Vertices that do not belong to the outside of a body.
+
+    Attributes
+    ----------
+    hidden : (h,) array of int
+        Those that lie deep behind others from whatever side one looks, as also between thighs.
+    within : (h,) array of bool
+        Which of them lie within: above them is no air but the inside.
+    """
+
+    hidden: Ints
+    within: Bools
+
+    @classmethod
+    def of(cls, mesh: TriangleMesh) -> BuriedVertices:
+        """Look for them on a surface, which may be open, and made of many parts that cross."""
+        centre = mesh.vertices.mean(axis=0)  # away from which rounding grows
+        mesh = TriangleMesh(mesh.vertices - centre, mesh.triangles)
+        samples = even_samples(mesh, mesh.area / _SAMPLES)
+        hidden = np.flatnonzero(_hidden(mesh, samples))
+        above = mesh.vertices[hidden] + _ABOVE * np.sqrt(mesh.area) * mesh.vertex_normals[hidden]
+        return cls(hidden, _winding_numbers(mesh, samples, above) > _WITHIN)
+
+    def on(self, surface: Surface, images: Floats) -> Bools:
+        """Tell which vertices are buried, (n,), if they come to images (n, 3) at another body.
+
+        Where parts are closed by faces that are turned over it cannot be told by the one body alone what is within;
+        but these have no place on the other one, and come to lie deep in it.
+        """
+        found = surface.clearance(images[self.hidden])
+        deep = found.known & (found.distances < -_DEEP * np.sqrt(surface.mesh.area))
+        return marked(self.hidden[self.within | deep], len(images))
+
+
+def _hidden(mesh: TriangleMesh, samples: AreaSamples) -> Bools:
+    """Tell which vertices no side shows, (n,)."""
+    points = np.concatenate([mesh.vertices, samples.positions])
+    cell, deep = _CELL * np.sqrt(mesh.area / _SAMPLES), _DEEP * np.sqrt(mesh.area)
+    hidden = np.ones(mesh.vertex_count, bool)
+    for direction in spread_directions(_DIRECTIONS):
+        across = np.linalg.svd(direction[None])[2][1:]
+        cells = np.floor(points @ across.T / cell).astype(np.int64)
+        cells -= cells.min(axis=0)
+        number = cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]
+        heights = points @ direction
+        front = np.full(number.max() + 1, -np.inf)
+        np.maximum.at(front, number, heights)
+        hidden &= (heights < front[number] - deep)[: mesh.vertex_count]
+    return hidden
+
+
+def _winding_numbers(mesh: TriangleMesh, samples: AreaSamples, points: Floats) -> Floats:
+    """Find how often the surface goes around points (k, 3), as its samples see it, (k,)."""
+    vectors = samples.areas[:, None] * mesh.triangle_normals[samples.triangles]
+    lengths = np.square(samples.positions).sum(axis=1)
+    least = mesh.area / _SAMPLES  # nearer than that a sample is no point any more
+    found = np.empty(len(points))
+    for start in range(0, len(points), _CHUNK):
+        part = points[start : start + _CHUNK]
+        squares = np.square(part).sum(axis=1)[:, None] + lengths - 2 * part @ samples.positions.T
+        squares = squares.clip(min=least)
+        shares = 1 / (squares * np.sqrt(squares))
+        along = samples.positions * vectors
+        found[start : start + _CHUNK] = shares @ along.sum(axis=1) - ((shares @ vectors) * part).sum(axis=1)
+    return found / (4 * np.pi)

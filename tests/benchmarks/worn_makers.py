@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Put clothes of characters for games on the body of another maker, and measure where its skin shows.
+
+    python -m tests.benchmarks.worn_makers --data FOLDER [--only Suit,King] [--save FOLDER]
+
+FOLDER holds the files of `CASES`.  Characters are taken apart: what is named there are the items, what is left is the
+body, which has no skin below most of them.  Everything goes through import and the button *Wear*.
+
+A row holds the confidence of the match in %; what part of the skin below the items shows through them, by area, in %:
+at rest, in the mean of three poses, and in the worst of them; and the seconds of one core that all of it took.
+--save keeps a .blend of each case, to look at.
+"""
+
+import argparse
+import os
+import re
+import time
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("HIERMATCH_PROCESSES", "1")
+
+import bpy
+import numpy as np
+from mathutils import Euler, Matrix
+
+from engine import ClosestPoints, TriangleMesh
+from tests.benchmarks.maker_rigs import limb
+from tools.source_extension import registered_extension
+
+MEN, WOMEN = "quaternius-modular_men", "quaternius-modular_women"
+CASES = {
+    "Suit": (f"{MEN}-Suit", "m2m-human-male", {"Suit_Body": None, "Suit_Legs": None, "Suit_Feet": None}),
+    "King": (
+        f"{MEN}-King",
+        "m2m-human-male",
+        {"King_Head": "Gold", "King_Body": "Blue Metal Beige Metal_Dark", "King_Legs": None, "King_Feet": None},
+    ),
+    "Witch": (
+        f"{WOMEN}-Witch",
+        "m2m-human-female",
+        {"Witch_Head": "Purple Gold Brown Hair_Black", "Witch_Body": "Purple Gold Brown2", "Witch_Legs": None}
+        | {"Witch_Feet": None},
+    ),
+    "Formal": (
+        f"{WOMEN}-Formal",
+        "m2m-human-female",
+        {"Formal_Head": "Red", "Formal_Body": "LimeGreen Gold", "Formal_Legs": "LimeGreen", "Formal_Feet": "Red"},
+    ),
+}
+"""Of each case the file of the source and of the target, and the items: objects, or their faces of some materials."""
+
+POSES = (
+    {("upper_arm", "L"): (0, 0.9, 0), ("upper_leg", "L"): (0.8, 0, 0), ("lower_leg", "L"): (-0.8, 0, 0)},
+    {("upper_arm", "R"): (0, 1.0, 0), ("upper_arm", "L"): (0, -1.0, 0)},
+    {("upper_arm", "L"): (0, 0, -1.2), ("lower_arm", "L"): (0, 0, -0.9), ("upper_leg", "R"): (1.3, 0, 0)},
+)
+"""By what angles limbs are turned about the axes of the world, in radians."""
+
+SHOWS = 0.0005, 0.015
+"""How far above an item, in the root of the body's area, skin shows: farther away it is beside it, as at a neckline."""
+
+NEAR = 0.03
+"""How far from an item, in the same unit, skin is below it."""
+
+
+def added(path, name):
+    """Import a character: its armature, and its meshes by name."""
+    before = set(bpy.data.objects)
+    bpy.ops.import_scene.gltf(filepath=str(path))
+    new = [obj for obj in bpy.data.objects if obj not in before]
+    rig = next(obj for obj in new if obj.type == "ARMATURE")
+    rig.name = name
+    rig.animation_data_clear()
+    for bone in rig.pose.bones:
+        bone.matrix_basis = Matrix()
+    parts = {}
+    for obj in new:
+        if obj.type == "MESH" and obj.vertex_groups:
+            parts[obj.name.split(".")[0]] = obj
+        elif obj.type == "MESH":  # what shows bones in the view
+            bpy.data.objects.remove(obj)
+    return rig, parts
+
+
+def taken_out(obj, materials):
+    """Make the faces of some materials an object of their own."""
+    import bmesh  # only there once bpy is
+
+    part = obj.copy()
+    part.data = obj.data.copy()
+    obj.users_collection[0].objects.link(part)
+    names = [re.sub(r"\.\d+$", "", material.name) for material in obj.data.materials]
+    for one, kept in ((part, True), (obj, False)):
+        build = bmesh.new()
+        build.from_mesh(one.data)
+        others = [face for face in build.faces if (names[face.material_index] in materials) != kept]
+        bmesh.ops.delete(build, geom=others, context="FACES")
+        build.to_mesh(one.data)
+        build.free()
+    return part
+
+
+def surface(objects):
+    """All of some objects as they are shown."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    vertices, triangles, count = [], [], 0
+    for obj in objects:
+        made = obj.evaluated_get(depsgraph)
+        mesh = made.to_mesh()
+        mesh.calc_loop_triangles()
+        points, corners = np.empty(3 * len(mesh.vertices)), np.empty(3 * len(mesh.loop_triangles), np.int64)
+        mesh.vertices.foreach_get("co", points)
+        mesh.loop_triangles.foreach_get("vertices", corners)
+        matrix = np.array(made.matrix_world)
+        vertices.append(points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3])
+        triangles.append(corners.reshape(-1, 3) + count)
+        count += len(vertices[-1])
+        made.to_mesh_clear()
+    return TriangleMesh(np.concatenate(vertices), np.concatenate(triangles))
+
+
+def through(body, items):
+    """Which of the skin's triangles have an item near, and which of these are above it, with no other above, (m,)."""
+    unit = np.sqrt(body.area)
+    search, middles, normals = ClosestPoints(items), body.vertices[body.triangles].mean(axis=1), body.triangle_normals
+
+    def near(points):
+        found = search.nearest(points)
+        away = np.einsum("kc,kci->ki", found.barycentric, items.vertices[items.triangles[found.triangles]]) - middles
+        heights = np.einsum("ki,ki->k", away, normals)
+        return heights, np.linalg.norm(away - heights[:, None] * normals, axis=1)
+
+    heights, aside = near(middles)
+    close = (np.abs(heights) < NEAR * unit) & (aside < np.abs(heights) + SHOWS[0] * unit)
+    above = np.zeros(len(middles), bool)
+    for part in (0.25, 0.5, 1.0):
+        over, beside = near(middles + part * NEAR * unit * normals)
+        above |= (over > 0) & (beside < over + SHOWS[0] * unit)
+    return close | above, close & (heights < -SHOWS[0] * unit) & (heights > -SHOWS[1] * unit) & ~above
+
+
+def shown(rig, bodies, items):
+    """What part of the skin below items shows, by area: at rest, and in each pose."""
+    parts, below = [], None
+    for turns in ({}, *POSES):
+        for bone in rig.pose.bones:
+            bone.matrix_basis = Matrix()
+            turn = turns.get(limb(bone.name))
+            if turn is not None:
+                axes = (rig.matrix_world @ bone.bone.matrix_local).to_3x3()
+                bone.rotation_mode = "QUATERNION"
+                bone.rotation_quaternion = (axes.inverted() @ Euler(turn).to_matrix() @ axes).to_quaternion()
+        bpy.context.view_layer.update()
+        body = surface(bodies)
+        near, shows = through(body, surface(items))
+        if below is None:
+            below = body.triangle_areas * near
+        parts.append(below[shows].sum() / below.sum())
+    return parts
+
+
+def wear(case, data):
+    """Put the items of a case on the other body: its armature, its meshes and the fitted items."""
+    source, target, chosen = CASES[case]
+    rig, parts = added(data / f"{source}.glb", "Source")
+    other, bodies = added(data / f"{target}.glb", "Target")
+    items = [taken_out(parts[name], kinds.split()) if kinds else parts[name] for name, kinds in chosen.items()]
+    bpy.context.view_layer.update()
+    bpy.ops.hiermatch.wear(source=rig.name, target=other.name, items=[{"name": item.name} for item in items])
+    fitted = [obj for obj in bpy.data.objects if obj.type == "MESH" and obj.get("hiermatch_body")]
+    return other, list(bodies.values()), fitted
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True, help="folder with the characters")
+    parser.add_argument("--only", default=",".join(CASES), help="names of cases, separated by commas")
+    parser.add_argument("--save", type=Path, help="folder for the .blend files")
+    options = parser.parse_args()
+    registered_extension()
+    print(f"{'case':8s} confidence  shows at rest  in poses  worst  seconds")
+    for case in options.only.split(","):
+        bpy.ops.wm.read_homefile(use_empty=True)
+        start = time.process_time()
+        rig, bodies, items = wear(case, options.data)
+        seconds = time.process_time() - start
+        rest, *poses = shown(rig, bodies, items)
+        said = re.search(r"Confidence (\d+)", bpy.context.scene.hiermatch_retarget.report.verdict)
+        numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses)))
+        print(f"{case:8s} {said[1] if said else '-':>10s}{numbers}{seconds:9.1f}", flush=True)
+        if options.save:
+            options.save.mkdir(parents=True, exist_ok=True)
+            bpy.ops.wm.save_as_mainfile(filepath=str(options.save / f"{case}.blend"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Places that lie within a solid, where parts of a character are closed."""
+
+import numpy as np
+import pytest
+
+from engine import TriangleMesh
+from engine.retarget.wear.buried_vertices import BuriedVertices
+from engine.retarget.wear.contact import Surface
+from tests.shapes import icosphere, rotation
+
+
+def joined(*meshes):
+    starts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes[:-1])])
+    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]
+    return TriangleMesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+
+
+def ball(centre, size=(1.0, 1.0, 1.0)):
+    vertices, triangles = icosphere(10)
+    return TriangleMesh(vertices * size + np.array(centre), triangles)
+
+
+def buried_vertices(mesh):
+    """Vertices that are buried if the body stays as it is."""
+    return BuriedVertices.of(mesh).on(Surface(mesh), mesh.vertices)
+
+
+def thigh(x):
+    """A box, one of whose sides faces the other's with little air between."""
+    vertices, triangles = icosphere(10)
+    return TriangleMesh((1.4 * vertices).clip(-0.7, 0.7) * [0.43, 0.6, 2.0] + np.array([x, 0, 0]), triangles)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_where_solids_cross_the_inner_sides_are_buried(turned):
+    first, second = ball((0, 0, 0)), ball((0, 0, 1.2))
+    depth = np.concatenate(
+        [
+            1 - np.linalg.norm(first.vertices - [0, 0, 1.2], axis=1),
+            1 - np.linalg.norm(second.vertices, axis=1),
+        ]
+    )
+    body = joined(first, second)
+    if turned:
+        body = TriangleMesh(
+            50.0 * body.vertices @ rotation([1.0, 2.0, -0.5], 0.7).T + [900.0, 0.0, 3.0], body.triangles
+        )
+    buried = buried_vertices(body)
+    assert buried[depth > 0.15].all()
+    assert not buried[depth < 0.0].any()
+
+
+def test_thighs_side_by_side_are_not_buried():
+    assert not buried_vertices(joined(thigh(-0.32), thigh(0.32))).any()
+
+
+def test_the_inside_of_a_bowl_is_air():
+    outer = ball((0, 0, 0)).vertices
+    # A deep bowl: the upper half is folded inwards.
+    folded = np.where(outer[:, 2:] > 0, outer * [0.9, 0.9, -0.9], outer)
+    assert not buried_vertices(TriangleMesh(folded, ball((0, 0, 0)).triangles)).any()
+
+
+def test_what_is_hidden_and_comes_to_lie_deep_in_the_other_body_is_buried():
+    """A disc across a ball, whose faces are turned over."""
+    outer, (vertices, triangles) = ball((0, 0, 0)), icosphere(8)
+    disc = TriangleMesh(vertices * [0.8, 0.8, 1e-3], triangles)
+    body = joined(TriangleMesh(outer.vertices, outer.triangles[:, ::-1]), disc)
+    assert not BuriedVertices.of(body).within.any()
+    buried = BuriedVertices.of(body).on(Surface(outer), body.vertices)
+    inner = np.linalg.norm(body.vertices, axis=1) < 0.7
+    assert buried[inner].all()
+    assert not buried[: outer.vertex_count].any()
+    # What is hidden between thighs comes to lie on the other's skin.
+    between = joined(thigh(-0.32), thigh(0.32))
+    assert len(BuriedVertices.of(between).hidden)
+    assert not BuriedVertices.of(between).on(Surface(between), between.vertices).any()
