@@ -151,7 +151,7 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     yield from within(other.sample_steps(_SAMPLES, _MEASURED), 0.13, 0.16)
     yield from within(other.spectrum_steps(EIGENPAIRS), 0.16, 0.2)
     there, back = first
-    places = back.positions[part.vertices[other.vertices[other.samples]]]
+    places = back.positions[part.vertices[other.vertices[other.samples.vertices]]]
     fitter = _Fitter(coarse.limited(_SAMPLES, _MEASURED), other.limited(_SAMPLES, _MEASURED))
     first_images = fitter.nearest_samples(places)
     kept = there.confidence[whole.vertices[coarse.vertices]] > 0
@@ -286,7 +286,7 @@ class _Fitter:
 
     def roughly_covered(self, images: Ints) -> Bools:
         """Tell which vertices of the whole (n,) are near to samples that something goes to."""
-        return self.whole.sample_rows[np.unique(images)].min(axis=0) < _ROUGHLY
+        return self.whole.samples.rows[np.unique(images)].min(axis=0) < _ROUGHLY
 
     def covered(self, fit: _Fit) -> Bools:
         """Tell which vertices of the whole (n,) are near to the part's vertices or the middles of its triangles."""
@@ -301,11 +301,11 @@ class _Fitter:
 
     def start(self, fit: _Fit) -> tuple[Bools, Ints]:
         """Tell what of the whole a registration covers, (n,), and its samples that those of the part go to."""
-        return self.covered(fit) | self.grown(fit), self.nearest_samples(fit.places[self.part.samples])
+        return self.covered(fit) | self.grown(fit), self.nearest_samples(fit.places[self.part.samples.vertices])
 
     def nearest_samples(self, places: Floats) -> Ints:
         """Find the samples of the whole that are nearest to places (k, 3)."""
-        return cKDTree(self.whole.mesh.vertices[self.whole.samples]).query(places)[1]
+        return cKDTree(self.whole.mesh.vertices[self.whole.samples.vertices]).query(places)[1]
 
     def common_part(self, first: Bools, second: Bools) -> float:
         """Area that two pieces of the whole, (n,) each, have in common, as a part of that of both together."""
@@ -327,9 +327,9 @@ class _Fitter:
         yield from within(piece.sample_steps(_SAMPLES, _MEASURED), 0.0, 0.2)
         yield from within(piece.spectrum_steps(EIGENPAIRS), 0.2, 0.5)
         piece = piece.limited(_SAMPLES, _MEASURED)
-        places = whole.vertices[self.whole.samples[images[:_STARTS]]]
-        rows = self.whole.sample_rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
-        start = LandmarkStart(rows, self.part.sample_rows[:_STARTS], "placement")
+        places = whole.vertices[self.whole.samples.vertices[images[:_STARTS]]]
+        rows = self.whole.samples.rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
+        start = LandmarkStart(rows, self.part.samples.rows[:_STARTS], "placement")
         if known:
             domains = MapDomain(piece, EIGENPAIRS), MapDomain(self.part, EIGENPAIRS)
             return _Proposal(piece, unrefined_hypothesis(domains, start), places)

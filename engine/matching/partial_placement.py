@@ -97,7 +97,7 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
     .. [1] A. M. Bronstein, M. M. Bronstein, A. M. Bruckstein, R. Kimmel, "Partial similarity of objects, or how to
        compare a centaur to a horse", International Journal of Computer Vision 84, 2009.
     """
-    distances = whole.sample_distances
+    distances = whole.samples.distances
     carrier = _Carrier(whole, part)
     found: list[_Matching] = []
     for number, unit in enumerate(np.sqrt(_SHARES)):
@@ -118,14 +118,14 @@ class _Carrier:
     """Matches the first samples of the part, and carries matchings over to the others."""
 
     def __init__(self, whole: Shape, part: Shape) -> None:
-        offered = np.arange(min(_OFFERED, whole.sample_count))
-        matched = np.arange(min(_MATCHED, part.sample_count, len(offered)))
+        offered = np.arange(min(_OFFERED, len(whole.samples)))
+        matched = np.arange(min(_MATCHED, len(part.samples), len(offered)))
         self._first, self._second = np.triu_indices(len(matched), 1)
-        self._whole, self._part = whole.sample_distances, part.sample_distances[:, : len(matched)]
-        self._part_sides = signed_areas(part.directions[:, matched])
+        self._whole, self._part = whole.samples.distances, part.samples.distances[:, : len(matched)]
+        self._part_sides = signed_areas(part.samples.directions[:, matched])
         self._sides = np.zeros((len(self._whole), len(offered), len(offered)))
         first, second = np.triu_indices(len(offered), 1)
-        self._sides[:, first, second] = signed_areas(whole.directions[:, offered])
+        self._sides[:, first, second] = signed_areas(whole.samples.directions[:, offered])
         self._sides[:, second, first] = -self._sides[:, first, second]
 
     def matchings(self, unit: float) -> Ints:

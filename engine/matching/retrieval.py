@@ -216,7 +216,7 @@ class _Signature:
     """
 
     def __init__(self, shape: Shape) -> None:
-        self.areas, distances = shape.cell_areas, shape.sample_distances
+        self.areas, distances = shape.samples.cell_areas, shape.samples.distances
         order = np.argsort(distances, axis=1)
         areas = self.areas[order]
         middle = np.cumsum(areas, axis=1) - areas / 2
@@ -242,7 +242,7 @@ def _match_steps(source: Shape, target: Shape, place: int, settings: RetrievalSe
     change = pair.source_distances[:k, :k] - pair.target_distances[np.ix_(assignment, assignment)]
     return RetrievedMatch(
         place,
-        SurfacePoints.at_vertices(source.original, source.vertices[source.samples[:k]]),
-        SurfacePoints.at_vertices(target.original, target.vertices[target.samples[assignment]]),
+        SurfacePoints.at_vertices(source.original, source.vertices[source.samples.vertices[:k]]),
+        SurfacePoints.at_vertices(target.original, target.vertices[target.samples.vertices[assignment]]),
         float(np.sqrt(np.square(change).sum() / (k * (k - 1)))),
     )

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.geodesics import GeodesicSolver
@@ -140,49 +139,9 @@ class Shape:
             self.original, self.vertices = self.surface.original, self.surface.vertices
 
     @property
-    def taken(self) -> SurfaceSamples:
-        """The samples, and all that is known of them."""
+    def samples(self) -> SurfaceSamples:
+        """The samples that distances are known of, and all that is known of them."""
         return self._sampler.taken if self._samples is None else self._samples
-
-    @property
-    def sample_count(self) -> int:
-        """Number of samples with distances so far, S."""
-        return len(self.taken)
-
-    @property
-    def measured_count(self) -> int:
-        """Number of samples, the first, whose distances are by fast marching, and not estimated."""
-        return self.taken.measured
-
-    @property
-    def samples(self) -> Ints:
-        """Vertices of the samples, farthest points first, (S,)."""
-        return self.taken.vertices
-
-    @property
-    def sample_rows(self) -> NDArray[np.float32]:
-        """Distance from each sample to each vertex, (S, n), estimated from the samples that are not measured."""
-        return self.taken.rows
-
-    @property
-    def cell_areas(self) -> Floats:
-        """Area of each sample's Voronoi cell as a part of the whole, (S,)."""
-        return self.taken.cell_areas
-
-    @property
-    def sample_distances(self) -> Floats:
-        """Distances between the samples, (S, S), symmetric with a zero diagonal."""
-        return self.taken.distances
-
-    @property
-    def directions(self) -> Floats:
-        """Unit direction at each sample in which the distance from each sample grows, (S at, S from, 2)."""
-        return self.taken.directions
-
-    @property
-    def curvatures(self) -> Floats:
-        """Mean curvature at each sample, smoothed at two scales, (2, S)."""
-        return self.taken.curvatures
 
     def sample_steps(self, count: int, measured: int | None = None) -> Steps[None]:
         """Take samples until there are `count` (at most all vertices), with their distances to all vertices.
@@ -230,11 +189,11 @@ class Shape:
         count = min(count, self.mesh.vertex_count)
         if measured is not None and measured >= count:
             measured = None
-        if measured is None and count >= self.sample_count:
+        if measured is None and count >= len(self.samples):
             return self
         view = self._views.get((count, measured))
         if view is None:
-            samples = self.taken.first(count) if measured is None else self._sampler.estimated(count, measured)
+            samples = self.samples.first(count) if measured is None else self._sampler.estimated(count, measured)
             view = self._views[count, measured] = self._made(self._operators, self._sampler, samples)
         return view
 
@@ -270,8 +229,8 @@ class Shape:
 
     def sampled_like(self, coarser: Shape) -> Shape:
         """Return the shape with just the samples of the one that it is finer than; distances are interpolated."""
-        rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.sample_rows.T).T)
-        samples = SurfaceSamples(self.mesh, coarser.samples, rows, coarser.measured_count)
+        rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.samples.rows.T).T)
+        samples = SurfaceSamples(self.mesh, coarser.samples.vertices, rows, coarser.samples.measured)
         return self._made(self._operators, self._sampler, samples)
 
     def lean(self) -> Shape:
@@ -279,9 +238,9 @@ class Shape:
 
         It is without the mesh that its surface stands for, which may be large: that is what other processes are sent.
         """
-        state = self.mesh, self.taken, self._operators.spectrum
+        state = self.mesh, self.samples, self._operators.spectrum
         if self._lean is None or any(a is not b for a, b in zip(state, self._lean[0], strict=True)):
-            shape = self._made(self._operators.of(None), samples=self.taken)
+            shape = self._made(self._operators.of(None), samples=self.samples)
             shape.is_sent_once = True
             self._lean = shape._lean = state, shape  # noqa: SLF001
         return self._lean[1]

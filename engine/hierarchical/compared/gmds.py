@@ -138,15 +138,15 @@ def gmds_steps(
     if distances is None:
         distances = SurfaceDistances(target)
     if wanted is None:
-        wanted = source.sample_distances[:points, :points]
+        wanted = source.samples.distances[:points, :points]
     if start is None:
         yield from within(target.sample_steps(_START_SAMPLES), 0.2, 0.4)
         yield Progress(0.4, "Placing the first points")
         # Only the first samples, however many another match has taken: the result must not depend on it.
-        places = SurfacePoints.at_vertices(target.mesh, target.samples[:_START_SAMPLES])
+        places = SurfacePoints.at_vertices(target.mesh, target.samples.vertices[:_START_SAMPLES])
         yield from within(distances.prepare_steps(places), 0.4, 0.4)
         best = _own_start(symmetric_roots(distances.squares_between(places)), wanted[: sizes[0], : sizes[0]])
-        placed = SurfacePoints.at_vertices(target.mesh, target.samples[best])
+        placed = SurfacePoints.at_vertices(target.mesh, target.samples.vertices[best])
     else:
         placed = target.surface.on_mesh(start)
     done = []
@@ -160,7 +160,7 @@ def gmds_steps(
             GmdsLevel(size, settled.sweeps, settled.start, settled.stress, target.surface.on_original(settled.points))
         )
     return GmdsResult(
-        SurfacePoints.at_vertices(source.original, source.vertices[source.samples[:points]]),
+        SurfacePoints.at_vertices(source.original, source.vertices[source.samples.vertices[:points]]),
         target.surface.on_original(settled.points),
         float(np.square(settled.distances - wanted).sum()),
         settled.distances,

@@ -129,7 +129,7 @@ def test_mirrored_maps_of_the_reflection_do_not_count(monkeypatch):
 def test_enough_landmarks_are_a_start_of_their_own(monkeypatch, count, own):
     x, y, landmarks = scene([(2, 2), (9, 9), (15, 15)][:count])
     asked = proposing(monkeypatch, [LineMap(SAME, SAME)], [])
-    other = LandmarkStart(x.sample_rows[:1], y.sample_rows[:1], "elsewhere")
+    other = LandmarkStart(x.samples.rows[:1], y.samples.rows[:1], "elsewhere")
     run(steered_hypotheses_steps(x, y, [other], landmarks, search=False))
     assert asked == [(False, ["elsewhere", *own], False, False)]
 

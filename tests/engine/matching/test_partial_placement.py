@@ -30,13 +30,13 @@ def bodies():
 def errors(whole, part, images):
     """How far each sample of the part is, at rest, from the sample of the whole that it goes to."""
     (shape, rest), (other, other_rest) = whole, part
-    return np.linalg.norm(rest[shape.samples[images]] - other_rest[other.samples], axis=1)
+    return np.linalg.norm(rest[shape.samples.vertices[images]] - other_rest[other.samples.vertices], axis=1)
 
 
 def test_the_best_way_is_where_the_part_belongs(bodies):
     whole, part = bodies
     best = run(part_placements_steps(whole[0], part[0], 4))[0]
-    spacing = cKDTree(whole[1][whole[0].samples]).query(part[1])[0].mean()
+    spacing = cKDTree(whole[1][whole[0].samples.vertices]).query(part[1])[0].mean()
     assert np.median(errors(whole, part, best.images)) < 3 * spacing
 
 
@@ -46,7 +46,7 @@ def test_ways_differ_and_come_by_growing_misfit(bodies):
     assert len(found) == 6
     misfits = [placement.misfit for placement in found]
     assert misfits == sorted(misfits)
-    distances = whole[0].sample_distances
+    distances = whole[0].samples.distances
     for number, placement in enumerate(found):
         for other in found[:number]:
             assert distances[placement.images, other.images].mean() > 0.05
