@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..runtime.arrays import TINY, Floats, Ints
-from ..runtime.errors import MatchError
 
 
 class BeamMatchings(NamedTuple):
@@ -55,15 +54,8 @@ def beam_matchings(
     -------
     BeamMatchings
         Up to `kept`.
-
-    Raises
-    ------
-    MatchError
-        If there are more points of X than of Y.
     """
     m, n = dissimilarity.shape
-    if m > n:
-        raise MatchError(f"{m} points cannot be matched to {n} points, each to another one: offer at least as many.")
     images, costs = np.arange(n)[:, None], weight * dissimilarity[0]
     for new in range(1, m):
         known = distances_x[new, :new, None]  # (new, 1)

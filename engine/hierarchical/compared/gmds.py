@@ -12,7 +12,6 @@ import numpy as np
 
 from ...mesh.surface_points import SurfacePoints
 from ...runtime.arrays import Floats, Ints
-from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps, within
 from ...shapes.shape import Shape
 from ...shapes.surface_distances import PointDistances, SurfaceDistances, symmetric_roots
@@ -118,7 +117,7 @@ def gmds_steps(
     Raises
     ------
     MatchError
-        If a surface has too few vertices, or the start does not fit.
+        If the start does not lie on the part of the target that is matched.
 
     Notes
     -----
@@ -133,7 +132,7 @@ def gmds_steps(
     .. [1] A. M. Bronstein, M. M. Bronstein, R. Kimmel, "Generalized multidimensional scaling: a framework for
        isometry-invariant partial surface matching", PNAS 103 (2006).
     """
-    sizes = _level_sizes(source, target, points, start)
+    sizes = level_sizes(_COARSE if start is None else len(start), points)
     yield from within(source.sample_steps(points), 0.0, 0.2)
     if distances is None:
         distances = SurfaceDistances(target)
@@ -166,17 +165,6 @@ def gmds_steps(
         settled.distances,
         tuple(done),
     )
-
-
-def _level_sizes(source: Shape, target: Shape, points: int, start: SurfacePoints | None) -> list[int]:
-    """Numbers of points of the levels, which double."""
-    for shape, name in ((source, "source"), (target, "target")):
-        if shape.mesh.vertex_count < points:
-            raise MatchError(
-                f"{points} points cannot be matched: the {name} has only {shape.mesh.vertex_count} vertices. "
-                "Use fewer points or subdivide the mesh."
-            )
-    return level_sizes(_COARSE if start is None else len(start), points)
 
 
 def _own_start(between: Floats, wanted: Floats) -> Ints:

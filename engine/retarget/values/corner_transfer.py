@@ -13,7 +13,7 @@ from ...mesh.polygons import Polygons
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints, unit_vectors
-from ...runtime.errors import MatchError, MeshError
+from ...runtime.errors import MeshError
 from .charts import cut_into_sheets
 from .deformation_gradients import surface_frames
 from .face_correspondence import FacePlaces
@@ -51,15 +51,8 @@ def carry_corner_values(values: ArrayLike, source: Polygons, places: FacePlaces)
     -------
     (l_y, ...) array
         For each corner of the target; interpolated if the values are real numbers, else that of the nearest corner.
-
-    Raises
-    ------
-    MatchError
-        If there is not one value for each corner.
     """
     array = np.asarray(values)
-    if array.ndim == 0 or len(array) != source.corner_count:
-        raise MatchError(f"There should be one value for each of {source.corner_count} corners, not {array.shape}.")
     flat = array.reshape(len(array), -1)
     if np.issubdtype(array.dtype, np.inexact):
         tolerance = _SAME * float(np.ptp(flat, axis=0).max(initial=0.0)) if len(flat) else 0.0

@@ -105,8 +105,6 @@ def trace_edges_steps(
         If edges and maps do not belong together.
     """
     values = np.asarray(values, np.float64)
-    if values.shape != (len(marked),):
-        raise MatchError(f"There should be one value for each of {len(marked)} marked edges, not {values.shape}.")
     _check(source, edges, source_to_target, target_to_source)
     traced = np.zeros(len(edges))
     if not len(marked) or not len(edges):

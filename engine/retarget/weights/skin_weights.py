@@ -110,11 +110,6 @@ def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> c
         The same with at most so many entries in each row, unless more are locked.  Sums of rows stay what they were,
         except where nothing but locked ones is left.
 
-    Raises
-    ------
-    RigError
-        If the number is less than one.
-
     Notes
     -----
     If t is the largest weight of a vertex that has to go, a weight w that stays becomes
@@ -122,8 +117,6 @@ def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> c
     the one to go, and neighbours that differ a little in their weights do so afterwards as well.  Weights that
     are as large as the first that goes are shared out evenly if there are no others.
     """
-    if count < 1:
-        raise RigError(f"A vertex must keep one weight at least, not {count}.")
     free = _free(locked, weights.shape[1])
     result = _clean(weights.copy())
     rows = _rows(result)

@@ -4,7 +4,6 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from engine import MatchError
 from engine.dense.extremity_search import beam_matchings
 
 
@@ -51,9 +50,3 @@ def test_a_narrow_beam_finds_an_exact_copy_and_never_an_image_twice():
 def test_no_more_matchings_than_there_are():
     _, distances, dissimilarity = problem(3, 3, 3)
     assert len(beam_matchings(distances, distances, dissimilarity, kept=50).images) == 6
-
-
-def test_more_points_than_candidates_are_refused():
-    _, distances, _ = problem(3, 3, 3)
-    with pytest.raises(MatchError, match="4 points cannot be matched to 3"):
-        beam_matchings(np.zeros((4, 4)), distances, np.zeros((4, 3)), kept=1)

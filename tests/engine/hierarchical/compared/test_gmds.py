@@ -143,11 +143,6 @@ def test_only_the_largest_part_is_used_and_results_lie_on_the_whole():
         run(gmds_steps(target, target, 16, start=SurfacePoints.at_vertices(both, np.arange(8))))
 
 
-def test_what_does_not_fit_is_refused(bodies):
-    with pytest.raises(MatchError, match="subdivide"):
-        run(gmds_steps(bodies[0], Shape(TriangleMesh(*icosphere(1))), 40))
-
-
 def test_it_reports_growing_progress(bodies):
     steps = gmds_steps(*bodies[:2], 20)
     fractions = [progress.fraction for progress in steps]
