@@ -3,31 +3,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..runtime.arrays import TINY, Floats, Ints
 
 
-class BeamMatchings(NamedTuple):
-    """Injective matchings of the points of X to points of Y, best first.
-
-    Attributes
-    ----------
-    images : (r, m) array of int
-        In each row, for each point of X, the number of its image among the points of Y.
-    costs : (r,) array of float
-        Smaller is better.
-    """
-
-    images: Ints
-    costs: Floats
-
-
 def beam_matchings(
     distances_x: Floats, distances_y: Floats, dissimilarity: Floats, *, kept: int, width: int = 400, weight: float = 0.3
-) -> BeamMatchings:
+) -> Ints:
     r"""Match points one after the other, keeping the best partial matchings only.
 
     The cost of images t is
@@ -52,8 +35,8 @@ def beam_matchings(
 
     Returns
     -------
-    BeamMatchings
-        Up to `kept`.
+    (r, m) array of int
+        For each matching the images of the points, one after another; the cheapest first, up to `kept`.
     """
     m, n = dissimilarity.shape
     images, costs = np.arange(n)[:, None], weight * dissimilarity[0]
@@ -66,4 +49,4 @@ def beam_matchings(
         best = np.argsort(extended, axis=None, kind="stable")[: min(width, len(images) * (n - new))]
         costs = extended.ravel()[best]
         images = np.column_stack([images[best // n], best % n])
-    return BeamMatchings(images[:kept], costs[:kept])
+    return images[:kept]

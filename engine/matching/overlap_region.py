@@ -23,7 +23,7 @@ from ..registration.deformable import DeformableSurface
 from ..runtime.arrays import TINY, Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, part_of, within
 from ..shapes.shape import Shape
 from .partial_placement import part_placements_steps
 
@@ -158,7 +158,7 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     starts = [(kept, first_images)]
     searching = part_placements_steps(fitter.whole, fitter.part, _PLACEMENTS)
     placements = yield from within(searching, 0.2, 0.25)
-    starts += [(fitter.roughly_covered(placement.images), placement.images) for placement in placements]
+    starts += [(fitter.roughly_covered(images), images) for images in placements]
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
     scores, taken = np.array([fit.score for fit in fits]), np.array([fit.places for fit in fits]) / whole.scale
     best = best_and_rivals(scores, taken, _REFINED, _HOPEFUL[1])
@@ -246,7 +246,7 @@ def _registered_steps(fitter: _Fitter, starts: list[tuple[Bools, Ints]]) -> Step
     scores = np.array([proposal.hypothesis.score for proposal in proposals])
     places = np.array([proposal.places for proposal in proposals]) / fitter.whole.scale
     best = best_and_rivals(scores, places, _REGISTERED, _HOPEFUL[0])
-    steps = shared_steps(_fitted_steps, fitter, [proposals[way] for way in best])
+    steps = shared_steps(_Fitter.fit_steps, fitter, [proposals[way] for way in best])
     return (yield from within(steps, 0.6, 1.0))
 
 
@@ -255,17 +255,12 @@ def _proposed_steps(fitter: _Fitter, start: tuple[Bools, Ints]) -> Steps[_Propos
     return (yield from fitter.proposal_steps(*start))
 
 
-def _fitted_steps(fitter: _Fitter, proposal: _Proposal) -> Steps[_Fit]:
-    """Register a piece to the part."""
-    return (yield from fitter.fit_steps(proposal))
-
-
 def _refined_steps(fitter: _Fitter, start: tuple[Bools, Ints, int]) -> Steps[list[_Fit]]:
     """Register a piece where it is known to lie, then again, so many times, what that covers."""
     refined: list[_Fit] = []
     covered, images, rounds = start
     for again in range(rounds):
-        begin, end = ((again + i) / rounds for i in (0, 1))
+        begin, end = part_of(again, rounds)
         proposal = yield from within(fitter.proposal_steps(covered, images, known=True), begin, (begin + end) / 2)
         if proposal is None:
             break

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -42,22 +41,6 @@ _ALIKE, _APART = 0.1, 0.08
 of the whole, up to which two matchings say the same."""
 
 
-@dataclass(frozen=True, eq=False)
-class PartPlacement:
-    """A way to lay a part onto the whole.
-
-    Attributes
-    ----------
-    misfit : float
-        Mean squared difference of the descriptions of some of the part's samples and of what they go to.
-    images : (s,) array of int
-        For each sample of the part, the number of a sample of the whole.
-    """
-
-    misfit: float
-    images: Ints
-
-
 class _Matching(NamedTuple):
     """Numbers of the whole's samples that the first of the part go to, (m,), and those that its scouts do, (k,)."""
 
@@ -67,7 +50,7 @@ class _Matching(NamedTuple):
     landings: Ints
 
 
-def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[PartPlacement]]:
+def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Ints]]:
     r"""Find ways to lay a surface onto another that has more, from distances on both.
 
     A few samples of the part are matched to samples of the whole in many ways, at several sizes: in units of its own
@@ -89,8 +72,9 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
 
     Returns
     -------
-    list of PartPlacement
-        Those that keep the orientation, the best first, and no two nearly the same.
+    list of (s,) arrays of int
+        For each way, the best first and no two nearly the same, the numbers of samples of the whole where those of the
+        part go; none mirrors.
 
     References
     ----------
@@ -106,7 +90,7 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
         yield Progress((number + 1) / len(_SHARES), "Comparing maps")
     found.sort(key=lambda matching: matching.misfit)
     chosen = best_distinct(found, lambda one, other: _are_apart(distances, _APART, one.landings, other.landings), most)
-    return [PartPlacement(matching.misfit, carrier.everywhere(matching)) for matching in chosen]
+    return [carrier.everywhere(matching) for matching in chosen]
 
 
 def _are_apart(distances: Floats, least: float, images: Ints, other: Ints) -> bool:
@@ -132,7 +116,7 @@ class _Carrier:
         """Match samples of the part, whose distances are in `unit` of those of the whole: images (r, m)."""
         m, n = self._part.shape[1], self._sides.shape[1]
         own = unit * self._part[:m]
-        return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), kept=_WIDTH, width=_WIDTH).images
+        return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), kept=_WIDTH, width=_WIDTH)
 
     def carried(self, images: Ints, unit: float) -> _Matching:
         """Carry a matching over to the scouts."""

@@ -13,9 +13,9 @@ from scipy.spatial import cKDTree
 
 from ..dense.dense_hypotheses import USUAL, LandmarkStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
-from ..dense.densify import MEASURED, DenseMatch, dense_match_steps
+from ..dense.densify import MEASURED, dense_match_steps
 from ..dense.initial_maps import RoughSearch
-from ..dense.quality import with_alternatives
+from ..dense.quality import DenseMatch, with_alternatives
 from ..hierarchical.hierarchy import refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
@@ -247,7 +247,8 @@ def _distance_rows_steps(answer: Answer) -> Steps[tuple[Floats, Floats]]:
     metric = answer.coarse.pair.target_metric
     on_target = metric if isinstance(metric, SurfaceDistances) else SurfaceDistances(y)
     rows = yield from within(to_all_vertices_steps(on_target, answer.points), 1.0, 1.0)
-    return _sample_distances(x, len(answer.points)), rows
+    own = x.samples.rows[: len(answer.points)].astype(np.float64) * x.scale
+    return x.surface.spread(own, np.inf), rows
 
 
 def _result(
@@ -294,8 +295,3 @@ def _result(
         notes=notes,
         seconds=dict(seconds),
     )
-
-
-def _sample_distances(shape: Shape, count: int) -> Floats:
-    """Distances from the first samples to all vertices of the whole surface, in its units; inf on other parts."""
-    return shape.surface.spread(shape.samples.rows[:count].astype(np.float64) * shape.scale, np.inf)

@@ -19,7 +19,7 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.progress import Progress, Steps, at_once, within
+from ..runtime.progress import Progress, Steps, at_once, part_of, within
 from ..shapes.shape import Shape
 
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
@@ -176,7 +176,7 @@ def _coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
     count = _OVERSAMPLING * settings.hypotheses
     for number in range(count):
         search = branch_and_bound_steps(problem, node_limit=settings.node_limit, exclusions=exclusions)
-        matching = yield from within(search, number / count, (number + 1) / count)
+        matching = yield from within(search, *part_of(number, count))
         if matching is None:
             break
         found.append(matching)
@@ -246,7 +246,7 @@ def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
         images = _images_at_vertices(shape, rows, image_rows)
         if np.array_equal(images, before):
             break
-        image_rows = _rows_from(shape, images)
+        image_rows = shape.solver.distances(images) / shape.scale
     points = shape.samples.vertices[:count]
     change = rows[:, points] - image_rows[:, images]
     sides = _sides(shape, rows - image_rows)
@@ -262,13 +262,8 @@ def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
         axis_points=_zero_crossings(shape.original, whole_sides, reflection=candidate.orientation < 0),
         alternatives=(),
         proven=candidate.coarse.proven,
-        notes=_notes(shape),
+        notes=shape.surface.cleaned.notes,
     )
-
-
-def _rows_from(shape: Shape, vertices: Ints) -> Floats:
-    """Distances from some vertices to all, in sqrt(area), (k, n)."""
-    return np.concatenate([block for _, block in shape.solver.distances_in_blocks(vertices)]) / shape.scale
 
 
 def _images_at_vertices(shape: Shape, rows: Floats, image_rows: Floats) -> Ints:
@@ -315,8 +310,3 @@ def _zero_crossings(mesh: TriangleMesh, values: Floats, *, reflection: bool) -> 
     weights[rows, corner] = b / (b - a)
     weights[rows, (corner + 1) % 3] = a / (a - b)
     return SurfacePoints.from_barycentric(mesh, triangles, weights)
-
-
-def _notes(shape: Shape) -> tuple[str, ...]:
-    """Say what was done about faults of the surface, and what of it was left out."""
-    return shape.surface.cleaned.notes

@@ -129,7 +129,7 @@ class Shape:
     ) -> None:
         """Join operators and samples: those that a sampler takes, or fixed ones."""
         self._operators, self._samples = operators, samples
-        self._sampler = sampler or SurfaceSampler(operators.mesh, operators.solver)
+        self.sampler = sampler or SurfaceSampler(operators.mesh, operators.solver)
         self._views: dict[tuple[int, int | None], Shape] = {}
         self._lean: tuple[tuple[object, ...], Shape] | None = None
         self.mesh, self.solver = operators.mesh, operators.solver
@@ -141,7 +141,7 @@ class Shape:
     @property
     def samples(self) -> SurfaceSamples:
         """The samples that distances are known of, and all that is known of them."""
-        return self._sampler.taken if self._samples is None else self._samples
+        return self.sampler.taken if self._samples is None else self._samples
 
     def sample_steps(self, count: int, measured: int | None = None) -> Steps[None]:
         """Take samples until there are `count` (at most all vertices), with their distances to all vertices.
@@ -155,24 +155,19 @@ class Shape:
             others paths are followed, which takes a fraction of the time, for `limited` to estimate distances by.
         """
         if self._samples is None:
-            yield from self._sampler.steps(count, measured)
+            yield from self.sampler.steps(count, measured)
         elif min(count, self.mesh.vertex_count) > len(self._samples):
-            yield from self._sampler.steps(count)
-            self._samples = self._sampler.taken.first(count)
+            yield from self.sampler.steps(count)
+            self._samples = self.sampler.taken.first(count)
 
     def lacks(self, count: int, measured: int | None = None) -> bool:
         """Say whether `sample_steps` would have anything to do."""
         fixed = self._samples is not None and min(count, self.mesh.vertex_count) <= len(self._samples)
-        return not fixed and self._sampler.lacks(count, measured)
-
-    @property
-    def sampler(self) -> SurfaceSampler:
-        """What takes the samples: it may do so in another process, see `take_samples_of`."""
-        return self._sampler
+        return not fixed and self.sampler.lacks(count, measured)
 
     def take_samples_of(self, sampler: SurfaceSampler) -> None:
         """Go on from where the sampler of the same shape has come elsewhere."""
-        self._sampler = sampler if sampler is self._sampler else sampler.on(self.mesh, self.solver)
+        self.sampler = sampler if sampler is self.sampler else sampler.on(self.mesh, self.solver)
 
     def limited(self, count: int, measured: int | None = None) -> Shape:
         """Return the shape with only the first `count` of its samples, sharing all that was computed.
@@ -193,8 +188,8 @@ class Shape:
             return self
         view = self._views.get((count, measured))
         if view is None:
-            samples = self.samples.first(count) if measured is None else self._sampler.estimated(count, measured)
-            view = self._views[count, measured] = self._made(self._operators, self._sampler, samples)
+            samples = self.samples.first(count) if measured is None else self.sampler.estimated(count, measured)
+            view = self._views[count, measured] = self._made(self._operators, self.sampler, samples)
         return view
 
     def starting_with(self, vertices: Ints) -> Shape:
@@ -208,7 +203,7 @@ class Shape:
         """Return the shape as it is seen in a mirror, with all that does not depend on the side it is seen from."""
         surface = self.surface.reflected()
         samples = None if self._samples is None else self._samples.on(surface.mesh)
-        return self._made(self._operators.of(surface), self._sampler.on(surface.mesh, self.solver), samples)
+        return self._made(self._operators.of(surface), self.sampler.on(surface.mesh, self.solver), samples)
 
     @property
     def is_coarse(self) -> bool:
@@ -231,7 +226,7 @@ class Shape:
         """Return the shape with just the samples of the one that it is finer than; distances are interpolated."""
         rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.samples.rows.T).T)
         samples = SurfaceSamples(self.mesh, coarser.samples.vertices, rows, coarser.samples.measured)
-        return self._made(self._operators, self._sampler, samples)
+        return self._made(self._operators, self.sampler, samples)
 
     def lean(self) -> Shape:
         """Return the shape with the samples and the spectrum it has, which do not change any more.

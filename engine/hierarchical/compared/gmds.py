@@ -12,7 +12,7 @@ import numpy as np
 
 from ...mesh.surface_points import SurfacePoints
 from ...runtime.arrays import Floats, Ints
-from ...runtime.progress import Progress, Steps, within
+from ...runtime.progress import Progress, Steps, part_of, within
 from ...shapes.shape import Shape
 from ...shapes.surface_distances import PointDistances, SurfaceDistances, symmetric_roots
 from ..hierarchy import level_sizes
@@ -150,7 +150,7 @@ def gmds_steps(
         placed = target.surface.on_mesh(start)
     done = []
     for number, size in enumerate(sizes):
-        begin, end = (0.4 + 0.6 * part / len(sizes) for part in (number, number + 1))
+        begin, end = part_of(number, len(sizes), 0.4)
         placed = yield from within(_inserted_steps(distances, placed, wanted[:size]), begin, begin)
         steps = settle_steps(distances, placed, Stress(wanted[:size, :size]))
         settled = yield from within(steps, begin, end, f"Moving {size} points over the surface")

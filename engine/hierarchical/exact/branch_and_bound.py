@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...runtime.arrays import Ints
 from ...runtime.errors import MatchError
-from ...runtime.progress import Progress, Steps, told, within
+from ...runtime.progress import Progress, Steps, part_of, told, within
 from ..problem import MatchingProblem
 from .dual_ascent import PairModel, dual_ascent_steps, pair_model
 from .enumeration import Enumeration
@@ -158,7 +158,7 @@ def distinct_matchings_steps(
     exclusions: list[Exclusion] = []
     for i in range(count):
         search = branch_and_bound_steps(problem, node_limit=node_limit, exclusions=exclusions)
-        matching = yield from within(search, i / count, (i + 1) / count)
+        matching = yield from within(search, *part_of(i, count))
         if matching is None:
             break
         found.append(matching)

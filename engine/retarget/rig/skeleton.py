@@ -78,12 +78,14 @@ class Skeleton:
             found.append(int(self.parents[found[-1]]))
         return found[:-1]
 
-    def below(self, bone: int) -> list[int]:
-        """All bones that hang on a bone, parents before their children."""
-        found = [bone]
-        for each in found:
-            found += self.children(each).tolist()
-        return found[1:]
+    @cached_property
+    def hanging(self) -> Bools:
+        """Which bones hang on each bone, itself as well, (b above, b)."""
+        found = np.eye(len(self), dtype=bool)
+        for bone in self.order[::-1]:
+            if self.parents[bone] >= 0:
+                found[self.parents[bone]] |= found[bone]
+        return found
 
     def nearest_above(self, chosen: Bools) -> Ints:
         """For each bone the nearest of some bones that it hangs on, -1 if there is none, (b,)."""

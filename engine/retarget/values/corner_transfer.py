@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.procrustes import least_turns
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.polygons import Polygons
 from ...mesh.surface_map import SurfaceMap
@@ -123,7 +124,7 @@ def carry_normals(
     vertices = places.polygons.corner_vertices
     smooth = places.map.transfer(places.image.vertex_normals)
     turned = np.einsum("nij,nj->ni", rotations, smooth)
-    last = _shortest_rotations(unit_vectors(turned, _CANCELLED), target.vertex_normals)
+    last = least_turns(unit_vectors(turned, _CANCELLED), target.vertex_normals)
     whole = last @ rotations
     result = unit_vectors(np.einsum("lij,lj->li", whole[vertices], carried), _CANCELLED)
     # Where normals cancel out there is none; the target's own is as good as any.
@@ -164,7 +165,7 @@ def turned_normals(normals: Floats, corner_vertices: Ints, mesh: TriangleMesh, p
     rotations = surface_frames(parts.closed, welded, radius=_TURN_RADIUS).rotations
     turned = np.einsum("nij,nj->ni", rotations, parts.closed.vertex_normals)
     now = TriangleMesh(welded, parts.triangles).vertex_normals
-    whole = _shortest_rotations(unit_vectors(turned, _CANCELLED), now) @ rotations
+    whole = least_turns(unit_vectors(turned, _CANCELLED), now) @ rotations
     homes = parts.welded[corner_vertices]
     return unit_vectors(np.einsum("lij,lj->li", whole[homes], normals), _CANCELLED)
 
@@ -174,15 +175,3 @@ def _interpolated(values: Floats, source: Polygons, places: FacePlaces, toleranc
     sheets = cut_into_sheets(places.image, source, values, tolerance)
     found = places.on_sheets(sheets)
     return sheets.at(found.triangles, found.barycentric)
-
-
-def _shortest_rotations(start: Floats, end: Floats) -> Floats:
-    """Rotations that turn unit vectors (n, 3) into others by the least angle; none where these are opposite."""
-    axis, cosine = np.cross(start, end), np.einsum("nd,nd->n", start, end)
-    zero = np.zeros(len(axis))
-    x, y, z = axis.T
-    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
-    proper = start.any(axis=1) & end.any(axis=1) & (cosine > -1 + 1e-9)
-    factor = np.where(proper, 1 / np.where(proper, 1 + cosine, 1), 0)
-    turn = np.eye(3) + cross + factor[:, None, None] * (cross @ cross)
-    return np.where(proper[:, None, None], turn, np.eye(3))

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
@@ -170,18 +171,13 @@ class _PosedBody:
         self.unit = float(np.sqrt(body.area))
         self.search = ClosestPoints(body)
         self.skin = Surface(body, self.search)
-        self.subtrees = _subtrees(skeleton.parents)
 
 
 def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
     """Find how an item lies on the body."""
     body, unit = posed.body, posed.unit
     found = posed.search.nearest(item.positions)
-    corners = body.triangles[found.triangles]
-    below = csr_array(
-        (found.barycentric.ravel(), corners.ravel(), np.arange(0, corners.size + 1, 3)),
-        shape=(len(item.positions), body.vertex_count),
-    )
+    below = interpolation_matrix(found.barycentric, body.triangles[found.triangles], body.vertex_count)
     starts = found.nearest_vertices(body.triangles)
     rest = posed.skin.clearance(item.positions, starts)
     lying = (row_sums(item.weights) > 0) & rest.known
@@ -197,11 +193,12 @@ def _deepest_steps(posed: _PosedBody, ways: Sequence[tuple[_Tried, Bools, list[c
     Those that never do, are not looked at, or that no joint bends have zero.
     """
     body, skeleton = posed.body, posed.skeleton
-    used = np.flatnonzero(sum(sum(_column_sums(weights) for weights in way[2]) for way in ways) if ways else [])
+    moved = [weights.sum(axis=0) for _, _, each in ways for weights in each]
+    used = np.flatnonzero(np.sum(moved, axis=0)) if moved else np.empty(0, np.int64)
     deepest = [np.zeros((len(weights), len(chosen))) for _, chosen, weights in ways]
     for number, bone in enumerate(used):
         yield Progress(number / len(used), "Trying poses")
-        hanging = posed.subtrees[bone]
+        hanging = skeleton.hanging[bone]
         on_skin = row_sums(posed.weights[:, hanging])
         if on_skin @ body.vertex_areas < _LARGE_PART * body.area:
             continue
@@ -221,22 +218,6 @@ def _deepest_steps(posed: _PosedBody, ways: Sequence[tuple[_Tried, Bools, list[c
                     depth = -surface.clearance(points, one.starts[places]).distances
                     depths[way, places] = np.maximum(depths[way, places], depth)
     return deepest
-
-
-def _column_sums(weights: csr_array) -> Floats:
-    return np.asarray(weights.sum(axis=0)).ravel()
-
-
-def _subtrees(parents: Ints) -> Bools:
-    """Tell for each bone which bones hang on it, itself as well, (b, b)."""
-    count = len(parents)
-    hanging = np.eye(count, dtype=bool)
-    for bone in range(count):
-        above = int(parents[bone])
-        while above >= 0:
-            hanging[above, bone] = True
-            above = int(parents[above])
-    return hanging
 
 
 def _bends(along: Floats) -> list[Floats]:

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 
 from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from .contact import Surface
@@ -282,8 +283,7 @@ def _poking(item: Surface, layer: Layer, free: Bools, unit: float) -> tuple[csr_
         return None
     found = item.search.nearest(vertices[near])
     corners = mesh.triangles[found.triangles]
-    feet = np.einsum("kc,kci->ki", found.barycentric, positions[corners])
-    away = feet - vertices[near]
+    away = found.interpolate(mesh.triangles, positions) - vertices[near]
     height = np.einsum("ki,ki->k", away, normals[near])
     distance = np.sqrt(found.squared_distances)
     under = (height < 0) & (distance < reach) & (-height > _STRAIGHT * distance)
@@ -299,11 +299,7 @@ def _poking(item: Surface, layer: Layer, free: Bools, unit: float) -> tuple[csr_
     under &= ~((found.barycentric > 1e-3) <= rim).all(axis=1)
     if not under.any():
         return None
-    k = int(under.sum())
-    rows = csr_array(
-        (found.barycentric[under].ravel(), corners[under].ravel(), np.arange(0, 3 * k + 1, 3)),
-        shape=(k, len(positions)),
-    )
+    rows = interpolation_matrix(found.barycentric[under], corners[under], len(positions))
     margin = 0.0005 * unit
     return rows, (margin - height[under])[:, None] * normals[near[under]]
 

@@ -24,8 +24,13 @@ MIRROR = SAME[::-1].copy()
 
 
 @dataclass(frozen=True)
+class Samples:
+    rows: np.ndarray
+
+
+@dataclass(frozen=True)
 class Line:
-    sample_rows: np.ndarray
+    samples: Samples
     is_reflection: bool = False
 
     def reflected(self):
@@ -51,7 +56,7 @@ class LineMap:
 def scene(pairs):
     """Two lines whose samples begin with landmarks, and these."""
     ends = [np.array(vertices) for vertices in zip(*pairs, strict=True)]
-    lines = [Line(np.abs(PLACES[end][:, None] - PLACES)) for end in ends]
+    lines = [Line(Samples(np.abs(PLACES[end][:, None] - PLACES))) for end in ends]
     return *lines, Landmarks(*(LandmarkPlaces(end, end, end) for end in ends))
 
 
