@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The engine of HierMatch: NumPy and SciPy only, no Blender."""
 
-from .dense.densify import DenseMatch, densify, densify_steps
-from .dense.quality import MatchQuality
+from .dense.densify import densify, densify_steps
+from .dense.quality import DenseMatch, MatchQuality
 from .geometry.geodesics import GeodesicSolver
 from .geometry.voronoi_labels import nearest_regions
 from .hierarchical.settings import SETUPS, MatchSettings

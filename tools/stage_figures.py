@@ -157,7 +157,7 @@ def shapes(pair: Pair) -> list[Panel]:
 
     def sampled(count: int) -> list[bpy.types.Object]:
         colors = np.tile([0.75, 0.05, 0.03, 1.0], (count, 1))
-        beads = add_beads("Samples", mesh.vertices[shape.samples[:count]], colors, 0.014 * size)
+        beads = add_beads("Samples", mesh.vertices[shape.samples.vertices[:count]], colors, 0.014 * size)
         return [placed("Cat", mesh.vertices, mesh.triangles), beads]
 
     return [

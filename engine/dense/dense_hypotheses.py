@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, run, within
 from ..shapes.shape import Shape
@@ -203,10 +202,8 @@ def map_hypotheses_steps(
     Raises
     ------
     MatchError
-        If a surface has too few samples or eigenfunctions, or distances of a start do not fit it.
+        If a surface has too few samples or eigenfunctions.
     """
-    for start in starts:
-        _check(start, x, y)
     a, b = domains = domains or (map_domains(x, y) if searched is None else searched.domains)
     yield Progress(0.05, "Comparing maps")
     leads: list[MapLead] = []
@@ -378,13 +375,3 @@ def _between_all_vertices_steps(x: MapDomain, y: MapDomain, points: PointMaps) -
     size = min(_FINE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
     maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, size)
     return (yield from points_from_functions_steps(maps, x.functions, y.functions))
-
-
-def _check(start: LandmarkStart, x: Shape, y: Shape) -> None:
-    counts = (x.mesh.vertex_count, y.mesh.vertex_count)
-    shapes = (np.shape(start.source_distances), np.shape(start.target_distances))
-    if shapes[0][:1] != shapes[1][:1] or shapes[0][1:] != counts[:1] or shapes[1][1:] != counts[1:]:
-        raise MatchError(
-            f"The distances from landmarks should have the shapes (k, {counts[0]}) and (k, {counts[1]}), "
-            f"but have {shapes[0]} and {shapes[1]}."
-        )

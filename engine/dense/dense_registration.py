@@ -15,7 +15,7 @@ from ..registration.positional_constraints import Ties
 from ..registration.registration import Registration
 from ..runtime.arrays import Floats
 from ..runtime.errors import MatchError
-from ..runtime.progress import Preview, Progress, Steps, within
+from ..runtime.progress import Preview, Progress, Steps, part_of, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
 from .credibility import is_clear_choice, may_become_likely, place_credit
@@ -190,8 +190,7 @@ def registered_pair_steps(
     proposers = PROPOSERS if search and hopeful else ()
     contest = Contest(follow, landmarks, selection)
     for number, propose in enumerate(proposers):
-        begin, end = (0.6 + 0.1 * (number + i) / len(proposers) for i in (0, 1))
-        candidates = yield from within(propose(contest, candidates), begin, end)
+        candidates = yield from within(propose(contest, candidates), *part_of(number, len(proposers), 0.6, 0.7))
     fits = yield from within(_contest_steps(contest, candidates if hopeful else candidates[:1]), 0.7, 0.9)
     follow = follow if hopeful else replace(follow, settling=Settling(disagree=()))
     closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)

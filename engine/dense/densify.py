@@ -31,7 +31,7 @@ from .credibility import vertex_credibility
 from .dense_hypotheses import LandmarkStart
 from .dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from .functional_maps import nearest_both_ways
-from .quality import MatchQuality, assess_maps, with_alternatives, with_pieces
+from .quality import DenseMatch, assess_maps, with_alternatives, with_pieces
 
 _SAMPLES = 512
 """Samples of each surface that hypotheses are compared at."""
@@ -42,29 +42,6 @@ MEASURED = 64
 _POLISHED = 60_000
 """Vertices up to which meshes that have a proxy are registered once more, with more details.  Beyond, it would take
 half as long again as all the rest."""
-
-
-@dataclass(frozen=True, eq=False)
-class DenseMatch:
-    """The maps between all vertices of two meshes.
-
-    Attributes
-    ----------
-    source_to_target : SurfaceMap
-        For every vertex of the source its point on the target.
-    target_to_source : SurfaceMap
-        For every vertex of the target its point on the source.
-    quality : MatchQuality
-        How far they may be trusted.
-    """
-
-    source_to_target: SurfaceMap
-    target_to_source: SurfaceMap
-    quality: MatchQuality
-
-    def __repr__(self) -> str:
-        sizes = f"{len(self.source_to_target)} and {len(self.target_to_source)} vertices"
-        return f"<DenseMatch: {sizes}, confidence {self.quality.confidence:.2f}>"
 
 
 @can_go_beside

@@ -3,32 +3,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..runtime.arrays import TINY, Floats, Ints
-from ..runtime.errors import MatchError
-
-
-class BeamMatchings(NamedTuple):
-    """Injective matchings of the points of X to points of Y, best first.
-
-    Attributes
-    ----------
-    images : (r, m) array of int
-        In each row, for each point of X, the number of its image among the points of Y.
-    costs : (r,) array of float
-        Smaller is better.
-    """
-
-    images: Ints
-    costs: Floats
 
 
 def beam_matchings(
     distances_x: Floats, distances_y: Floats, dissimilarity: Floats, *, kept: int, width: int = 400, weight: float = 0.3
-) -> BeamMatchings:
+) -> Ints:
     r"""Match points one after the other, keeping the best partial matchings only.
 
     The cost of images t is
@@ -53,17 +35,10 @@ def beam_matchings(
 
     Returns
     -------
-    BeamMatchings
-        Up to `kept`.
-
-    Raises
-    ------
-    MatchError
-        If there are more points of X than of Y.
+    (r, m) array of int
+        For each matching the images of the points, one after another; the cheapest first, up to `kept`.
     """
     m, n = dissimilarity.shape
-    if m > n:
-        raise MatchError(f"{m} points cannot be matched to {n} points, each to another one: offer at least as many.")
     images, costs = np.arange(n)[:, None], weight * dissimilarity[0]
     for new in range(1, m):
         known = distances_x[new, :new, None]  # (new, 1)
@@ -74,4 +49,4 @@ def beam_matchings(
         best = np.argsort(extended, axis=None, kind="stable")[: min(width, len(images) * (n - new))]
         costs = extended.ravel()[best]
         images = np.column_stack([images[best // n], best % n])
-    return BeamMatchings(images[:kept], costs[:kept])
+    return images[:kept]

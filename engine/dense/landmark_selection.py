@@ -53,8 +53,8 @@ def landmark_distance(x: Shape, y: Shape, landmarks: Landmarks, hypothesis: MapH
     The samples of the shapes begin with the landmarks.
     """
     numbers = np.arange(len(landmarks))
-    there = y.sample_rows[numbers, hypothesis.images.on_y[landmarks.source.matched]]
-    back = x.sample_rows[numbers, hypothesis.images.on_x[landmarks.target.matched]]
+    there = y.samples.rows[numbers, hypothesis.images.on_y[landmarks.source.matched]]
+    back = x.samples.rows[numbers, hypothesis.images.on_x[landmarks.target.matched]]
     return float((there + back).mean() / 2)
 
 
@@ -105,7 +105,7 @@ def steered_hypotheses_steps(
     """
     count = len(landmarks)
     if count >= _START_LANDMARKS:
-        starts = [*starts, LandmarkStart(x.sample_rows[:count], y.sample_rows[:count], "landmarks")]
+        starts = [*starts, LandmarkStart(x.samples.rows[:count], y.samples.rows[:count], "landmarks")]
     hypotheses = yield from within(map_hypotheses_steps(x, y, starts, search=search), 0.0, 0.4)
     natural = next((h for h in hypotheses if h.orientation > 0), hypotheses[0])
     direct = _judged(x, y, landmarks, hypotheses)

@@ -46,8 +46,8 @@ class LiftedMatchings:
     """
 
     def __init__(self, x: MapDomain, y: MapDomain, of_x: Ints, of_y: Ints, *, relative: bool = False) -> None:
-        self._apart = y.shape.sample_distances
-        here, there = (d.shape.sample_distances[:, of] for d, of in ((x, of_x), (y, of_y)))
+        self._apart = y.shape.samples.distances
+        here, there = (d.shape.samples.distances[:, of] for d, of in ((x, of_x), (y, of_y)))
         self._distances = _in_means(there) if relative else there
         self._weight = _RELATIVE_SIGNED_WEIGHT if relative else _SIGNED_WEIGHT
         # Those of all pairs in either order, so that each matching finds its own.

@@ -86,11 +86,12 @@ def _exchange(x: Shape, y: Shape, there: Ints, back: Ints) -> tuple[Ints, Ints] 
     middle = _trusted_middle(x, there, back)
     if len(middle) < _FEWEST:
         return None
-    weights = x.cell_areas[middle] / x.cell_areas[middle].sum()
+    samples = x.samples
+    weights = samples.cell_areas[middle] / samples.cell_areas[middle].sum()
     tips = _told_apart(x, limb_tips(x), middle, weights)
-    images = there[x.samples[tips]]
-    here = _sides(x.sample_distances[np.ix_(tips, middle)])
-    seen = _sides(_distances_between(y, images, there[x.samples[middle]]))
+    images = there[samples.vertices[tips]]
+    here = _sides(samples.distances[np.ix_(tips, middle)])
+    seen = _sides(_distances_between(y, images, there[samples.vertices[middle]]))
     order = _best_order(here, seen, weights)
     moved = np.flatnonzero(order != np.arange(len(order)))
     if not len(moved):
@@ -99,13 +100,13 @@ def _exchange(x: Shape, y: Shape, there: Ints, back: Ints) -> tuple[Ints, Ints] 
     u, v = here[np.ix_(moved, moved)], seen[np.ix_(order[moved], order[moved])]
     opposite = (u * v < 0) & (np.minimum(np.abs(u), np.abs(v)) > _TOLD_APART)
     known = np.sort(middle[~opposite.any(axis=(0, 1))])[:_ANCHORS]  # the first samples are spread the best
-    vertices = x.samples[np.concatenate([tips, known])]
-    return vertices, np.concatenate([images[order], there[x.samples[known]]])
+    vertices = samples.vertices[np.concatenate([tips, known])]
+    return vertices, np.concatenate([images[order], there[samples.vertices[known]]])
 
 
 def _told_apart(x: Shape, tips: Ints, middle: Ints, weights: Floats) -> Ints:
     """Keep one tip of each limb: those that lie differently to the middle of the body than all before them."""
-    sides = _from_mean(_sides(x.sample_distances[np.ix_(tips, middle)]), weights)
+    sides = _from_mean(_sides(x.samples.distances[np.ix_(tips, middle)]), weights)
     clear = np.square(sides) @ weights > _TOLD_APART**2
     return tips[best_distinct(range(len(tips)), lambda tip, other: bool(clear[tip, other]))]
 
@@ -161,11 +162,11 @@ def _trusted_middle(x: Shape, there: Ints, back: Ints) -> Ints:
     """Choose the samples in the middle of the body that both maps agree on."""
     means = mean_distances(x)
     middle = np.argsort(means, kind="stable")[: max(round(_CENTRAL * len(means)), 1)]
-    returned = back[there[x.samples[middle]]]
-    return middle[x.sample_rows[middle, returned] < _TRUSTED]
+    returned = back[there[x.samples.vertices[middle]]]
+    return middle[x.samples.rows[middle, returned] < _TRUSTED]
 
 
 def _distances_between(shape: Shape, first: Ints, second: Ints) -> Floats:
     """Distances between vertices (k,) and (c,), from the samples nearest to the first, (k, c)."""
-    nearest = shape.sample_rows[:, first].argmin(axis=0)
-    return shape.sample_rows[np.ix_(nearest, second)].astype(np.float64)
+    nearest = shape.samples.rows[:, first].argmin(axis=0)
+    return shape.samples.rows[np.ix_(nearest, second)].astype(np.float64)

@@ -97,7 +97,7 @@ def distance_term(x: MapDomain, y: MapDomain, points: PointMaps, count: int = 40
     changes = []
     for here, there, images in ((x, y, points.on_y), (y, x, points.on_x)):
         few = min(count, here.coarse_count)
-        known = here.shape.sample_distances[:few, :few]
+        known = here.shape.samples.distances[:few, :few]
         changes.append(np.abs(known - _distances_between(there, there.vertices[images[:few]])).mean())
     return float(np.mean(changes))
 
@@ -170,7 +170,7 @@ def _correlation(weights: Floats, first: Floats, second: Floats, means: tuple[Fl
 
 def _distances_between(domain: MapDomain, vertices: Ints) -> Floats:
     """Distances between vertices, (k, k), half-way between the bounds of the triangle inequality over samples."""
-    rows = domain.shape.sample_rows[:_BOUNDING, vertices]  # (s, k)
+    rows = domain.shape.samples.rows[:_BOUNDING, vertices]  # (s, k)
     lower = np.zeros((len(vertices), len(vertices)), np.float32)
     upper = np.full_like(lower, np.inf)
     for row in rows:

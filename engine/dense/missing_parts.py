@@ -68,15 +68,11 @@ def with_partner(source: TriangleMesh, target: TriangleMesh, there: SurfacePoint
     lost = _mostly(source, trips >= longest)
     away = lost | _mostly(source, trips >= _EDGE * longest)
     core = lost.copy()
-    core[lost] = _gaps(source.vertices[lost], target, back) > _least_gap(target) * unit
+    least = max(_OTHER_SPACINGS / np.sqrt(target.vertex_count), _LEAST_GAP)
+    core[lost] = _gaps(source.vertices[lost], target, back) > least * unit
     part = _parts(source, away)
     areas = np.bincount(part, source.vertex_areas * core, n)
     return ~(away & (areas[part] >= _LEAST_CORE * source.area))
-
-
-def _least_gap(target: TriangleMesh) -> float:
-    """Distance that is not bridged by the spacing of the target's vertices, in units of sqrt(area)."""
-    return max(_OTHER_SPACINGS / np.sqrt(target.vertex_count), _LEAST_GAP)
 
 
 def _gaps(places: Floats, target: TriangleMesh, back: SurfacePoints) -> Floats:

@@ -85,6 +85,29 @@ class MatchQuality:
     in_place: float = 0.0
 
 
+@dataclass(frozen=True, eq=False)
+class DenseMatch:
+    """The maps between all vertices of two meshes.
+
+    Attributes
+    ----------
+    source_to_target : SurfaceMap
+        For every vertex of the source its point on the target.
+    target_to_source : SurfaceMap
+        For every vertex of the target its point on the source.
+    quality : MatchQuality
+        How far they may be trusted.
+    """
+
+    source_to_target: SurfaceMap
+    target_to_source: SurfaceMap
+    quality: MatchQuality
+
+    def __repr__(self) -> str:
+        sizes = f"{len(self.source_to_target)} and {len(self.target_to_source)} vertices"
+        return f"<DenseMatch: {sizes}, confidence {self.quality.confidence:.2f}>"
+
+
 def map_confidence(
     source: TriangleMesh,
     target: TriangleMesh,

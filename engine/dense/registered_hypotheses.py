@@ -32,7 +32,7 @@ from ..registration.registration import (
 )
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.parallel_map import shared_steps
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, part_of, within
 from ..shapes.borders import has_border
 from ..shapes.shape import Shape
 from .credibility import is_placed, likeness, place_credit, probability_in_place, registered_score
@@ -252,7 +252,7 @@ class Follower:
             if turned is positions:
                 break
             again = self._registered_again_steps(candidate, turned)
-            rolled = yield from within(again, number / _ROLLS, (number + 1) / _ROLLS)
+            rolled = yield from within(again, *part_of(number, _ROLLS))
             if rolled.score >= candidate.score:
                 break
             candidate = rolled
@@ -308,8 +308,7 @@ class Follower:
             if length <= agreed:
                 break
             again = self.again_steps(fit.candidate, fit.registration)
-            begin, end = ((number + i) / (len(disagree) + 1) for i in (0, 1))
-            reverse, registration = yield from within(again, begin, end)
+            reverse, registration = yield from within(again, *part_of(number, len(disagree) + 1))
             other = replace(fit, registration=registration, reverse=reverse)
             apart = self.trips(other)
             if self._length(apart) >= length:

@@ -63,8 +63,8 @@ class MapDomain:
         spectrum, scale = shape.spectrum, shape.scale
         self.functions = spectrum.functions[:, :size] * scale
         self.values = spectrum.values[:size] * scale**2
-        self.coarse_count = self.shape.sample_count
-        self.vertices = _filled_up(shape.mesh.vertices / scale, self.shape.samples, _FINE)
+        self.coarse_count = len(self.shape.samples)
+        self.vertices = _filled_up(shape.mesh.vertices / scale, self.shape.samples.vertices, _FINE)
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out what the surface stands for, and what is made in no time."""
@@ -95,7 +95,7 @@ class MapDomain:
 
     def directions(self, samples: Ints) -> Floats:
         """Take the unit directions at the coarse samples away from the given ones (m,), (coarse, m, 2)."""
-        return tangent_directions(self.shape.mesh, self.shape.samples, self.shape.sample_rows[samples])
+        return tangent_directions(self.shape.mesh, self.shape.samples.vertices, self.shape.samples.rows[samples])
 
     @cached_property
     def places(self) -> Floats:
@@ -120,7 +120,7 @@ class MapDomain:
     @cached_property
     def patches(self) -> Floats:
         """Weights of the fine samples in a Gaussian patch around each coarse sample, (coarse, p); rows sum to one."""
-        distances = self.shape.sample_rows[:, self.vertices].astype(np.float64)
+        distances = self.shape.samples.rows[:, self.vertices].astype(np.float64)
         weights = np.exp(-np.square(distances / _PATCH) / 2)
         return weights / weights.sum(axis=1, keepdims=True)
 
@@ -152,9 +152,10 @@ class MapDomain:
     def extremity_descriptors(self, samples: Ints) -> Floats:
         """Describe some coarse samples, given by number (m,), by low waves, (m, d)."""
         pairs = min(_EXTREMITY_PAIRS, len(self.values))
-        signatures = self._log_signatures(pairs, _EXTREMITY_ENERGIES, self.shape.samples)[samples]
-        means = self.shape.sample_distances @ self.shape.cell_areas
-        return np.column_stack([signatures, 3 * means[samples] / (self.shape.cell_areas @ means)])
+        signatures = self._log_signatures(pairs, _EXTREMITY_ENERGIES, self.shape.samples.vertices)[samples]
+        areas = self.shape.samples.cell_areas
+        means = self.shape.samples.distances @ areas
+        return np.column_stack([signatures, 3 * means[samples] / (areas @ means)])
 
     def _log_signatures(self, pairs: int, count: int, vertices: Ints) -> Floats:
         spectrum = self.shape.spectrum

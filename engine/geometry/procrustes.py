@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nearest similarity between points, and nearest rotations to many matrices at once: Procrustes problems in space."""
+"""Nearest similarities between points, nearest rotations to many matrices at once, least rotations between vectors."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..runtime.arrays import TINY, Bools, Floats
+from ..runtime.arrays import TINY, Bools, Floats, unit_vectors
 
 _TURNS = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], np.float64)
 """No turn and the half turns around the axes: after one of them any rotation is less than 121 degrees from none."""
@@ -204,3 +204,37 @@ def _rotations(quaternions: Floats) -> Floats:
         2 * (x * z - r * y), 2 * (y * z + r * x), 1 - 2 * (x * x + y * y),
     ]  # fmt: skip
     return np.stack(entries, axis=1).reshape(-1, 3, 3)
+
+
+def least_turns(start: Floats, end: Floats) -> Floats:
+    """Find the rotations by the least angle from unit vectors (b, 3) to others, (b, 3, 3); none from or to zero."""
+    # Two reflections: first the start to its negative, then that to the end; the other way round near half a turn.
+    cosine = (start * end).sum(axis=1)
+    middle = unit_vectors(start + end)
+    opposite = cosine < -1 + 1e-9
+    if opposite.any():
+        least = np.abs(start[opposite]).argmin(axis=1)
+        middle[opposite] = across_axes(np.eye(3)[least], start[opposite])
+    first = np.eye(3) - 2 * start[:, :, None] * start[:, None]
+    second = np.eye(3) - 2 * middle[:, :, None] * middle[:, None]
+    known = start.any(axis=1) & end.any(axis=1)
+    return np.where(known[:, None, None], second @ first, np.eye(3))
+
+
+def across_axes(vectors: Floats, axes: Floats) -> Floats:
+    """Take what of the vectors (b, 3) lies across the axes, to length one; any direction across if nothing does."""
+    axes = unit_vectors(axes)
+    flat = vectors - (vectors * axes).sum(axis=1, keepdims=True) * axes
+    lost = np.linalg.norm(flat, axis=1) <= 1e-6 * np.maximum(np.linalg.norm(vectors, axis=1), TINY)
+    if lost.any():
+        other = np.eye(3)[np.abs(axes[lost]).argmin(axis=1)]
+        flat[lost] = other - (other * axes[lost]).sum(axis=1, keepdims=True) * axes[lost]
+    return unit_vectors(flat)
+
+
+def nearest_frame(turn: Floats, frames: Floats | None, angle: float) -> Floats:
+    """Take the frame, of (k, 3, 3), that a rotation (3, 3) is nearest to; the rotation itself if none is so near."""
+    if frames is None or not len(frames):
+        return turn
+    cosines = (np.einsum("kij,ij->k", frames, turn) - 1) / 2
+    return frames[cosines.argmax()] if cosines.max() > np.cos(angle) else turn

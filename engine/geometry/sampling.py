@@ -10,7 +10,6 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from ..runtime.arrays import Floats, Ints
-from ..runtime.errors import MatchError
 
 
 class FarthestPointSampler:
@@ -50,7 +49,6 @@ class FarthestPointSampler:
         self._graph = graph
         self.samples: list[int] = []
         self.distances: Floats = np.full(graph.shape[0], np.inf)
-        self.nearest: Ints = np.full(graph.shape[0], -1)
         for vertex in np.atleast_1d(start):
             self._add(int(vertex))
 
@@ -59,22 +57,10 @@ class FarthestPointSampler:
         row = dijkstra(self._graph, indices=vertex, limit=self.distances.max())
         closer = row < self.distances
         self.distances[closer] = row[closer]
-        self.nearest[closer] = len(self.samples)
         self.samples.append(vertex)
 
     def extend(self, count: int) -> None:
-        """Take samples until there are `count`.
-
-        Raises
-        ------
-        MatchError
-            If the graph has fewer vertices than that.
-        """
-        if count > len(self.distances):
-            raise MatchError(
-                f"{count} samples were asked of a surface with {len(self.distances)} vertices: "
-                "use fewer points or a finer mesh."
-            )
+        """Take samples until there are `count`, no more than the graph has vertices."""
         while len(self.samples) < count:
             self._add(int(self.distances.argmax()))
 

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..geometry.eigenpairs import Spectrum
-from ..geometry.geodesics import checked_sources
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats
 from ..runtime.errors import SettingsError
 
 _MODES = 8.0
@@ -18,91 +16,33 @@ On bodies of people and animals in two poses, where true matches are known, fewe
 follow the differences of bodies.
 """
 
-_BLOCK = 4_000_000
-"""Distances that are computed together."""
 
-
-class DiffusionMetric:
-    r"""Diffusion distances on one surface, from its eigenpairs.
+def diffusion_places(spectrum: Spectrum, time: float) -> Floats:
+    r"""Place the vertices so that straight lines between them are as long as their diffusion distances [1]_.
 
     .. math:: d_t^2(x, y) = A \sum_i e^{-2 \lambda_i t} (\phi_i(x) - \phi_i(y))^2
 
-    the distance (11) of the paper [1]_.  With the area A of the surface, and time counted in units of area, nothing
-    depends on the units of the mesh.
+    the distance (11) of the paper.  With the area A of the surface, and time counted in units of area, nothing depends
+    on the units of the mesh.  The products of two places are the heat kernel :math:`A h_{2t}(x, y)`, (10) of the paper.
 
     Parameters
     ----------
     spectrum : Spectrum
         Eigenpairs of the surface.
-    time : float, optional
-        How long heat spreads, in units of the surface's area: t / A.  By default `automatic_time`.
-
-    Attributes
-    ----------
     time : float
-        The time, in units of area.
+        How long heat spreads, in units of the surface's area: t / A.
 
-    Raises
-    ------
-    SettingsError
-        If the time is not greater than zero.
-
-    Notes
-    -----
-    Distances are Euclidean ones between the points :math:`\sqrt{A} e^{-\lambda_i t} \phi_i(x)`, and computed by matrix
-    products: rounding is about 1e-8 of the largest.
+    Returns
+    -------
+    (n, k) array of float
+        The points :math:`\sqrt{A} e^{-\lambda_i t} \phi_i(x)`.
 
     References
     ----------
     .. [1] R. Coifman, S. Lafon, "Diffusion maps", Appl. Comput. Harmon. Anal. 21, 2006.
     """
-
-    def __init__(self, spectrum: Spectrum, time: float | None = None) -> None:
-        self.time = _checked_time(automatic_time(spectrum) if time is None else time)
-        values = spectrum.values * spectrum.area
-        weights = np.exp(-2 * values * self.time)
-        self._points = spectrum.functions * (np.sqrt(weights * spectrum.area))
-        self._squares = np.einsum("ni,ni->n", self._points, self._points)
-
-    def distances(self, sources: ArrayLike) -> Floats:
-        """Compute the distances from each source to every vertex.
-
-        Parameters
-        ----------
-        sources : (S,) array_like of int
-            Vertex indices.
-
-        Returns
-        -------
-        (S, n) array of float
-            Distances, without a unit.
-
-        Raises
-        ------
-        MeshError
-            If a source is not a vertex of the mesh.
-        """
-        checked = checked_sources(sources, len(self._points))
-        result = np.empty((len(checked), len(self._points)))
-        size = max(1, _BLOCK // len(self._points))
-        for first in range(0, len(checked), size):
-            result[first : first + size] = self._rows(checked[first : first + size])
-        return result
-
-    def _rows(self, sources: Ints) -> Floats:
-        rows = self._points[sources] @ self._points.T
-        rows *= -2
-        rows += self._squares
-        rows += self._squares[sources, None]
-        np.maximum(rows, 0, out=rows)
-        np.sqrt(rows, out=rows)
-        rows[np.arange(len(sources)), sources] = 0
-        return rows
-
-
-def diffusion_distances(spectrum: Spectrum, sources: ArrayLike, time: float | None = None) -> Floats:
-    """Compute diffusion distances (S, n) from some vertices (S,) to all; see `DiffusionMetric`."""
-    return DiffusionMetric(spectrum, time).distances(sources)
+    decay = np.exp(-spectrum.values * spectrum.area * time)
+    return spectrum.functions * (decay * np.sqrt(spectrum.area))
 
 
 def automatic_time(spectrum: Spectrum) -> float:
@@ -134,38 +74,3 @@ def automatic_time(spectrum: Spectrum) -> float:
         else:
             late = middle
     return float(np.exp(middle))
-
-
-def heat_kernel(spectrum: Spectrum, time: float, sources: ArrayLike) -> Floats:
-    r"""Evaluate the heat kernel :math:`h_t(x, z) = \sum_i e^{-\lambda_i t} \phi_i(x) \phi_i(z)`, (10) of the paper.
-
-    Parameters
-    ----------
-    spectrum : Spectrum
-        Eigenpairs of the surface.
-    time : float
-        How long heat spreads, in units of the surface's area.
-    sources : (S,) array_like of int
-        Vertices x.
-
-    Returns
-    -------
-    (S, n) array of float
-        The kernel times the area: without a unit, and one everywhere on a connected surface when time is long.
-
-    Raises
-    ------
-    SettingsError
-        If the time is not greater than zero.
-    MeshError
-        If a source is not a vertex of the mesh.
-    """
-    weights = np.exp(-spectrum.values * spectrum.area * _checked_time(time)) * spectrum.area
-    rows = spectrum.functions[checked_sources(sources, len(spectrum.functions))]
-    return (rows * weights) @ spectrum.functions.T
-
-
-def _checked_time(time: float) -> float:
-    if not (np.isfinite(time) and time > 0):
-        raise SettingsError(f"The time of diffusion should be greater than zero, but is {time}.")
-    return float(time)

@@ -45,19 +45,19 @@ def sample_misfits(x: Shape, y: Shape, images: Ints, sign: int) -> Misfits:
         Whether the orientation is kept (1) or mirrored (-1).
     """
     count = len(images)
-    change = squared_differences(x.sample_distances[:, :count], y.sample_distances[:, images]) / count
-    first = signed_areas(x.directions[:, : min(count, _ORIENTING)])
-    second = signed_areas(y.directions[:, images[:_ORIENTING]])
+    change = squared_differences(x.samples.distances[:, :count], y.samples.distances[:, images]) / count
+    first = signed_areas(x.samples.directions[:, : min(count, _ORIENTING)])
+    second = signed_areas(y.samples.directions[:, images[:_ORIENTING]])
     return Misfits(change, change + _SIDE_WEIGHT * squared_differences(first, sign * second) / first.shape[1])
 
 
 def mean_orientation(x: Shape, y: Shape, images: Ints, lifted: Ints) -> float:
     """Mean agreement of orientation, -1 to 1, of a map of all samples (S,), as seen from matched ones, (k,)."""
-    here, there = x.directions[:, : min(len(images), _ORIENTING)], y.directions[:, images[:_ORIENTING]]
+    here, there = x.samples.directions[:, : min(len(images), _ORIENTING)], y.samples.directions[:, images[:_ORIENTING]]
     return float(orientation_agreement(here, there[lifted]).mean())
 
 
 def curvature_agreement(x: Shape, y: Shape, lifted: Ints) -> float:
     """Mean correlation, at most 1, of the curvatures with those at the images (S,) of all samples."""
-    pairs = zip(x.curvatures, y.curvatures, strict=True)
-    return float(np.mean([weighted_correlation(own, other[lifted], x.cell_areas) for own, other in pairs]))
+    pairs = zip(x.samples.curvatures, y.samples.curvatures, strict=True)
+    return float(np.mean([weighted_correlation(own, other[lifted], x.samples.cell_areas) for own, other in pairs]))

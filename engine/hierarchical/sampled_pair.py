@@ -6,13 +6,14 @@ from __future__ import annotations
 import copy
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from ..geometry.orientation import orientation_agreement, signed_areas
 from ..runtime.arrays import TINY, Bools, Floats, Ints, squared_differences
 from ..shapes.shape import Shape
 from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 from .descriptors import bin_difference, distance_histograms, earth_movers_distance
-from .diffusion import DiffusionMetric, automatic_time
+from .diffusion import automatic_time, diffusion_places
 from .problem import MatchingProblem
 from .settings import MatchSettings
 from .sign_sequences import SignSequence, consistent_sequences
@@ -73,10 +74,11 @@ class Pair:
         """Compare the samples by a descriptor; in place of eigenfunctions, by histograms, which need no signs."""
         if descriptor in ("heat_kernel", "wave_kernel"):
             make = heat_kernel_signatures if descriptor == "heat_kernel" else wave_kernel_signatures
-            return _scaled(_signature_difference(*(make(s.spectrum)[s.samples] for s in (self.source, self.target))))
+            signatures = (make(shape.spectrum)[shape.samples.vertices] for shape in (self.source, self.target))
+            return _scaled(_signature_difference(*signatures))
         bins, reach = self.settings.histogram_bins, max(self.source_distances.max(), self.target_distances.max())
-        first = distance_histograms(self.source_distances, self.source.cell_areas, bins, reach)
-        second = distance_histograms(self.target_distances, self.target.cell_areas, bins, reach)
+        first = distance_histograms(self.source_distances, self.source.samples.cell_areas, bins, reach)
+        second = distance_histograms(self.target_distances, self.target.samples.cell_areas, bins, reach)
         if self.settings.comparison == "bin_to_bin":
             return _scaled(bin_difference(first, second))
         return earth_movers_distance(first, second, reach / bins)
@@ -92,7 +94,9 @@ class Pair:
         if self.settings.descriptor != "eigenfunctions":
             return [self]
         k = self.settings.eigenfunctions
-        source, target = (eigenfunction_descriptor(s.spectrum, k)[s.samples] for s in (self.source, self.target))
+        source, target = (
+            eigenfunction_descriptor(s.spectrum, k)[s.samples.vertices] for s in (self.source, self.target)
+        )
         first = self.source.spectrum.zero_count
         groups = [group.tolist() for group in multiplets(self.source.spectrum.values[first : first + k], _NEAR)]
         sequences = consistent_sequences(source, target, self._descriptor, groups, count)
@@ -136,8 +140,8 @@ class Pair:
         signed areas of all pairs of these directions; it is what tells the front of a flat body from its back, which
         distances cannot.
         """
-        first = signed_areas(self.source.directions[:, : len(coarse)])
-        second = sign * signed_areas(self.target.directions[:, coarse])
+        first = signed_areas(self.source.samples.directions[:, : len(coarse)])
+        second = sign * signed_areas(self.target.samples.directions[:, coarse])
         return _ORIENTATION_WEIGHT * squared_differences(first, second) / first.shape[1]
 
     def orientation(self, assignment: Ints) -> float:
@@ -145,7 +149,8 @@ class Pair:
         count = len(assignment)
         return float(
             orientation_agreement(
-                self.source.directions[:count, :count], self.target.directions[np.ix_(assignment, assignment)]
+                self.source.samples.directions[:count, :count],
+                self.target.samples.directions[np.ix_(assignment, assignment)],
             ).mean()
         )
 
@@ -153,17 +158,14 @@ class Pair:
 def _metric(source: Shape, target: Shape, settings: MatchSettings) -> tuple[Floats, Floats, PointDistances]:
     """Distances between the samples of each shape in the chosen metric, and the metric on the whole target."""
     if settings.metric == "geodesic":
-        return source.sample_distances, target.sample_distances, SurfaceDistances(target)
+        return source.samples.distances, target.samples.distances, SurfaceDistances(target)
     # One time, and one scale, for both shapes.
     time = settings.diffusion_time or (automatic_time(source.spectrum) + automatic_time(target.spectrum)) / 2
-    first, second = (
-        DiffusionMetric(shape.spectrum, time).distances(shape.samples)[:, shape.samples] for shape in (source, target)
-    )
+    places = [diffusion_places(shape.spectrum, time) for shape in (source, target)]
+    sampled = (own[shape.samples.vertices] for own, shape in zip(places, (source, target), strict=True))
+    first, second = (cdist(own, own) for own in sampled)
     scale = _TYPICAL_DISTANCE / np.sqrt((np.square(first).mean() + np.square(second).mean()) / 2)
-    spectrum = target.spectrum
-    decay = np.exp(-spectrum.values * spectrum.area * time)
-    places = spectrum.functions * (decay * scale * np.sqrt(spectrum.area))
-    return first * scale, second * scale, EmbeddedDistances(target.mesh, places)
+    return first * scale, second * scale, EmbeddedDistances(target.mesh, places[1] * scale)
 
 
 def _scaled(difference: Floats) -> Floats:

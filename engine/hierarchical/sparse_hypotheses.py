@@ -103,7 +103,7 @@ def coarse_candidates(pair: Pair) -> int:
     settings = pair.settings
     if settings.constraint == "bijective":
         return min(settings.coarse_points, settings.points)
-    return min(settings.coarse_candidates, pair.target.sample_count)
+    return min(settings.coarse_candidates, len(pair.target.samples))
 
 
 def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
@@ -182,8 +182,8 @@ def _landmark_strain(hypothesis: Hypothesis) -> float:
     """Measure how badly landmarks fit the other points: logarithm of their root mean square difference of distances."""
     pair, assignment = hypothesis.coarse.pair, hypothesis.assignment
     count = min(pair.landmarks, len(assignment))
-    source = pair.source.sample_distances[:count, : len(assignment)]
-    target = pair.target.sample_distances[np.ix_(assignment[:count], assignment)]
+    source = pair.source.samples.distances[:count, : len(assignment)]
+    target = pair.target.samples.distances[np.ix_(assignment[:count], assignment)]
     return float(np.log(_EXACT + np.sqrt(np.square(source - target).mean())))
 
 
@@ -237,7 +237,7 @@ def _best_distinct(leads: list[_Lead], most: int) -> list[_Lead]:
 
     def differ(lead: _Lead, other: _Lead) -> bool:
         """Say whether two leads take a good part of the points elsewhere."""
-        moves = lead.coarse.pair.target.sample_distances[lead.assignment, other.assignment]
+        moves = lead.coarse.pair.target.samples.distances[lead.assignment, other.assignment]
         return bool((moves > _DISTINCT / 2).mean() > _DISTINCT_SHARE)
 
     return best_distinct(sorted(leads, key=lambda lead: lead.cost), differ, most)

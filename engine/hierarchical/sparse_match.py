@@ -110,7 +110,7 @@ def _finished_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
 
 def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
     settings = pair.settings
-    candidates = flat_candidates(settings.points, pair.target.sample_count)
+    candidates = flat_candidates(settings.points, len(pair.target.samples))
     variants = pair.variants(2)
     search = partial(flat_steps, points=settings.points, candidates=candidates, count=2, node_limit=settings.node_limit)
     found = yield from in_turn(search(variant) for variant in variants)
@@ -125,7 +125,7 @@ def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
 def _gmds_steps(hypothesis: Hypothesis) -> Steps[Answer]:
     coarse, pair = hypothesis.coarse, hypothesis.coarse.pair
     target, points = pair.target, pair.settings.points
-    at_coarse = target.samples[hypothesis.levels[0].assignment]
+    at_coarse = target.samples.vertices[hypothesis.levels[0].assignment]
     start = SurfacePoints.at_vertices(target.original, target.vertices[at_coarse])
     wanted = pair.source_distances[:points, :points]
     steps = gmds_steps(pair.source, target, points, start=start, wanted=wanted, distances=pair.target_metric)
@@ -141,7 +141,7 @@ def _gmds_steps(hypothesis: Hypothesis) -> Steps[Answer]:
 def _at_landmarks_steps(pair: Pair, points: SurfacePoints) -> Steps[tuple[SurfacePoints, Floats]]:
     """Put the images of landmarks where they belong, and measure the distances between all images anew."""
     rows, target = np.arange(pair.landmarks), pair.target
-    placed = placed_at_vertices(points, target.mesh, rows, target.samples[: pair.landmarks])
+    placed = placed_at_vertices(points, target.mesh, rows, target.samples.vertices[: pair.landmarks])
     yield from pair.target_metric.prepare_steps(placed)
     return placed, symmetric_roots(pair.target_metric.squares_between(placed))
 
@@ -152,7 +152,7 @@ def _at_samples(hypothesis: Hypothesis, levels: list[Refined], candidates: int) 
 
     def places(numbers: Ints) -> SurfacePoints:
         """Put samples of the target, by their numbers, on its mesh."""
-        return SurfacePoints.at_vertices(target.mesh, target.samples[numbers])
+        return SurfacePoints.at_vertices(target.mesh, target.samples.vertices[numbers])
 
     def finished(level: Refined) -> Level:
         """Say how a level ended."""
@@ -201,11 +201,11 @@ def _holding(pair: Pair, count: int) -> Floats:
     farthest = max(float(pair.source_distances.max()), float(pair.target_distances.max()))
     linear = np.zeros((count, pair.target.mesh.vertex_count))
     linear[: pair.landmarks] = 1 + 2 * count * farthest**2
-    linear[np.arange(pair.landmarks), pair.target.samples[: pair.landmarks]] = 0
+    linear[np.arange(pair.landmarks), pair.target.samples.vertices[: pair.landmarks]] = 0
     return linear
 
 
 def _linear(pair: Pair, points: SurfacePoints) -> float:
     """Sum the descriptor differences, at the sample of the target nearest to each point."""
-    nearest = pair.target.sample_rows[:, points.nearest_vertices].argmin(axis=0)
+    nearest = pair.target.samples.rows[:, points.nearest_vertices].argmin(axis=0)
     return float(pair.linear[np.arange(len(points)), nearest].sum())

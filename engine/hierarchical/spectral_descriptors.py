@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..geometry.eigenpairs import Spectrum
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import SettingsError
 
-_TIMES = 0.004, 1.0
-"""First and last automatic time, in units of area: heat spreads over some hundredths, and over all of a surface."""
+_TIMES = np.geomspace(0.004, 1.0, 16)
+"""Times of heat kernels, in units of area: heat spreads over some hundredths, at last over all of a surface."""
 
 _WIDTH = 7
 """Width of a wave's band of energies, in steps between energies."""
@@ -20,51 +19,32 @@ _ROWS = 1 << 13
 """Vertices that are described together."""
 
 
-def automatic_times(count: int = 16) -> Floats:
-    """Choose the times, in units of area, at which heat kernels are compared, (count,).
-
-    They are the same for all shapes, evenly spaced on a logarithmic scale.
-    """
-    return np.geomspace(*_TIMES, count)
-
-
-def heat_kernel_signatures(spectrum: Spectrum, times: ArrayLike | None = None, *, relative: bool = True) -> Floats:
+def heat_kernel_signatures(spectrum: Spectrum, times: Floats = _TIMES) -> Floats:
     r"""Describe each vertex by how much heat stays there [1]_.
 
-    .. math:: h_t(x, x) = \sum_i e^{-\lambda_i t} \phi_i(x)^2
+    .. math:: A \frac{h_t(x, x)}{\sum_i e^{-\lambda_i t}}, \quad h_t(x, x) = \sum_i e^{-\lambda_i t} \phi_i(x)^2
+
+    The sum makes all times count alike in comparisons.
 
     Parameters
     ----------
     spectrum : Spectrum
-        Eigenpairs of the surface; hundred are enough for the automatic times.
-    times : (d,) array_like of float, optional
-        Times in units of the surface's area; by default `automatic_times`.
-    relative : bool
-        Divide each column by :math:`\sum_i e^{-\lambda_i t}`, so that its mean over the surface is one and all times
-        count alike in comparisons.  Otherwise the values are :math:`h_t(x, x)` times the area.
+        Eigenpairs of the surface; hundred are enough for the usual times.
+    times : (d,) array of float
+        Times in units of the surface's area; by default the same for all shapes, evenly spaced on a logarithmic scale.
 
     Returns
     -------
     (n, d) array of float
-        One row per vertex, without a unit.
-
-    Raises
-    ------
-    SettingsError
-        If a time is not greater than zero.
+        One row per vertex, without a unit; the mean of each column over the surface is one.
 
     References
     ----------
     .. [1] J. Sun, M. Ovsjanikov, L. Guibas, "A concise and provably informative multi-scale signature based on heat
        diffusion", SGP 2009.
     """
-    array = automatic_times() if times is None else np.asarray(times, dtype=np.float64)
-    if array.ndim != 1 or not (array > 0).all():
-        raise SettingsError(f"The times of heat kernel signatures should be numbers greater than zero, not {times!r}.")
-    weights = np.exp(-np.outer(spectrum.values * spectrum.area, array))
-    if relative:
-        weights /= weights.sum(axis=0)
-    return _weighted_squares(spectrum, weights)
+    weights = np.exp(-np.outer(spectrum.values * spectrum.area, times))
+    return _weighted_squares(spectrum, weights / weights.sum(axis=0))
 
 
 def automatic_energies(pairs: int, count: int = 50) -> Floats:
@@ -76,7 +56,7 @@ def automatic_energies(pairs: int, count: int = 50) -> Floats:
     return np.linspace(np.log(4 * np.pi), np.log(4 * np.pi * max(0.8 * pairs, 2)), count)
 
 
-def wave_kernel_signatures(spectrum: Spectrum, energies: ArrayLike | None = None) -> Floats:
+def wave_kernel_signatures(spectrum: Spectrum, energies: Floats | None = None) -> Floats:
     r"""Describe each vertex by how likely a quantum particle of some energy is there [1]_.
 
     .. math:: w_e(x) = A \frac{\sum_i g_i \phi_i(x)^2}{\sum_i g_i}, \quad
@@ -88,7 +68,7 @@ def wave_kernel_signatures(spectrum: Spectrum, energies: ArrayLike | None = None
     ----------
     spectrum : Spectrum
         Eigenpairs of the surface.
-    energies : (d,) array_like of float, optional
+    energies : (d,) array of float, optional
         Logarithms of eigenvalue times area, evenly spaced, at least two; by default `automatic_energies` of the number
         of eigenpairs.
 
@@ -100,23 +80,19 @@ def wave_kernel_signatures(spectrum: Spectrum, energies: ArrayLike | None = None
     Raises
     ------
     SettingsError
-        If there are fewer than two energies, or no eigenfunctions but constant ones.
+        If there are no eigenfunctions but constant ones.
 
     References
     ----------
     .. [1] M. Aubry, U. Schlickewei, D. Cremers, "The wave kernel signature: a quantum mechanical approach to shape
        analysis", ICCV Workshops 2011.
     """
-    array = automatic_energies(len(spectrum)) if energies is None else np.asarray(energies, dtype=np.float64)
-    if array.ndim != 1 or len(array) < 2 or not array[-1] > array[0]:
-        raise SettingsError(
-            f"The energies of wave kernel signatures should be two or more growing numbers, not {energies!r}."
-        )
+    energies = automatic_energies(len(spectrum)) if energies is None else energies
     _require_functions(spectrum, 1)
-    width = _WIDTH * (array[-1] - array[0]) / (len(array) - 1)
+    width = _WIDTH * (energies[-1] - energies[0]) / (len(energies) - 1)
     logs = np.log(spectrum.values[spectrum.zero_count :] * spectrum.area)
-    exponents = -np.square((array - logs[:, None]) / width) / 2
-    weights = np.zeros((len(spectrum), len(array)))
+    exponents = -np.square((energies - logs[:, None]) / width) / 2
+    weights = np.zeros((len(spectrum), len(energies)))
     weights[spectrum.zero_count :] = np.exp(exponents - exponents.max(axis=0))
     return _weighted_squares(spectrum, weights / weights.sum(axis=0))
 

@@ -125,34 +125,29 @@ def _together_but_for_extras(result: MatchResult, bodies: tuple[PiecedBody, Piec
 
     If both have pieces without a partner, they are cut elsewhere.
     """
-    there, back = result.source_to_target, result.target_to_source
-    if there is None or back is None:
-        return 1.0
-    lonely = without_partner(*bodies, there), without_partner(*bodies[::-1], back)
+    dense = result.dense
+    lonely = without_partner(*bodies, dense.source_to_target), without_partner(*bodies[::-1], dense.target_to_source)
     alone = min(float(body.shares[pieces].sum()) for body, pieces in zip(bodies, lonely, strict=True))
     return (1 - alone) * _together(result, (bodies[0].without(lonely[0]), bodies[1].without(lonely[1])))
 
 
 def _together(result: MatchResult, bodies: tuple[PiecedBody, PiecedBody]) -> float:
     """Tell what part of two bodies has a partner that fits to the partners of what is around it."""
-    there, back, quality = result.source_to_target, result.target_to_source, result.quality
-    if there is None or back is None or quality is None:
-        return 1.0
+    there, back = result.dense.source_to_target, result.dense.target_to_source
     torn = max(torn_share(*bodies, there), torn_share(*bodies[::-1], back))
     resized = max(resized_share(*bodies, there), resized_share(*bodies[::-1], back))
-    covered = min(quality.coverage, quality.source_coverage)
-    return min(covered, 1 - resized) * (1 - torn if torn > _TORN else 1.0)
+    return min(_covered(result), 1 - resized) * (1 - torn if torn > _TORN else 1.0)
 
 
 def _partnered(result: MatchResult) -> float:
     """Tell what part of two bodies has a partner."""
-    return _covered(result) * (1 - (0.0 if result.quality is None else result.quality.pieces_alone))
+    return _covered(result) * (1 - result.dense.quality.pieces_alone)
 
 
 def _covered(result: MatchResult) -> float:
     """Tell what part of the surfaces that were matched has a partner."""
-    quality = result.quality
-    return 1.0 if quality is None else min(quality.coverage, quality.source_coverage)
+    quality = result.dense.quality
+    return min(quality.coverage, quality.source_coverage)
 
 
 def _body(shape: Shape, limbs: Bools) -> PiecedBody:
@@ -163,19 +158,19 @@ def _body(shape: Shape, limbs: Bools) -> PiecedBody:
 
 def _likeness(result: MatchResult) -> float:
     """How credible a match is; with landmarks, it is said to be."""
-    known = None if result.quality is None else result.quality.likeness
+    known = result.dense.quality.likeness
     return np.inf if known is None else known
 
 
 def _is_plausible(result: MatchResult) -> bool:
     """Say whether bodies seem to be matched rightly."""
-    quality = result.quality
-    return quality is None or is_likely(quality.likeness, quality.in_place)
+    quality = result.dense.quality
+    return is_likely(quality.likeness, quality.in_place)
 
 
 def _is_clear(result: MatchResult) -> bool:
     """Say whether all of the main parts is alike: nothing is missing on them."""
-    return result.quality is not None and _covered(result) >= _ALL and _likeness(result) >= MUCH_ALIKE
+    return _covered(result) >= _ALL and _likeness(result) >= MUCH_ALIKE
 
 
 def _is_better(joined: MatchResult, pieces: MatchResult, together: float) -> bool:

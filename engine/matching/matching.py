@@ -167,9 +167,7 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     whose faces are missing here and there is no part.
     """
     known = overlap.result
-    whole, shown = (x, known.source_to_target) if of_source else (y, known.target_to_source)
-    if shown is None:
-        return known
+    whole, shown = (x, known.dense.source_to_target) if of_source else (y, known.dense.target_to_source)
     piece = shown.has_partner[whole.vertices]
     begun = _begun(task, overlap)
     steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source)
@@ -195,10 +193,10 @@ def _begun(task: MatchTask, overlap: OverlapMatch) -> MatchTask:
 
 def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:
     """Choose between surfaces as they are and what they share: the more credible, or what claims least."""
-    if overlap is None or overlap.result.quality is None or result.quality is None:
+    if overlap is None:
         return result
-    known = result.quality.confidence
-    return result if known > max(overlap.result.quality.confidence, _HOPELESS) else overlap.result
+    least = max(overlap.result.dense.quality.confidence, _HOPELESS)
+    return result if result.dense.quality.confidence > least else overlap.result
 
 
 def _shapes_steps(

@@ -23,7 +23,7 @@ from ..registration.deformable import DeformableSurface
 from ..runtime.arrays import TINY, Bools, Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, part_of, within
 from ..shapes.shape import Shape
 from .partial_placement import part_placements_steps
 
@@ -151,14 +151,14 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     yield from within(other.sample_steps(_SAMPLES, _MEASURED), 0.13, 0.16)
     yield from within(other.spectrum_steps(EIGENPAIRS), 0.16, 0.2)
     there, back = first
-    places = back.positions[part.vertices[other.vertices[other.samples]]]
+    places = back.positions[part.vertices[other.vertices[other.samples.vertices]]]
     fitter = _Fitter(coarse.limited(_SAMPLES, _MEASURED), other.limited(_SAMPLES, _MEASURED))
     first_images = fitter.nearest_samples(places)
     kept = there.confidence[whole.vertices[coarse.vertices]] > 0
     starts = [(kept, first_images)]
     searching = part_placements_steps(fitter.whole, fitter.part, _PLACEMENTS)
     placements = yield from within(searching, 0.2, 0.25)
-    starts += [(fitter.roughly_covered(placement.images), placement.images) for placement in placements]
+    starts += [(fitter.roughly_covered(images), images) for images in placements]
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
     scores, taken = np.array([fit.score for fit in fits]), np.array([fit.places for fit in fits]) / whole.scale
     best = best_and_rivals(scores, taken, _REFINED, _HOPEFUL[1])
@@ -246,7 +246,7 @@ def _registered_steps(fitter: _Fitter, starts: list[tuple[Bools, Ints]]) -> Step
     scores = np.array([proposal.hypothesis.score for proposal in proposals])
     places = np.array([proposal.places for proposal in proposals]) / fitter.whole.scale
     best = best_and_rivals(scores, places, _REGISTERED, _HOPEFUL[0])
-    steps = shared_steps(_fitted_steps, fitter, [proposals[way] for way in best])
+    steps = shared_steps(_Fitter.fit_steps, fitter, [proposals[way] for way in best])
     return (yield from within(steps, 0.6, 1.0))
 
 
@@ -255,17 +255,12 @@ def _proposed_steps(fitter: _Fitter, start: tuple[Bools, Ints]) -> Steps[_Propos
     return (yield from fitter.proposal_steps(*start))
 
 
-def _fitted_steps(fitter: _Fitter, proposal: _Proposal) -> Steps[_Fit]:
-    """Register a piece to the part."""
-    return (yield from fitter.fit_steps(proposal))
-
-
 def _refined_steps(fitter: _Fitter, start: tuple[Bools, Ints, int]) -> Steps[list[_Fit]]:
     """Register a piece where it is known to lie, then again, so many times, what that covers."""
     refined: list[_Fit] = []
     covered, images, rounds = start
     for again in range(rounds):
-        begin, end = ((again + i) / rounds for i in (0, 1))
+        begin, end = part_of(again, rounds)
         proposal = yield from within(fitter.proposal_steps(covered, images, known=True), begin, (begin + end) / 2)
         if proposal is None:
             break
@@ -286,7 +281,7 @@ class _Fitter:
 
     def roughly_covered(self, images: Ints) -> Bools:
         """Tell which vertices of the whole (n,) are near to samples that something goes to."""
-        return self.whole.sample_rows[np.unique(images)].min(axis=0) < _ROUGHLY
+        return self.whole.samples.rows[np.unique(images)].min(axis=0) < _ROUGHLY
 
     def covered(self, fit: _Fit) -> Bools:
         """Tell which vertices of the whole (n,) are near to the part's vertices or the middles of its triangles."""
@@ -301,11 +296,11 @@ class _Fitter:
 
     def start(self, fit: _Fit) -> tuple[Bools, Ints]:
         """Tell what of the whole a registration covers, (n,), and its samples that those of the part go to."""
-        return self.covered(fit) | self.grown(fit), self.nearest_samples(fit.places[self.part.samples])
+        return self.covered(fit) | self.grown(fit), self.nearest_samples(fit.places[self.part.samples.vertices])
 
     def nearest_samples(self, places: Floats) -> Ints:
         """Find the samples of the whole that are nearest to places (k, 3)."""
-        return cKDTree(self.whole.mesh.vertices[self.whole.samples]).query(places)[1]
+        return cKDTree(self.whole.mesh.vertices[self.whole.samples.vertices]).query(places)[1]
 
     def common_part(self, first: Bools, second: Bools) -> float:
         """Area that two pieces of the whole, (n,) each, have in common, as a part of that of both together."""
@@ -327,9 +322,9 @@ class _Fitter:
         yield from within(piece.sample_steps(_SAMPLES, _MEASURED), 0.0, 0.2)
         yield from within(piece.spectrum_steps(EIGENPAIRS), 0.2, 0.5)
         piece = piece.limited(_SAMPLES, _MEASURED)
-        places = whole.vertices[self.whole.samples[images[:_STARTS]]]
-        rows = self.whole.sample_rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
-        start = LandmarkStart(rows, self.part.sample_rows[:_STARTS], "placement")
+        places = whole.vertices[self.whole.samples.vertices[images[:_STARTS]]]
+        rows = self.whole.samples.rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
+        start = LandmarkStart(rows, self.part.samples.rows[:_STARTS], "placement")
         if known:
             domains = MapDomain(piece, EIGENPAIRS), MapDomain(self.part, EIGENPAIRS)
             return _Proposal(piece, unrefined_hypothesis(domains, start), places)

@@ -12,7 +12,7 @@ from ..dense.components.masked_maps import share_of, with_piece_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, RISE, has_failed, is_less_alike
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, part_of, within
 from ..shapes.borders import has_border
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.shape import Shape
@@ -60,31 +60,27 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
         The more credible one.  If that is the new one, what was left out follows what is around it, without any
         confidence, and counts as not covered in `quality`.
     """
-    quality, there, back = result.quality, result.source_to_target, result.target_to_source
-    if quality is None or there is None or back is None:
-        return result
+    quality, maps = result.dense.quality, (result.dense.source_to_target, result.dense.target_to_source)
     parts = has_border(x), has_border(y)
     if not any(parts) and not has_failed(quality.likeness, quality.in_place):
         return result
     if not is_less_alike(quality.likeness, CREDIBLE) and min(quality.coverage, quality.source_coverage) >= _MISSING:
         return result
     # What was cut off may have been closed; then nothing says which of them is the part.
-    ways = [(x, y, (there, back))] if parts[1] or not any(parts) else []
-    ways += [(y, x, (back, there))] if parts[0] or not any(parts) else []
+    ways = [(x, y, maps)] if parts[1] or not any(parts) else []
+    ways += [(y, x, maps[::-1])] if parts[0] or not any(parts) else []
     # Of a closed body, some piece is always more like a ball than all of it.
     least = CREDIBLE if any(parts) else MUCH_ALIKE
     found = []
-    for number, (whole, part, maps) in enumerate(ways):
-        begin, end = (_FOUND * (number + i) / len(ways) for i in (0, 1))
-        steps = covered_parts_steps(whole, part, maps)
-        pieces = yield from within(steps, begin, end, "Looking for missing parts")
+    for number, (whole, part, known) in enumerate(ways):
+        steps = covered_parts_steps(whole, part, known)
+        pieces = yield from within(steps, *part_of(number, len(ways), end=_FOUND), "Looking for missing parts")
         found += [(piece, whole is x) for piece in pieces]
     found.sort(key=lambda pair: pair[0].score)
     task.clock.lap("missing parts")
     for number, (piece, of_source) in enumerate(found[:_MOST]):
-        begin, end = (_FOUND + (1 - _FOUND) * (number + i) / _MOST for i in (0, 1))
         matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
-        result = yield from within(matching, begin, end)
+        result = yield from within(matching, *part_of(number, _MOST, _FOUND))
         if is_as_alike(result, ALL_ALIKE):
             break
     return result
@@ -117,7 +113,7 @@ def piece_matched_steps(
     """
     way = _Way(x, y, of_source, replace(task, least=least - RISE))
     for again in range(_ROUNDS):
-        other = yield from within(way.matched_steps(piece), again / _ROUNDS, (again + 1) / _ROUNDS)
+        other = yield from within(way.matched_steps(piece), *part_of(again, _ROUNDS))
         if other is None or not is_better_part(other, result, least, of_source=of_source):
             break
         # Its notes would speak of openings where a piece was cut out.
@@ -151,17 +147,14 @@ class _Way:
             result = yield from within(matched_steps(*shapes, self.task), 0.1, 1.0)
         except MatchError:  # what is left is too small for so many points
             return None
-        return with_piece_only(result, covered, share, of_source=self.of_source)
+        return result.with_dense(with_piece_only(result.dense, covered, share, of_source=self.of_source))
 
     def continued(self, result: MatchResult, piece: Bools) -> Bools | None:
         """Tell where a surface goes on beyond a piece (n,), by what lacks a partner there; None if nothing does."""
         whole, part = (self.x, self.y) if self.of_source else (self.y, self.x)
-        back = result.target_to_source if self.of_source else result.source_to_target
-        if back is None or result.quality is None:
+        if shows_all_of_part(result, of_source=self.of_source):
             return None
-        coverage = result.quality.coverage if self.of_source else result.quality.source_coverage
-        if coverage >= _COVERED:
-            return None
+        back = result.dense.target_to_source if self.of_source else result.dense.source_to_target
         alone = back.confidence[part.vertices] == 0
         unit = np.sqrt(float(whole.mesh.vertex_areas @ piece) / part.mesh.area)
         return continued(whole, part, back.positions[part.vertices], alone, unit)
@@ -187,27 +180,25 @@ def _cut_steps(shape: Shape, covered: Bools, name: str) -> Steps[Shape]:
 
 def is_better_part(other: MatchResult, result: MatchResult, least: float, *, of_source: bool) -> bool:
     """Say whether a match with less of a surface is more credible than that with more of it, and credible enough."""
-    if other.quality is not None and is_less_alike(other.quality.likeness, least):
+    if is_less_alike(other.dense.quality.likeness, least):
         return False
     return part_credibility(other, of_source=of_source) > part_credibility(result, of_source=of_source)
 
 
 def shows_all_of_part(result: MatchResult, *, of_source: bool) -> bool:
     """Say whether all of the part has a partner: all of the target, if the source is cut down, and the other way."""
-    quality = result.quality
-    return quality is not None and (quality.coverage if of_source else quality.source_coverage) >= _COVERED
+    quality = result.dense.quality
+    return (quality.coverage if of_source else quality.source_coverage) >= _COVERED
 
 
 def is_as_alike(result: MatchResult, enough: float) -> bool:
     """Say whether what is matched is so much alike that nothing else is worth trying."""
-    return result.quality is not None and not is_less_alike(result.quality.likeness, enough)
+    return not is_less_alike(result.dense.quality.likeness, enough)
 
 
 def part_credibility(result: MatchResult, *, of_source: bool) -> float:
     """Compare matches with a part: larger is more credible; all of it should have a partner."""
-    quality = result.quality
-    if quality is None:
-        return -np.inf
+    quality = result.dense.quality
     missed = 1 - (quality.coverage if of_source else quality.source_coverage)
     if quality.likeness is None:  # landmarks say which map it is
         return quality.confidence - missed

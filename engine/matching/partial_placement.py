@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -42,22 +41,6 @@ _ALIKE, _APART = 0.1, 0.08
 of the whole, up to which two matchings say the same."""
 
 
-@dataclass(frozen=True, eq=False)
-class PartPlacement:
-    """A way to lay a part onto the whole.
-
-    Attributes
-    ----------
-    misfit : float
-        Mean squared difference of the descriptions of some of the part's samples and of what they go to.
-    images : (s,) array of int
-        For each sample of the part, the number of a sample of the whole.
-    """
-
-    misfit: float
-    images: Ints
-
-
 class _Matching(NamedTuple):
     """Numbers of the whole's samples that the first of the part go to, (m,), and those that its scouts do, (k,)."""
 
@@ -67,7 +50,7 @@ class _Matching(NamedTuple):
     landings: Ints
 
 
-def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[PartPlacement]]:
+def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Ints]]:
     r"""Find ways to lay a surface onto another that has more, from distances on both.
 
     A few samples of the part are matched to samples of the whole in many ways, at several sizes: in units of its own
@@ -89,15 +72,16 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
 
     Returns
     -------
-    list of PartPlacement
-        Those that keep the orientation, the best first, and no two nearly the same.
+    list of (s,) arrays of int
+        For each way, the best first and no two nearly the same, the numbers of samples of the whole where those of the
+        part go; none mirrors.
 
     References
     ----------
     .. [1] A. M. Bronstein, M. M. Bronstein, A. M. Bruckstein, R. Kimmel, "Partial similarity of objects, or how to
        compare a centaur to a horse", International Journal of Computer Vision 84, 2009.
     """
-    distances = whole.sample_distances
+    distances = whole.samples.distances
     carrier = _Carrier(whole, part)
     found: list[_Matching] = []
     for number, unit in enumerate(np.sqrt(_SHARES)):
@@ -106,7 +90,7 @@ def part_placements_steps(whole: Shape, part: Shape, most: int) -> Steps[list[Pa
         yield Progress((number + 1) / len(_SHARES), "Comparing maps")
     found.sort(key=lambda matching: matching.misfit)
     chosen = best_distinct(found, lambda one, other: _are_apart(distances, _APART, one.landings, other.landings), most)
-    return [PartPlacement(matching.misfit, carrier.everywhere(matching)) for matching in chosen]
+    return [carrier.everywhere(matching) for matching in chosen]
 
 
 def _are_apart(distances: Floats, least: float, images: Ints, other: Ints) -> bool:
@@ -118,21 +102,21 @@ class _Carrier:
     """Matches the first samples of the part, and carries matchings over to the others."""
 
     def __init__(self, whole: Shape, part: Shape) -> None:
-        offered = np.arange(min(_OFFERED, whole.sample_count))
-        matched = np.arange(min(_MATCHED, part.sample_count, len(offered)))
+        offered = np.arange(min(_OFFERED, len(whole.samples)))
+        matched = np.arange(min(_MATCHED, len(part.samples), len(offered)))
         self._first, self._second = np.triu_indices(len(matched), 1)
-        self._whole, self._part = whole.sample_distances, part.sample_distances[:, : len(matched)]
-        self._part_sides = signed_areas(part.directions[:, matched])
+        self._whole, self._part = whole.samples.distances, part.samples.distances[:, : len(matched)]
+        self._part_sides = signed_areas(part.samples.directions[:, matched])
         self._sides = np.zeros((len(self._whole), len(offered), len(offered)))
         first, second = np.triu_indices(len(offered), 1)
-        self._sides[:, first, second] = signed_areas(whole.directions[:, offered])
+        self._sides[:, first, second] = signed_areas(whole.samples.directions[:, offered])
         self._sides[:, second, first] = -self._sides[:, first, second]
 
     def matchings(self, unit: float) -> Ints:
         """Match samples of the part, whose distances are in `unit` of those of the whole: images (r, m)."""
         m, n = self._part.shape[1], self._sides.shape[1]
         own = unit * self._part[:m]
-        return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), kept=_WIDTH, width=_WIDTH).images
+        return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), kept=_WIDTH, width=_WIDTH)
 
     def carried(self, images: Ints, unit: float) -> _Matching:
         """Carry a matching over to the scouts."""

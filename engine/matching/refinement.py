@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import piece_of, with_pieces_only
 from ..dense.dense_registration import EIGENPAIRS, RegisteredPair
-from ..dense.densify import DenseMatch, dense_match_steps
+from ..dense.densify import dense_match_steps
+from ..dense.quality import DenseMatch
 from ..mesh.reflection import reflected_mesh
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints

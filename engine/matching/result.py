@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ..dense.quality import MatchQuality
+from ..dense.quality import DenseMatch, MatchQuality
 from ..hierarchical.sparse_result import CoarseMatch, Level
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
@@ -90,6 +90,18 @@ class MatchResult:
     def mirrored(self) -> MatchResult | None:
         """The alternative of the opposite orientation, of a symmetric shape; None if there is none."""
         return next((answer for answer in self.alternatives if answer.name == MIRRORED), None)
+
+    @property
+    def dense(self) -> DenseMatch:
+        """The dense maps and how far they can be trusted, of a match that was asked for them."""
+        if self.source_to_target is None or self.target_to_source is None or self.quality is None:
+            raise RuntimeError("The match has no dense map: ask for one in its settings.")
+        return DenseMatch(self.source_to_target, self.target_to_source, self.quality)
+
+    def with_dense(self, dense: DenseMatch) -> MatchResult:
+        """Return the match with other dense maps."""
+        there, back = dense.source_to_target, dense.target_to_source
+        return replace(self, source_to_target=there, target_to_source=back, quality=dense.quality)
 
     def __repr__(self) -> str:
         dense = "" if self.quality is None else f", dense with confidence {self.quality.confidence:.2f}"

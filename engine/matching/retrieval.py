@@ -18,7 +18,7 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
-from ..runtime.progress import Progress, Steps, at_once, within
+from ..runtime.progress import Progress, Steps, at_once, part_of, within
 from ..shapes.shape import Shape
 
 _LEVELS = (np.arange(64) + 0.5) / 64  # at which the quantiles of distances are taken
@@ -172,8 +172,8 @@ def retrieve_steps(
         _check(target, f"Shape {number + 1} of the list", settings)
     signatures = []
     for number, shape in enumerate([source, *targets]):
-        start, end = 0.5 * number / (len(targets) + 1), 0.5 * (number + 1) / (len(targets) + 1)
-        yield from within(shape.sample_steps(settings.signature_samples), start, end)
+        part = part_of(number, len(targets) + 1, end=0.5)
+        yield from within(shape.sample_steps(settings.signature_samples), *part)
         signatures.append(_Signature(shape.limited(settings.signature_samples)))
     bounds = np.array([signatures[0].bound(signature) for signature in signatures[1:]])
     by_bound = np.argsort(bounds, kind="stable")
@@ -181,8 +181,8 @@ def retrieve_steps(
     count = min(settings.matched, len(targets))
     yield from within(source.sample_steps(settings.samples), 0.5, 0.5)
     for number, place in enumerate(by_bound[:count]):
-        start, end = 0.5 + 0.5 * number / count, 0.5 + 0.5 * (number + 1) / count
-        match = yield from within(_match_steps(source, targets[place], int(place), settings), start, end)
+        matching = _match_steps(source, targets[place], int(place), settings)
+        match = yield from within(matching, *part_of(number, count, 0.5))
         matches.append(match)
     matches.sort(key=lambda match: match.score)
     scores = np.full(len(targets), np.nan)
@@ -216,7 +216,7 @@ class _Signature:
     """
 
     def __init__(self, shape: Shape) -> None:
-        self.areas, distances = shape.cell_areas, shape.sample_distances
+        self.areas, distances = shape.samples.cell_areas, shape.samples.distances
         order = np.argsort(distances, axis=1)
         areas = self.areas[order]
         middle = np.cumsum(areas, axis=1) - areas / 2
@@ -242,7 +242,7 @@ def _match_steps(source: Shape, target: Shape, place: int, settings: RetrievalSe
     change = pair.source_distances[:k, :k] - pair.target_distances[np.ix_(assignment, assignment)]
     return RetrievedMatch(
         place,
-        SurfacePoints.at_vertices(source.original, source.vertices[source.samples[:k]]),
-        SurfacePoints.at_vertices(target.original, target.vertices[target.samples[assignment]]),
+        SurfacePoints.at_vertices(source.original, source.vertices[source.samples.vertices[:k]]),
+        SurfacePoints.at_vertices(target.original, target.vertices[target.samples.vertices[assignment]]),
         float(np.sqrt(np.square(change).sum() / (k * (k - 1)))),
     )

@@ -13,9 +13,9 @@ from scipy.spatial import cKDTree
 
 from ..dense.dense_hypotheses import USUAL, LandmarkStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
-from ..dense.densify import MEASURED, DenseMatch, dense_match_steps
+from ..dense.densify import MEASURED, dense_match_steps
 from ..dense.initial_maps import RoughSearch
-from ..dense.quality import with_alternatives
+from ..dense.quality import DenseMatch, with_alternatives
 from ..hierarchical.hierarchy import refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
@@ -165,8 +165,8 @@ def _dense_steps(
     # Mirrored maps serve only landmarks that ask for one.
     followed = answers if landmarks is not None else [a for a in answers if a.orientation > 0] or answers
     for answer in followed:
-        places = y.sample_rows[:, answer.points.nearest_vertices].argmin(axis=0)
-        rows = finer[0].sample_rows[: len(places)], finer[1].sample_rows[places]
+        places = y.samples.rows[:, answer.points.nearest_vertices].argmin(axis=0)
+        rows = finer[0].samples.rows[: len(places)], finer[1].samples.rows[places]
         starts.append(LandmarkStart(*rows, "hierarchy"))
     if task.begun is not None:
         starts = [_begun_start(x, y, finer, task.begun)]
@@ -179,7 +179,7 @@ def _dense_steps(
     dense = yield from within(dense_match_steps(registered), 0.75, 0.9)
     clock.lap("lift")
     count = len(answers[0].points)
-    found, vertices = dense.source_to_target, x.vertices[x.samples[:count]]
+    found, vertices = dense.source_to_target, x.vertices[x.samples.vertices[:count]]
 
     def placed(points: SurfacePoints) -> SurfacePoints:
         """Put images on the original target where they are matched."""
@@ -193,7 +193,7 @@ def _dense_steps(
     others = [] if mirrored is None else [(MIRRORED, mirrored)]
     fine_x, fine_y = finer
     for number, other in enumerate(registered.alternatives, start=1):
-        places = other.triangles[fine_x.samples[:count]], other.barycentric[fine_x.samples[:count]]
+        places = other.triangles[fine_x.samples.vertices[:count]], other.barycentric[fine_x.samples.vertices[:count]]
         turned = placed(fine_y.surface.on_original(SurfacePoints.from_barycentric(fine_y.mesh, *places)))
         yield from pair.target_metric.prepare_nearest_steps(turned)
         others.append((turned_name(number), moved(direct, turned)))
@@ -203,10 +203,10 @@ def _dense_steps(
 
 def _begun_start(x: Shape, y: Shape, finer: tuple[Shape, Shape], begun: SurfaceMap) -> LandmarkStart:
     """Begin with where a map takes the samples that have a partner."""
-    own = x.vertices[x.samples]
+    own = x.vertices[x.samples.vertices]
     shown = np.flatnonzero(begun.has_partner[own])
-    nearest = cKDTree(y.original.vertices[y.vertices[y.samples]]).query(begun.positions[own[shown]])[1]
-    return LandmarkStart(finer[0].sample_rows[shown], finer[1].sample_rows[nearest], "overlap")
+    nearest = cKDTree(y.original.vertices[y.vertices[y.samples.vertices]]).query(begun.positions[own[shown]])[1]
+    return LandmarkStart(finer[0].samples.rows[shown], finer[1].samples.rows[nearest], "overlap")
 
 
 def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple[Answer, Answer | None]]:
@@ -224,7 +224,7 @@ def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple
     direct = answers[nearest]
     mirrored = next((answers[i] for i in order if i != nearest and answers[i].orientation <= 0), None)
     if far[nearest] > _AGREEING:
-        rows = y.sample_rows[:, images.nearest_vertices]
+        rows = y.samples.rows[:, images.nearest_vertices]
         start = _distinct_samples(rows, pair.landmarks)
         levels = yield from refine_steps(pair, start, [count])
         direct = at_samples(direct, levels)
@@ -247,7 +247,8 @@ def _distance_rows_steps(answer: Answer) -> Steps[tuple[Floats, Floats]]:
     metric = answer.coarse.pair.target_metric
     on_target = metric if isinstance(metric, SurfaceDistances) else SurfaceDistances(y)
     rows = yield from within(to_all_vertices_steps(on_target, answer.points), 1.0, 1.0)
-    return _sample_distances(x, len(answer.points)), rows
+    own = x.samples.rows[: len(answer.points)].astype(np.float64) * x.scale
+    return x.surface.spread(own, np.inf), rows
 
 
 def _result(
@@ -262,7 +263,7 @@ def _result(
     difference = pair.source_distances[:count, :count] - answer.distances
     # A landmark is itself and not a vertex of a coarse proxy near to it, or one that is welded to it.
     known = 0 if landmarks is None else len(landmarks)
-    source_vertices, target_vertices = x.vertices[x.samples], y.vertices[y.samples]
+    source_vertices, target_vertices = x.vertices[x.samples.vertices], y.vertices[y.samples.vertices]
     if landmarks is not None:
         source_vertices[:known], target_vertices[:known] = landmarks.source.original, landmarks.target.original
 
@@ -294,8 +295,3 @@ def _result(
         notes=notes,
         seconds=dict(seconds),
     )
-
-
-def _sample_distances(shape: Shape, count: int) -> Floats:
-    """Distances from the first samples to all vertices of the whole surface, in its units; inf on other parts."""
-    return shape.surface.spread(shape.sample_rows[:count].astype(np.float64) * shape.scale, np.inf)

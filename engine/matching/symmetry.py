@@ -19,7 +19,7 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.progress import Progress, Steps, at_once, within
+from ..runtime.progress import Progress, Steps, at_once, part_of, within
 from ..shapes.shape import Shape
 
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
@@ -168,15 +168,15 @@ def _coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
     settings = pair.settings
     points = min(settings.coarse_points, settings.points)
     candidates = points if settings.constraint == "bijective" else settings.coarse_candidates
-    problem = pair.problem(points, min(candidates, pair.target.sample_count))
-    geodesic = pair.target.sample_distances[: problem.size[1], : problem.size[1]]
+    problem = pair.problem(points, min(candidates, len(pair.target.samples)))
+    geodesic = pair.target.samples.distances[: problem.size[1], : problem.size[1]]
     far = geodesic > _FAR * min(1.0, float(geodesic.max()))
     exclusions = [Exclusion(far[:points], int(np.ceil(_MOVED_SHARE * points)))]
     found: list[BoundedMatching] = []
     count = _OVERSAMPLING * settings.hypotheses
     for number in range(count):
         search = branch_and_bound_steps(problem, node_limit=settings.node_limit, exclusions=exclusions)
-        matching = yield from within(search, number / count, (number + 1) / count)
+        matching = yield from within(search, *part_of(number, count))
         if matching is None:
             break
         found.append(matching)
@@ -198,8 +198,8 @@ def _candidate_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[list[_C
             term = pair.orientation_term(matching.assignment, sign)
             levels = yield from within(refine_steps(pair, matching.assignment, sizes, term), here, here)
             candidates.append(_assess(pair.source, matching, levels[-1].assignment, sign))
-    distances = pair.source.sample_distances
-    identity = np.arange(pair.source.sample_count)
+    distances = pair.source.samples.distances
+    identity = np.arange(len(pair.source.samples))
 
     def moved(candidate: _Candidate, other: Ints) -> bool:
         """Say whether a candidate takes a good part of the samples elsewhere than other images (n,)."""
@@ -212,7 +212,7 @@ def _candidate_steps(pair: Pair, coarse: list[BoundedMatching]) -> Steps[list[_C
 
 def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) -> _Candidate:
     """Carry a matching to all samples, make the map its own inverse if it can be, and judge it."""
-    distances, count = shape.sample_distances, len(assignment)
+    distances, count = shape.samples.distances, len(assignment)
     everywhere = np.arange(len(distances))
     misfit = sample_misfits(shape, shape, assignment, sign).all
     images = misfit.argmin(axis=1)
@@ -238,16 +238,16 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) 
 
 def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
     """Place the images of the points at vertices, between the samples, and measure the map there."""
-    rows = shape.sample_rows[:count].astype(np.float64)
+    rows = shape.samples.rows[:count].astype(np.float64)
     nearest = candidate.images[:count]
-    images, image_rows = shape.samples[nearest], shape.sample_rows[nearest].astype(np.float64)
+    images, image_rows = shape.samples.vertices[nearest], shape.samples.rows[nearest].astype(np.float64)
     for _ in range(_ROUNDS):
         before = images
         images = _images_at_vertices(shape, rows, image_rows)
         if np.array_equal(images, before):
             break
-        image_rows = _rows_from(shape, images)
-    points = shape.samples[:count]
+        image_rows = shape.solver.distances(images) / shape.scale
+    points = shape.samples.vertices[:count]
     change = rows[:, points] - image_rows[:, images]
     sides = _sides(shape, rows - image_rows)
     whole_sides = shape.surface.spread(sides * shape.scale, np.nan)
@@ -262,13 +262,8 @@ def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
         axis_points=_zero_crossings(shape.original, whole_sides, reflection=candidate.orientation < 0),
         alternatives=(),
         proven=candidate.coarse.proven,
-        notes=_notes(shape),
+        notes=shape.surface.cleaned.notes,
     )
-
-
-def _rows_from(shape: Shape, vertices: Ints) -> Floats:
-    """Distances from some vertices to all, in sqrt(area), (k, n)."""
-    return np.concatenate([block for _, block in shape.solver.distances_in_blocks(vertices)]) / shape.scale
 
 
 def _images_at_vertices(shape: Shape, rows: Floats, image_rows: Floats) -> Ints:
@@ -277,10 +272,10 @@ def _images_at_vertices(shape: Shape, rows: Floats, image_rows: Floats) -> Ints:
     `rows` and `image_rows` (k, n) are the distances from the points, which are the first samples, and from their
     images.
     """
-    points = shape.samples[: len(rows)]
+    points = shape.samples.vertices[: len(rows)]
     # The map takes points to images and images back to points: both kinds of distances have to be kept.
     here = np.concatenate([rows[:, points], image_rows[:, points]])
-    reach = float(shape.sample_rows.min(axis=0).max())  # no vertex is farther than this from the samples
+    reach = float(shape.samples.rows.min(axis=0).max())  # no vertex is farther than this from the samples
     found = np.empty(len(points), np.int64)
     for i, row in enumerate(image_rows):
         near = np.flatnonzero(row <= reach)
@@ -315,8 +310,3 @@ def _zero_crossings(mesh: TriangleMesh, values: Floats, *, reflection: bool) -> 
     weights[rows, corner] = b / (b - a)
     weights[rows, (corner + 1) % 3] = a / (a - b)
     return SurfacePoints.from_barycentric(mesh, triangles, weights)
-
-
-def _notes(shape: Shape) -> tuple[str, ...]:
-    """Say what was done about faults of the surface, and what of it was left out."""
-    return shape.surface.cleaned.notes

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ..dense.densify import DenseMatch, densify_steps
+from ..dense.densify import densify_steps
+from ..dense.quality import DenseMatch
 from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.background import can_go_beside

@@ -138,5 +138,5 @@ def interpolation_matrix(barycentric: Floats, corners: Ints, count: int) -> csr_
     count : int
         How many vertices the mesh has.
     """
-    rows = np.repeat(np.arange(len(corners)), 3)
-    return csr_array((barycentric.ravel(), (rows, corners.ravel())), shape=(len(corners), count))
+    starts = np.arange(0, corners.size + 1, 3)
+    return csr_array((barycentric.ravel(), corners.ravel(), starts), shape=(len(corners), count))

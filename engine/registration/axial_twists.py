@@ -234,7 +234,7 @@ def _turned_back(
 def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
     """Find limbs and the rings around them, as far as they are no wider than limbs are; no vertex is in two of them."""
     tips = spread_extremities(shape, _LIMBS, _APART, filled=False)
-    rows = shape.sample_rows[tips].astype(np.float64)
+    rows = shape.samples.rows[tips].astype(np.float64)
     everything = np.arange(len(source.vertices))
     found = []
     for row in rows:

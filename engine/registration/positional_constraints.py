@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,10 +69,6 @@ class Ties:
         vertices, points = here.main, source.points
         at = SurfacePoints.from_barycentric(source.mesh, points.triangles[vertices], points.barycentric[vertices])
         return cls.at(source.mesh, at, there.in_unit_size(target.points.positions[partners.main]))
-
-    def response(self, solve: Callable[[Floats], Floats]) -> Floats:
-        """How the surface moves when each tied point is pulled by one unit of force, (n, k)."""
-        return solve(self.forces)
 
     def held(self, positions: Floats, response: Floats) -> Floats:
         """Move free positions (n, 3) so that the ties hold, by the surface's own response."""

@@ -11,7 +11,6 @@ from ..mesh.connectivity.adjacency import vertex_adjacency
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import TINY, Bools, Floats, Ints, group_sums, unit_vectors
-from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
 from ..shapes.proxy import Proxy
 from .torn_patches import NearVertices, with_patches_mended
@@ -75,11 +74,6 @@ def lift_steps(
     SurfacePoints
         For each vertex of the source, (n,), its point on the target.
 
-    Raises
-    ------
-    MatchError
-        If the arrays do not belong to the proxies.
-
     Notes
     -----
     Every proxy vertex moves its surroundings by the rotation and scale that fit the motion of its neighbours best.
@@ -96,9 +90,6 @@ def lift_steps(
     .. [1] R. Sumner, J. Schmid, M. Pauly, "Embedded deformation for shape manipulation", ACM Transactions on Graphics
        26, 2007.
     """
-    _check(source, source_proxy, registered)
-    if target_proxy is not None and proxy_map is not None:
-        _check_map(source_proxy, target, target_proxy, proxy_map)
     yield Progress(0, _LABEL)
     lift = _Lift(source, source_proxy, target, ClosestPoints(target) if search is None else search)
     if target_proxy is not None and proxy_map is not None:
@@ -258,35 +249,3 @@ def _motion(proxy: Proxy, registered: Floats, average: csr_array) -> Floats:
         for _ in range(_FIELD_ROUNDS):
             motion = average @ motion
     return motion.reshape(k, 3, 4)
-
-
-def _check(source: TriangleMesh, source_proxy: Proxy, registered: Floats) -> None:
-    """Raise an error if the registered positions are not those of the proxy."""
-    k = source_proxy.mesh.vertex_count
-    _check_proxy("source", source, source_proxy)
-    if registered.shape != (k, 3):
-        raise MatchError(
-            f"A position is needed for each of the {k} vertices of the source's proxy, of the shape ({k}, 3), but they "
-            f"have {registered.shape}."
-        )
-    if not np.isfinite(registered).all():
-        raise MatchError("Some registered positions are not finite numbers. Register the proxy again.")
-
-
-def _check_map(source_proxy: Proxy, target: TriangleMesh, target_proxy: Proxy, proxy_map: Ints) -> None:
-    """Raise an error if a map does not lead from proxy to proxy."""
-    k, size = source_proxy.mesh.vertex_count, target_proxy.mesh.vertex_count
-    _check_proxy("target", target, target_proxy)
-    if proxy_map.shape != (k,) or proxy_map.min() < 0 or proxy_map.max() >= size:
-        raise MatchError(
-            f"For each of the {k} vertices of the source's proxy a vertex of the target's is needed, 0 to {size - 1}."
-        )
-
-
-def _check_proxy(name: str, mesh: TriangleMesh, proxy: Proxy) -> None:
-    """Raise an error if a proxy is not that of a mesh."""
-    if len(proxy.points) != mesh.vertex_count:
-        raise MatchError(
-            f"The {name}'s proxy stands for a mesh of {len(proxy.points)} vertices, but the {name} has "
-            f"{mesh.vertex_count}. Make the proxy from this mesh."
-        )

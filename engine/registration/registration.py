@@ -458,7 +458,7 @@ def _solved(
     equations = source.equations
     solve = equations.solver(own, on_source, theirs, stiffness=elastic.stiffness)
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
-    response = None if ties is None else ties.response(solve)
+    response = None if ties is None else solve(ties.forces)
 
     def at_rest(rotations: Floats) -> Floats:
         """Positions of least energy for given rotations."""

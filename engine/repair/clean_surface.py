@@ -31,15 +31,12 @@ class SurfacePart:
         For each triangle, the one of the original mesh; -1 in a filled hole.
     turned : (m,) array of bool
         Triangles whose last two corners are exchanged against the original.
-    inverted : bool
-        Whether the part as a whole was turned inside out, because its normals pointed inwards.
     """
 
     mesh: TriangleMesh
     original_vertices: Ints
     original_triangles: Ints
     turned: Bools
-    inverted: bool
 
     def to_original(self, triangles: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """Name points of the part as points of the original mesh.
@@ -188,11 +185,6 @@ class CleanSurface:
         """The main part: manifold, oriented, every vertex with a triangle."""
         return self.pieces[0].mesh
 
-    @property
-    def parts(self) -> tuple[TriangleMesh, ...]:
-        """The other parts, in decreasing area."""
-        return tuple(piece.mesh for piece in self.pieces[1:])
-
     @cached_property
     def of_body(self) -> Bools:
         """Which pieces are the body, (p,): the main one and limbs, see `body_pieces`."""
@@ -202,11 +194,6 @@ class CleanSurface:
     def limbs(self) -> Bools:
         """Which vertices of the original mesh, (n,), are on pieces that the main one lacks as a body."""
         return self.of_body[self.vertex_parts] & (self.vertex_parts > 0)
-
-    @property
-    def inverted(self) -> bool:
-        """Whether the normals of the main part pointed inwards."""
-        return self.pieces[0].inverted
 
     def images_of(self, vertices: Ints, found: SurfacePoints, mesh: TriangleMesh) -> tuple[Ints, Floats]:
         """Say where a map of the main part takes vertices of the original mesh.

@@ -274,13 +274,11 @@ def _in_parts(mesh: TriangleMesh, work: _Work, inward: Bools, representatives: I
         unchanged = len(vertices) == mesh.vertex_count and np.array_equal(triangles, mesh.triangles)
         unchanged = unchanged and np.array_equal(vertices, mesh.vertices)
         part_mesh = mesh if unchanged else TriangleMesh(vertices, triangles)
-        pieces.append(
-            SurfacePart(part_mesh, original_vertices, original_triangles, turned, inverted=bool(inward[component]))
-        )
+        pieces.append(SurfacePart(part_mesh, original_vertices, original_triangles, turned))
 
     images = _images(vertex_parts, work.copied, representatives)
     parts_of_vertices = vertex_parts[images]
-    counts.inverted = pieces[0].inverted
+    counts.inverted = bool(inward[order[0]])
     counts.parts = len(areas) - 1
     notes = cleaning_notes(name, counts)
     return CleanSurface(mesh, tuple(pieces), parts_of_vertices, local[images], notes, counts)

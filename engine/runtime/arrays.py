@@ -38,6 +38,14 @@ def group_means(groups: Ints, values: Floats, count: int) -> Floats:
     return group_sums(groups, values, count) / np.bincount(groups, minlength=count)[:, None]
 
 
+def group_extents(groups: Ints, points: Floats, count: int) -> Floats:
+    """Measure the longest side of the bounding box of each group's points, (k, 3), with groups (k,): (count,)."""
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(low, groups, points)
+    np.maximum.at(high, groups, points)
+    return (high - low).max(axis=1)
+
+
 def ranges(starts: Ints, counts: Ints) -> Ints:
     """List so many numbers, (k,), from each of some starts (k,) on, one range after the other."""
     before = np.cumsum(counts) - counts
@@ -48,6 +56,12 @@ def unit_vectors(vectors: Floats, least: float = 0.0) -> Floats:
     """Scale vectors (n, d) to length one; those that are no longer than `least` become zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > least)
+
+
+def shares_along(points: Floats, starts: Floats, ways: Floats) -> Floats:
+    """Tell how far along segments (..., d) their nearest places to points lie: from 0 at the start to 1, (...)."""
+    squares = np.maximum(np.square(ways).sum(axis=-1), TINY)
+    return (((points - starts) * ways).sum(axis=-1) / squares).clip(0, 1)
 
 
 def squared_differences(first: Floats, second: Floats) -> Floats:

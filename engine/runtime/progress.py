@@ -110,6 +110,11 @@ def within(steps: Steps[Result], start: float, end: float, label: str | None = N
     return told(steps, rescaled)
 
 
+def part_of(number: int, count: int, start: float = 0.0, end: float = 1.0) -> tuple[float, float]:
+    """Tell where one of some equal parts of a computation begins and ends, for `within`."""
+    return start + (end - start) * number / count, start + (end - start) * (number + 1) / count
+
+
 def told(steps: Steps[Result], tell: Callable[[Progress], Progress]) -> Steps[Result]:
     """Run a computation, and tell its progress in another way; what is told is called at each step."""
     try:
@@ -128,5 +133,5 @@ def in_turn(parts: Iterable[Steps[Result]]) -> Steps[list[Result]]:
     parts = list(parts)
     results = []
     for number, steps in enumerate(parts):
-        results.append((yield from within(steps, number / len(parts), (number + 1) / len(parts))))
+        results.append((yield from within(steps, *part_of(number, len(parts)))))
     return results

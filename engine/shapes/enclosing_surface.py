@@ -307,7 +307,6 @@ class _Body:
             own,
             self.triangles[kept][here.triangles][mesh.triangles[:, 0]],
             np.zeros(mesh.triangle_count, bool),
-            inverted=False,
             place_triangles=places.triangles,
             place_barycentric=places.barycentric,
             shown=shown,

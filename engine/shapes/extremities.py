@@ -32,7 +32,7 @@ def limb_tips(shape: Shape) -> Ints:
     (k,) array of int
         Numbers of samples, those first whose mean distance from the rest is largest.
     """
-    distances, means = shape.sample_distances, mean_distances(shape)
+    distances, means = shape.samples.distances, mean_distances(shape)
     largest = np.where(distances < _REACH, means, -np.inf).max(axis=1)
     tips = np.flatnonzero(means >= largest)
     return tips[np.argsort(-means[tips], kind="stable")][:_MOST_TIPS]
@@ -57,7 +57,7 @@ def spread_extremities(shape: Shape, count: int, apart: float, *, filled: bool =
     (k,) array of int
         Numbers of samples, k <= count, the farthest from the rest first, then those that fill up.
     """
-    distances = shape.sample_distances
+    distances = shape.samples.distances
     chosen: list[int] = []
     for places, least in ((limb_tips(shape), apart), (np.arange(len(distances) if filled else 0), _FILLED)):
         far = (distances > least).item
@@ -67,5 +67,5 @@ def spread_extremities(shape: Shape, count: int, apart: float, *, filled: bool =
 
 def mean_distances(shape: Shape) -> Floats:
     """Mean distance of each sample from the whole surface, (S,)."""
-    means: Floats = shape.sample_distances @ shape.cell_areas
-    return means / shape.cell_areas.sum()
+    means: Floats = shape.samples.distances @ shape.samples.cell_areas
+    return means / shape.samples.cell_areas.sum()

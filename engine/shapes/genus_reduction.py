@@ -19,7 +19,7 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.clean_surface import SurfacePart
 from ..repair.hole_filling import fill_holes
 from ..runtime.arrays import TINY, Ints, numbered
-from ..runtime.progress import Steps, within
+from ..runtime.progress import Steps, part_of, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
 
@@ -74,8 +74,7 @@ def evened_steps(x: Shape, y: Shape) -> Steps[tuple[Shape, Shape]]:
         return pairs[0]
     apart = []
     for number, pair in enumerate(pairs):
-        begin, end = (0.8 + 0.2 * (number + i) / len(pairs) for i in (0, 1))
-        apart.append((yield from within(_spectra_apart_steps(*pair), begin, end)))
+        apart.append((yield from within(_spectra_apart_steps(*pair), *part_of(number, len(pairs), 0.8))))
     best = int(np.argmin(apart))
     return pairs[best if apart[best] < _NEARER * apart[0] else 0]
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.geodesics import GeodesicSolver
@@ -130,7 +129,7 @@ class Shape:
     ) -> None:
         """Join operators and samples: those that a sampler takes, or fixed ones."""
         self._operators, self._samples = operators, samples
-        self._sampler = sampler or SurfaceSampler(operators.mesh, operators.solver)
+        self.sampler = sampler or SurfaceSampler(operators.mesh, operators.solver)
         self._views: dict[tuple[int, int | None], Shape] = {}
         self._lean: tuple[tuple[object, ...], Shape] | None = None
         self.mesh, self.solver = operators.mesh, operators.solver
@@ -140,49 +139,9 @@ class Shape:
             self.original, self.vertices = self.surface.original, self.surface.vertices
 
     @property
-    def taken(self) -> SurfaceSamples:
-        """The samples, and all that is known of them."""
-        return self._sampler.taken if self._samples is None else self._samples
-
-    @property
-    def sample_count(self) -> int:
-        """Number of samples with distances so far, S."""
-        return len(self.taken)
-
-    @property
-    def measured_count(self) -> int:
-        """Number of samples, the first, whose distances are by fast marching, and not estimated."""
-        return self.taken.measured
-
-    @property
-    def samples(self) -> Ints:
-        """Vertices of the samples, farthest points first, (S,)."""
-        return self.taken.vertices
-
-    @property
-    def sample_rows(self) -> NDArray[np.float32]:
-        """Distance from each sample to each vertex, (S, n), estimated from the samples that are not measured."""
-        return self.taken.rows
-
-    @property
-    def cell_areas(self) -> Floats:
-        """Area of each sample's Voronoi cell as a part of the whole, (S,)."""
-        return self.taken.cell_areas
-
-    @property
-    def sample_distances(self) -> Floats:
-        """Distances between the samples, (S, S), symmetric with a zero diagonal."""
-        return self.taken.distances
-
-    @property
-    def directions(self) -> Floats:
-        """Unit direction at each sample in which the distance from each sample grows, (S at, S from, 2)."""
-        return self.taken.directions
-
-    @property
-    def curvatures(self) -> Floats:
-        """Mean curvature at each sample, smoothed at two scales, (2, S)."""
-        return self.taken.curvatures
+    def samples(self) -> SurfaceSamples:
+        """The samples that distances are known of, and all that is known of them."""
+        return self.sampler.taken if self._samples is None else self._samples
 
     def sample_steps(self, count: int, measured: int | None = None) -> Steps[None]:
         """Take samples until there are `count` (at most all vertices), with their distances to all vertices.
@@ -196,24 +155,19 @@ class Shape:
             others paths are followed, which takes a fraction of the time, for `limited` to estimate distances by.
         """
         if self._samples is None:
-            yield from self._sampler.steps(count, measured)
+            yield from self.sampler.steps(count, measured)
         elif min(count, self.mesh.vertex_count) > len(self._samples):
-            yield from self._sampler.steps(count)
-            self._samples = self._sampler.taken.first(count)
+            yield from self.sampler.steps(count)
+            self._samples = self.sampler.taken.first(count)
 
     def lacks(self, count: int, measured: int | None = None) -> bool:
         """Say whether `sample_steps` would have anything to do."""
         fixed = self._samples is not None and min(count, self.mesh.vertex_count) <= len(self._samples)
-        return not fixed and self._sampler.lacks(count, measured)
-
-    @property
-    def sampler(self) -> SurfaceSampler:
-        """What takes the samples: it may do so in another process, see `take_samples_of`."""
-        return self._sampler
+        return not fixed and self.sampler.lacks(count, measured)
 
     def take_samples_of(self, sampler: SurfaceSampler) -> None:
         """Go on from where the sampler of the same shape has come elsewhere."""
-        self._sampler = sampler if sampler is self._sampler else sampler.on(self.mesh, self.solver)
+        self.sampler = sampler if sampler is self.sampler else sampler.on(self.mesh, self.solver)
 
     def limited(self, count: int, measured: int | None = None) -> Shape:
         """Return the shape with only the first `count` of its samples, sharing all that was computed.
@@ -230,12 +184,12 @@ class Shape:
         count = min(count, self.mesh.vertex_count)
         if measured is not None and measured >= count:
             measured = None
-        if measured is None and count >= self.sample_count:
+        if measured is None and count >= len(self.samples):
             return self
         view = self._views.get((count, measured))
         if view is None:
-            samples = self.taken.first(count) if measured is None else self._sampler.estimated(count, measured)
-            view = self._views[count, measured] = self._made(self._operators, self._sampler, samples)
+            samples = self.samples.first(count) if measured is None else self.sampler.estimated(count, measured)
+            view = self._views[count, measured] = self._made(self._operators, self.sampler, samples)
         return view
 
     def starting_with(self, vertices: Ints) -> Shape:
@@ -249,7 +203,7 @@ class Shape:
         """Return the shape as it is seen in a mirror, with all that does not depend on the side it is seen from."""
         surface = self.surface.reflected()
         samples = None if self._samples is None else self._samples.on(surface.mesh)
-        return self._made(self._operators.of(surface), self._sampler.on(surface.mesh, self.solver), samples)
+        return self._made(self._operators.of(surface), self.sampler.on(surface.mesh, self.solver), samples)
 
     @property
     def is_coarse(self) -> bool:
@@ -270,18 +224,18 @@ class Shape:
 
     def sampled_like(self, coarser: Shape) -> Shape:
         """Return the shape with just the samples of the one that it is finer than; distances are interpolated."""
-        rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.sample_rows.T).T)
-        samples = SurfaceSamples(self.mesh, coarser.samples, rows, coarser.measured_count)
-        return self._made(self._operators, self._sampler, samples)
+        rows = np.ascontiguousarray(self.surface.proxy.on_finer(coarser.samples.rows.T).T)
+        samples = SurfaceSamples(self.mesh, coarser.samples.vertices, rows, coarser.samples.measured)
+        return self._made(self._operators, self.sampler, samples)
 
     def lean(self) -> Shape:
         """Return the shape with the samples and the spectrum it has, which do not change any more.
 
         It is without the mesh that its surface stands for, which may be large: that is what other processes are sent.
         """
-        state = self.mesh, self.taken, self._operators.spectrum
+        state = self.mesh, self.samples, self._operators.spectrum
         if self._lean is None or any(a is not b for a, b in zip(state, self._lean[0], strict=True)):
-            shape = self._made(self._operators.of(None), samples=self.taken)
+            shape = self._made(self._operators.of(None), samples=self.samples)
             shape.is_sent_once = True
             self._lean = shape._lean = state, shape  # noqa: SLF001
         return self._lean[1]

@@ -91,7 +91,7 @@ class SurfaceDistances:
         """Compute the rows that distances from some points need, in short steps; see `prepare`."""
         needed = np.unique(points.corners[points.barycentric > 0])
         shape = self._shape
-        missing = np.setdiff1d(needed, [*self._rows, *shape.samples[: shape.measured_count]])
+        missing = np.setdiff1d(needed, [*self._rows, *shape.samples.vertices[: shape.samples.measured]])
         if len(self._rows) + len(missing) > self._capacity:
             wanted = set(needed.tolist())
             self._rows = {vertex: row for vertex, row in self._rows.items() if vertex in wanted}
@@ -163,8 +163,8 @@ class SurfaceDistances:
 
     def _gather(self, sources: Ints, vertices: Ints) -> Floats:
         """Distances from prepared vertices (s,) to vertices (v,), (s, v)."""
-        measured = slice(self._shape.measured_count)
-        number = dict(zip(self._shape.samples[measured].tolist(), self._shape.sample_rows[measured], strict=True))
+        samples = self._shape.samples.first(self._shape.samples.measured)
+        number = dict(zip(samples.vertices.tolist(), samples.rows, strict=True))
         block = np.empty((len(sources), len(vertices)))
         for i, source in enumerate(sources.tolist()):
             row = self._rows.get(source)

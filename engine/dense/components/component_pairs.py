@@ -10,11 +10,11 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
 
+from ...geometry.procrustes import least_turns
 from ...mesh.connectivity.adjacency import edge_graph
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
 from .similarity_field import Surroundings
 
 _LARGEST_OFFSET = 1.5
@@ -255,11 +255,5 @@ def radius_of(part: TriangleMesh) -> float:
 
 def _swung(rotation: Floats, arm: Floats, there: Floats) -> Floats:
     """Turn an arm (3,) as a rotation does, and then the shortest way to the direction where it is there (3,)."""
-    turned = rotation @ arm
-    lengths = np.linalg.norm(turned) * np.linalg.norm(there)
-    axis = np.cross(turned, there)
-    sine = np.linalg.norm(axis)
-    if not sine > 0:
-        return rotation
-    angle = np.arctan2(sine / lengths, turned @ there / lengths)
-    return Rotation.from_rotvec(angle * axis / sine).as_matrix() @ rotation
+    start, end = unit_vectors(np.stack([rotation @ arm, there]))
+    return least_turns(start[None], end[None])[0] @ rotation

@@ -4,44 +4,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, ClassVar, Protocol, TypeVar
 
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Ints
-from ..quality import MatchQuality, of_covered_part
-
-
-class _HasMaps(Protocol):
-    """A dataclass with the maps of a match, such as `DenseMatch`."""
-
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-    @property
-    def source_to_target(self) -> SurfaceMap | None:
-        """The map from the source."""
-
-    @property
-    def target_to_source(self) -> SurfaceMap | None:
-        """The map from the target."""
-
-    @property
-    def quality(self) -> MatchQuality | None:
-        """How far they can be trusted."""
-
-
-Maps = TypeVar("Maps", bound=_HasMaps)
+from ..quality import DenseMatch, of_covered_part
 
 _LEAST_LEFT = 0.1
 """Part of a surface without a partner from which on it is left out: less does little harm, and may be a mistake."""
 
 
-def with_piece_only(maps: Maps, covered: Bools, share: float, *, of_source: bool) -> Maps:
+def with_piece_only(maps: DenseMatch, covered: Bools, share: float, *, of_source: bool) -> DenseMatch:
     """Say of maps what was left out when they were made.
 
     Parameters
     ----------
-    maps : DenseMatch or MatchResult
+    maps : DenseMatch
         Maps between all vertices.
     covered : (n,) array of bool
         Which vertices of the original source, or of the target, took part.
@@ -52,18 +30,15 @@ def with_piece_only(maps: Maps, covered: Bools, share: float, *, of_source: bool
 
     Returns
     -------
-    DenseMatch or MatchResult
+    DenseMatch
         The maps without confidence at all other vertices, which count as not covered.
     """
-    there, back, quality = maps.source_to_target, maps.target_to_source, maps.quality
-    if there is None or back is None or quality is None:
-        return maps
-    quality = of_covered_part(quality, share, of_source=of_source)
+    there, back = maps.source_to_target, maps.target_to_source
     if of_source:
         there = replace(there, has_partner=there.has_partner & covered)
     else:
         back = replace(back, has_partner=back.has_partner & covered)
-    return replace(maps, source_to_target=there, target_to_source=back, quality=quality)
+    return DenseMatch(there, back, of_covered_part(maps.quality, share, of_source=of_source))
 
 
 def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: Ints) -> Bools | None:
@@ -93,8 +68,8 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: Ints) -> Bool
 
 
 def with_pieces_only(
-    maps: Maps, meshes: tuple[TriangleMesh, TriangleMesh], pieces: tuple[Bools | None, Bools | None]
-) -> Maps:
+    maps: DenseMatch, meshes: tuple[TriangleMesh, TriangleMesh], pieces: tuple[Bools | None, Bools | None]
+) -> DenseMatch:
     """Say of maps what was left out of either mesh, see `with_piece_only`; of None nothing was."""
     for mesh, covered, of_source in zip(meshes, pieces, (True, False), strict=True):
         if covered is not None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import spatial_order
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
@@ -165,10 +166,7 @@ class Surroundings:
         )
         moments = np.einsum("kn,kni,knj->kij", weights, y, x)
         moments += np.einsum("kn,kni,knj->kij", weights, places.image_normals[near], places.normals[near])
-        left, _, right = np.linalg.svd(moments)
-        sign = np.ones((len(points), 3))
-        sign[:, 2] = self._handedness * np.sign(np.linalg.det(left @ right))
-        result.rotations[part] = (left * sign[:, None]) @ right
+        result.rotations[part] = self._handedness * nearest_rotations(self._handedness * moments)
         result.scales[part], result.sources[part], result.targets[part] = scale, centre, target
 
 

@@ -64,5 +64,5 @@ def flat_steps(
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
     """
     if candidates is None:
-        candidates = flat_candidates(points, pair.target.sample_count)
+        candidates = flat_candidates(points, len(pair.target.samples))
     return (yield from distinct_matchings_steps(pair.problem(points, candidates), count, radius, node_limit))

@@ -12,8 +12,7 @@ import numpy as np
 
 from ...mesh.surface_points import SurfacePoints
 from ...runtime.arrays import Floats, Ints
-from ...runtime.errors import MatchError
-from ...runtime.progress import Progress, Steps, within
+from ...runtime.progress import Progress, Steps, part_of, within
 from ...shapes.shape import Shape
 from ...shapes.surface_distances import PointDistances, SurfaceDistances, symmetric_roots
 from ..hierarchy import level_sizes
@@ -118,7 +117,7 @@ def gmds_steps(
     Raises
     ------
     MatchError
-        If a surface has too few vertices, or the start does not fit.
+        If the start does not lie on the part of the target that is matched.
 
     Notes
     -----
@@ -133,25 +132,25 @@ def gmds_steps(
     .. [1] A. M. Bronstein, M. M. Bronstein, R. Kimmel, "Generalized multidimensional scaling: a framework for
        isometry-invariant partial surface matching", PNAS 103 (2006).
     """
-    sizes = _level_sizes(source, target, points, start)
+    sizes = level_sizes(_COARSE if start is None else len(start), points)
     yield from within(source.sample_steps(points), 0.0, 0.2)
     if distances is None:
         distances = SurfaceDistances(target)
     if wanted is None:
-        wanted = source.sample_distances[:points, :points]
+        wanted = source.samples.distances[:points, :points]
     if start is None:
         yield from within(target.sample_steps(_START_SAMPLES), 0.2, 0.4)
         yield Progress(0.4, "Placing the first points")
         # Only the first samples, however many another match has taken: the result must not depend on it.
-        places = SurfacePoints.at_vertices(target.mesh, target.samples[:_START_SAMPLES])
+        places = SurfacePoints.at_vertices(target.mesh, target.samples.vertices[:_START_SAMPLES])
         yield from within(distances.prepare_steps(places), 0.4, 0.4)
         best = _own_start(symmetric_roots(distances.squares_between(places)), wanted[: sizes[0], : sizes[0]])
-        placed = SurfacePoints.at_vertices(target.mesh, target.samples[best])
+        placed = SurfacePoints.at_vertices(target.mesh, target.samples.vertices[best])
     else:
         placed = target.surface.on_mesh(start)
     done = []
     for number, size in enumerate(sizes):
-        begin, end = (0.4 + 0.6 * part / len(sizes) for part in (number, number + 1))
+        begin, end = part_of(number, len(sizes), 0.4)
         placed = yield from within(_inserted_steps(distances, placed, wanted[:size]), begin, begin)
         steps = settle_steps(distances, placed, Stress(wanted[:size, :size]))
         settled = yield from within(steps, begin, end, f"Moving {size} points over the surface")
@@ -160,23 +159,12 @@ def gmds_steps(
             GmdsLevel(size, settled.sweeps, settled.start, settled.stress, target.surface.on_original(settled.points))
         )
     return GmdsResult(
-        SurfacePoints.at_vertices(source.original, source.vertices[source.samples[:points]]),
+        SurfacePoints.at_vertices(source.original, source.vertices[source.samples.vertices[:points]]),
         target.surface.on_original(settled.points),
         float(np.square(settled.distances - wanted).sum()),
         settled.distances,
         tuple(done),
     )
-
-
-def _level_sizes(source: Shape, target: Shape, points: int, start: SurfacePoints | None) -> list[int]:
-    """Numbers of points of the levels, which double."""
-    for shape, name in ((source, "source"), (target, "target")):
-        if shape.mesh.vertex_count < points:
-            raise MatchError(
-                f"{points} points cannot be matched: the {name} has only {shape.mesh.vertex_count} vertices. "
-                "Use fewer points or subdivide the mesh."
-            )
-    return level_sizes(_COARSE if start is None else len(start), points)
 
 
 def _own_start(between: Floats, wanted: Floats) -> Ints:

@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...runtime.arrays import Ints
 from ...runtime.errors import MatchError
-from ...runtime.progress import Progress, Steps, told, within
+from ...runtime.progress import Progress, Steps, part_of, told, within
 from ..problem import MatchingProblem
 from .dual_ascent import PairModel, dual_ascent_steps, pair_model
 from .enumeration import Enumeration
@@ -88,7 +88,7 @@ def branch_and_bound_steps(
     Raises
     ------
     MatchError
-        If the problem is too large or not finite, or allows no matching at all.
+        If the problem is too large, or allows no matching at all.
 
     Notes
     -----
@@ -100,7 +100,12 @@ def branch_and_bound_steps(
     A proof holds up to `incumbent.TOLERANCE`, relative to the cost.  Memory peaks at about four times the table of all
     pairs of pairs, (n m)^2 numbers.
     """
-    _check(problem)
+    n, m = problem.size
+    if n * m > _LARGEST:
+        raise MatchError(
+            f"{n} points and {m} candidates are too many for an exact search ({n * m} pairs, at most {_LARGEST}): "
+            "use fewer coarse points or candidates."
+        )
     feasible = _feasible_matchings(problem, exclusions)
     if feasible is None:
         return None
@@ -153,34 +158,13 @@ def distinct_matchings_steps(
     exclusions: list[Exclusion] = []
     for i in range(count):
         search = branch_and_bound_steps(problem, node_limit=node_limit, exclusions=exclusions)
-        matching = yield from within(search, i / count, (i + 1) / count)
+        matching = yield from within(search, *part_of(i, count))
         if matching is None:
             break
         found.append(matching)
         moved = problem.target_distances[matching.assignment] > radius
         exclusions.append(Exclusion(moved, (problem.size[0] + 1) // 2))
     return found
-
-
-def _check(problem: MatchingProblem) -> None:
-    n, m = problem.size
-    if n * m > _LARGEST:
-        raise MatchError(
-            f"{n} points and {m} candidates are too many for an exact search ({n * m} pairs, at most {_LARGEST}): "
-            "use fewer coarse points or candidates."
-        )
-    for distances in (problem.source_distances, problem.target_distances):
-        if not np.isfinite(distances).all():
-            raise MatchError("Some distances are not finite: all points must lie on one connected part of the surface.")
-        rounding = 1e-9 * distances.max(initial=0.0)
-        if (
-            not np.allclose(distances, distances.T, rtol=0, atol=rounding)
-            or np.diagonal(distances).any()
-            or (distances < 0).any()
-        ):
-            raise MatchError("The distances between the points are negative, not symmetric, or not zero to themselves.")
-    if np.isnan(problem.linear).any() or np.isneginf(problem.linear).any():
-        raise MatchError("Some descriptor differences are not numbers.")
 
 
 def _feasible_matchings(problem: MatchingProblem, exclusions: Sequence[Exclusion]) -> list[Ints] | None:

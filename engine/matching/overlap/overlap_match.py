@@ -10,7 +10,7 @@ from scipy.special import expit
 
 from ...dense.components.component_maps import follow_steps
 from ...dense.missing_parts import round_trips
-from ...dense.quality import MatchQuality, overlap_sentence, trip_confidence
+from ...dense.quality import DenseMatch, MatchQuality, overlap_sentence, trip_confidence
 from ...geometry.sampling import FarthestPointSampler
 from ...hierarchical.sparse_result import CoarseMatch, Level
 from ...mesh.connectivity.adjacency import neighbour_means
@@ -19,7 +19,7 @@ from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.prolongation import lift_steps
 from ...runtime.arrays import TINY, Bools, Floats, Ints, marked
-from ...runtime.progress import Progress, Steps, within
+from ...runtime.progress import Progress, Steps, part_of, within
 from ...shapes.shape import Shape
 from ..result import MatchResult
 from ..shape_matching import MatchTask
@@ -76,17 +76,13 @@ class OverlapMatch:
         All of two surfaces that were cut off somewhere seldom corresponds.  A wrong map that says so leads across where
         one of them was cut, and strains them.
         """
-        there, back, quality = other.source_to_target, other.target_to_source, other.quality
-        if there is None or back is None or quality is None:
-            return other
+        dense = other.dense
+        there, back, quality = dense.source_to_target, dense.target_to_source, dense.quality
         trust = float(expit(self.search.score((there.positions[x.vertices], back.positions[y.vertices]))))
         sentence = quality.sentence if trust >= CLEAR else overlap_sentence(self.shares, credible=False)
-        return replace(
-            other,
-            source_to_target=replace(there, confidence=trust * there.confidence),
-            target_to_source=replace(back, confidence=trust * back.confidence),
-            quality=replace(quality, confidence=trust * quality.confidence, sentence=sentence),
-        )
+        there, back = (replace(each, confidence=trust * each.confidence) for each in (there, back))
+        quality = replace(quality, confidence=trust * quality.confidence, sentence=sentence)
+        return other.with_dense(DenseMatch(there, back, quality))
 
 
 def credibility(overlap: Overlap) -> float:
@@ -138,8 +134,7 @@ def _found_steps(x: Shape, y: Shape) -> Steps[Overlap | None]:
     scales = [1.0] if 1 / _SIZES < ratio < _SIZES else [ratio * scale for scale in _SCALES]
     best = None
     for number, scale in enumerate(scales):
-        begin, end = ((number + i) / len(scales) for i in (0, 1))
-        overlap = yield from within(overlap_steps(x.mesh, y.mesh, scale), begin, end)
+        overlap = yield from within(overlap_steps(x.mesh, y.mesh, scale), *part_of(number, len(scales)))
         if overlap is not None and (best is None or credibility(overlap) > credibility(best)):
             best = overlap
         if best is not None and credibility(best) >= CLEAR:
@@ -251,7 +246,8 @@ def _result(
     vertices = _spread(x, members, settings.points)
     own = x.vertices[vertices]
     images = SurfacePoints.from_barycentric(y.original, forward.triangles[own], forward.barycentric[own])
-    ends = y.surface.mesh_vertices(images.nearest_vertices) if _on_main_part(y, images) else overlap.images[0][vertices]
+    on_main = (y.surface.cleaned.vertex_parts[images.nearest_vertices] == 0).all()
+    ends = y.surface.mesh_vertices(images.nearest_vertices) if on_main else overlap.images[0][vertices]
     unit = max(x.scale, y.scale)
     differences = (x.solver.distances(vertices)[:, vertices] - y.solver.distances(ends)[:, ends]) / unit
     squares = np.where(np.isfinite(differences), np.square(differences), 0.0)
@@ -276,11 +272,6 @@ def _result(
         target_to_source=backward,
         quality=quality,
     )
-
-
-def _on_main_part(shape: Shape, points: SurfacePoints) -> bool:
-    """Say whether all points lie on the main part of a mesh."""
-    return bool((shape.surface.cleaned.vertex_parts[points.nearest_vertices] == 0).all())
 
 
 def _spread(shape: Shape, members: Ints, count: int) -> Ints:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, group_extents
 from ..triangle_mesh import TriangleMesh
 from .components import joined_components
 from .halfedges import group_half_edges
@@ -68,12 +68,10 @@ class WeldedParts:
         """The mesh of the welded vertices."""
         return TriangleMesh(self.positions, self.triangles)
 
-    @cached_property
+    @property
     def edges(self) -> Ints:
         """Each edge between welded vertices once, smaller index first, (e, 2)."""
-        tail, head = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
-        keys = np.unique(np.minimum(tail, head) * self.welded_count + np.maximum(tail, head))
-        return np.stack(np.divmod(keys, self.welded_count), axis=1)
+        return self.closed.edges
 
     @property
     def part_count(self) -> int:
@@ -86,6 +84,11 @@ class WeldedParts:
         return self.labels[self.welded]
 
     @cached_property
+    def first(self) -> Ints:
+        """The first vertex that each welded one is made of, (w,)."""
+        return np.unique(self.welded, return_index=True)[1]
+
+    @cached_property
     def positions(self) -> Floats:
         """Where the welded vertices are, (w, 3)."""
         return self.means @ self.mesh.vertices
@@ -93,11 +96,7 @@ class WeldedParts:
     @cached_property
     def sizes(self) -> Floats:
         """Length of the longest side of each part's bounding box, (p,)."""
-        positions, labels = self.mesh.vertices, self.vertex_labels
-        low, high = np.full((self.part_count, 3), np.inf), np.full((self.part_count, 3), -np.inf)
-        np.minimum.at(low, labels, positions)
-        np.maximum.at(high, labels, positions)
-        return (high - low).max(axis=1)
+        return group_extents(self.vertex_labels, self.mesh.vertices, self.part_count)
 
     @cached_property
     def small(self) -> Bools:

@@ -10,14 +10,14 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
-from ...geometry.procrustes import nearest_rotations
+from ...geometry.procrustes import least_turns, nearest_frame, nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
 from ...runtime.errors import RigError
 from ..rig.fitted_rig import FittedRig
-from ..rig.joint_placement import least_turns, place_joints, standing
+from ..rig.joint_placement import place_joints, standing
 from ..rig.skeleton import Skeleton
-from ..weights.skin_weights import carried, row_sums
+from ..weights.skin_weights import carried, row_shares, row_sums
 from .mirrored_bones import mirrored_bones
 from .segments import Segments
 from .tree_alignment import aligned
@@ -201,11 +201,9 @@ def _compared(
     """Compare all bones: source and target, both as they lie in the target, and what is on the other side of each."""
     sums = [row_sums(each) for each in (there, weights)]
     areas = np.where((sums[0] > 0) & (sums[1] > 0), target.vertex_areas, 0.0)
-    shares = [
-        csr_array(diags_array(1 / np.where(total > 0, total, 1)) @ each)
-        for each, total in zip((there, weights), sums, strict=True)
-    ]
-    subtrees = [csr_array(each @ _below(tree)) for each, tree in zip(shares, trees, strict=True)]
+    shares = [row_shares(each) for each in (there, weights)]
+    hanging = [csr_array(tree.hanging.T, dtype=float) for tree in trees]
+    subtrees = [csr_array(each @ ends) for each, ends in zip(shares, hanging, strict=True)]
     masses, totals = ([areas @ each for each in pair] for pair in (shares, subtrees))
     common = _common(shares[1], shares[0], areas)
     own = _even(_part(common, masses[1][:, None] + masses[0] - common), mirrors)
@@ -236,13 +234,6 @@ def _even(values: Floats, mirrors: tuple[Ints, Ints]) -> Floats:
     images = values[np.ix_(mirrors[1][other], mirrors[0][mine])]
     result[np.ix_(other, mine)] = (values[np.ix_(other, mine)] + images) / 2
     return result
-
-
-def _below(tree: Skeleton) -> csr_array:
-    """Say which bones (b,) hang on which, and each on itself: (b, b), a column for each that carries others."""
-    pairs = [(bone, above) for bone in range(len(tree)) for above in (bone, *tree.above(bone))]
-    rows, columns = np.array(pairs, np.int64).reshape(-1, 2).T
-    return csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(tree), len(tree)))
 
 
 def _part(some: Floats, of: Floats) -> Floats:
@@ -372,8 +363,7 @@ def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None) -> Flo
     known = cubes[np.linalg.det(cubes) > 0]
     if frames is not None and len(frames):
         known = np.concatenate([known, (np.asarray(frames)[:, None] @ known).reshape(-1, 3, 3)])
-    cosines = (np.einsum("kij,ij->k", known, middle) - 1) / 2
-    return known[cosines.argmax()] if cosines.max() > np.cos(_TRUNK_NEAR_AXES) else middle
+    return nearest_frame(middle, known, _TRUNK_NEAR_AXES)
 
 
 def _swung(rotations: Floats, sources: Ints, targets: Ints, source_bones: Skeleton, bones: Skeleton) -> Floats:

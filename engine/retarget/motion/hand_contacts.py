@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...runtime.arrays import TINY, Floats
+from ...runtime.arrays import Floats, shares_along
 
 _TOUCHING, _APART = 0.25, 0.45
 """Up to what distance from the middle of another part a hand touches it, and from where on it is free, in units of the
@@ -57,8 +57,7 @@ def hand_shifts(palms: Floats, target_palms: Floats, lines: Sequence[BodyLine], 
     distances, shifts = [], []
     for line in lines:
         start, along = line.source[:, 0], line.source[:, 1] - line.source[:, 0]
-        squares = np.maximum((along**2).sum(axis=1), TINY)
-        share = (((palms - start) * along).sum(axis=1) / squares).clip(0, 1)[:, None]
+        share = shares_along(palms, start, along)[:, None]
         away = palms - start - share * along
         place = line.target[:, 0] + share * (line.target[:, 1] - line.target[:, 0])
         distances.append(np.linalg.norm(away, axis=1) / arm)

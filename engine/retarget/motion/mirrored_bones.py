@@ -35,7 +35,7 @@ def mirrored_bones(tree: Skeleton) -> Ints:
         return none
     centered = tree.heads - tree.heads.mean(axis=0)
     extent = np.ptp(tree.heads, axis=0).max()
-    below = np.array([tree.heads[[bone, *tree.below(bone)]].mean(axis=0) for bone in range(len(tree))])
+    below = np.array([tree.heads[hanging].mean(axis=0) for hanging in tree.hanging])
     best = none
     for normal in np.concatenate([np.eye(3), np.linalg.svd(centered, full_matrices=False)[2]]):
         found = _images(np.stack([tree.heads, below]), normal, _NEAR * extent)

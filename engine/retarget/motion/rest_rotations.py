@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...geometry.procrustes import least_turns
 from ...runtime.arrays import Floats, Ints, unit_vectors
-from ..rig.joint_placement import least_turns
 from ..rig.skeleton import Skeleton
 from .bone_pairing import BonePairing
 from .limbs import Limb

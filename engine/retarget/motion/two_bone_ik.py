@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ...geometry.procrustes import least_turns
 from ...runtime.arrays import TINY, Bools, Floats, unit_vectors
-from ..rig.joint_placement import least_turns
 
 _STRAIGHT = 1e-3
 """Sine of the bend below which a limb counts as straight, so that its plane is not known."""

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, shares_along
 from ...runtime.errors import RigError
 from .fitted_rig import FittedRig
 from .skeleton import Skeleton
@@ -82,7 +82,7 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
     above = skeleton.nearest_above(moving)
     of_turns = np.zeros((count, count))
     anchors = np.full(count, -1)
-    below = sums_below(skeleton, masses)
+    below = skeleton.hanging @ masses
     for bone in range(count):
         if moving[bone]:
             of_turns[bone, bone] = 1
@@ -123,9 +123,7 @@ def moved_areas(rig: FittedRig, source: TriangleMesh) -> Floats:
 def nearest_on_bones(skeleton: Skeleton, point: Floats) -> Floats:
     """Find the point of each bone that is nearest to a point, (b, 3)."""
     axes = skeleton.tails - skeleton.heads
-    squares = np.maximum(np.square(axes).sum(axis=1), TINY)
-    along = ((point - skeleton.heads) * axes).sum(axis=1) / squares
-    return skeleton.heads + along.clip(0, 1)[:, None] * axes
+    return skeleton.heads + shares_along(point, skeleton.heads, axes)[:, None] * axes
 
 
 def joint_places(skeleton: Skeleton) -> Ints:
@@ -136,15 +134,6 @@ def joint_places(skeleton: Skeleton) -> Ints:
     # The two ends of a very short bone are not one place.
     pairs = pairs[pairs[:, 1] - pairs[:, 0] != len(skeleton)]
     return joined_components(len(joints), *pairs.T)
-
-
-def sums_below(skeleton: Skeleton, masses: Floats) -> Floats:
-    """Sum the masses of each bone and all that hang on it, (b,)."""
-    sums = masses.copy()
-    for bone in skeleton.order[::-1]:
-        if skeleton.parents[bone] >= 0:
-            sums[skeleton.parents[bone]] += sums[bone]
-    return sums
 
 
 def _joint_leader(skeleton: Skeleton, places: Ints, moving: Bools, bone: int) -> int:

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.procrustes import nearest_rotations
+from ...geometry.procrustes import across_axes, least_turns, nearest_frame, nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Floats, Ints, group_means, unit_vectors
 from ...runtime.errors import RigError
 from .fitted_rig import FittedRig
-from .joint_carriers import carriers_of, moved_areas, nearest_on_bones, sums_below
+from .joint_carriers import carriers_of, moved_areas, nearest_on_bones
 from .skeleton import Skeleton
 
 _SHORTEST = 0.02
 """Least length of a bone, in units of what its scale makes of its length in the source."""
 
-_NEAR_FRAME = np.radians(45.0)
+NEAR_FRAME = np.radians(45.0)
 """A body is turned by one of the frames if its own rotation is not further away."""
 
 _LEAST_REACH = 0.05
@@ -131,10 +131,7 @@ def standing(rig: FittedRig, source: TriangleMesh, frames: Floats | None = None)
     """
     masses = moved_areas(rig, source)
     middle = nearest_rotations(np.einsum("b,bij->ij", _median_shares(rig.rotations, masses), rig.rotations)[None])[0]
-    if frames is None or not len(frames):
-        return middle
-    cosines = (np.einsum("kij,ij->k", frames, middle) - 1) / 2
-    return frames[cosines.argmax()] if cosines.max() > np.cos(_NEAR_FRAME) else middle
+    return nearest_frame(middle, frames, NEAR_FRAME)
 
 
 def _aimed(skeleton: Skeleton, heads: Floats, turns: Floats, masses: Floats) -> Floats:
@@ -142,7 +139,7 @@ def _aimed(skeleton: Skeleton, heads: Floats, turns: Floats, masses: Floats) -> 
 
     Where a bone ends alone says nothing: importers set that, often a hair's breadth from its head and across the limb.
     """
-    below = sums_below(skeleton, masses)
+    below = skeleton.hanging @ masses
     before, after = np.zeros((2, len(skeleton), 3))
     for bone in np.flatnonzero(skeleton.parents >= 0):
         parent = skeleton.parents[bone]
@@ -222,28 +219,3 @@ def swung(rotations: Floats, before: Floats, after: Floats) -> Floats:
     """Turn rotations (b, 3, 3) by the least angle so that they take vectors (b, 3) to the direction of others."""
     start = unit_vectors(np.einsum("bij,bj->bi", rotations, before))
     return least_turns(start, unit_vectors(after)) @ rotations
-
-
-def least_turns(start: Floats, end: Floats) -> Floats:
-    """Find the rotations by the least angle from unit vectors (b, 3) to others, (b, 3, 3)."""
-    # Two reflections: first the start to its negative, then that to the end; the other way round near half a turn.
-    cosine = (start * end).sum(axis=1)
-    middle = unit_vectors(start + end)
-    opposite = cosine < -1 + 1e-9
-    if opposite.any():
-        least = np.abs(start[opposite]).argmin(axis=1)
-        middle[opposite] = across_axes(np.eye(3)[least], start[opposite])
-    first = np.eye(3) - 2 * start[:, :, None] * start[:, None]
-    second = np.eye(3) - 2 * middle[:, :, None] * middle[:, None]
-    return second @ first
-
-
-def across_axes(vectors: Floats, axes: Floats) -> Floats:
-    """Take what of the vectors (b, 3) lies across the axes, to length one; any direction across if nothing does."""
-    axes = unit_vectors(axes)
-    flat = vectors - (vectors * axes).sum(axis=1, keepdims=True) * axes
-    lost = np.linalg.norm(flat, axis=1) <= 1e-6 * np.maximum(np.linalg.norm(vectors, axis=1), TINY)
-    if lost.any():
-        other = np.eye(3)[np.abs(axes[lost]).argmin(axis=1)]
-        flat[lost] = other - (other * axes[lost]).sum(axis=1, keepdims=True) * axes[lost]
-    return unit_vectors(flat)

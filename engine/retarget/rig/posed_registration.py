@@ -131,7 +131,6 @@ class PosedRegistration:
         target, count = self._target, len(now)
         corners = self._body.triangles[matches.triangles]
         there = interpolation_matrix(matches.barycentric, corners, count)
-        first = _Planes(there, target.points, target.normals, target.shares)
         normals = self._search.moved(now).vertex_normals
         found = facing(self._target_search, now, normals, 1.0)
         if self._homes is not None:
@@ -142,8 +141,12 @@ class PosedRegistration:
         trust = np.clip(np.einsum("kd,kd->k", seen, normals), 0, 1) ** 2
         trust = trust / (1 + found.squared_distances / _REACH**2)
         trust = trust if seeking is None else trust * seeking
-        second = _Planes(csr_array(eye_array(count)), places, seen, _BACK * self._own_shares * trust)
-        return first.with_others(second)
+        return _Planes(
+            csr_array(vstack([there, eye_array(count)])),
+            np.concatenate([target.points, places]),
+            np.concatenate([target.normals, seen]),
+            np.concatenate([target.shares, _BACK * self._own_shares * trust]),
+        )
 
     def matched(self, positions: Floats) -> FoundPoints:
         """Match every vertex of the target, m, with the closest point of the body, which is at positions (n, 3)."""
@@ -165,15 +168,6 @@ class _Planes:
     points: Floats
     normals: Floats
     shares: Floats
-
-    def with_others(self, others: _Planes) -> _Planes:
-        """Return all together."""
-        return _Planes(
-            csr_array(vstack([self.evaluate, others.evaluate])),
-            np.concatenate([self.points, others.points]),
-            np.concatenate([self.normals, others.normals]),
-            np.concatenate([self.shares, others.shares]),
-        )
 
 
 class _SlidingSystem:

@@ -23,6 +23,7 @@ from ...runtime.progress import Progress, Steps, at_once, within
 from ...shapes.enclosing_surface import all_joined_steps
 from ...shapes.known_shapes import KnownShapes
 from ...shapes.proxy import MATCHED, Proxy, proxy_steps
+from ..weights.skin_weights import row_shares
 from .bone_fit import BoneTransforms, fit_bones, skinned
 from .digit_fit import with_digits
 from .digit_groups import stunted_digits, with_stiff_digits
@@ -148,9 +149,7 @@ def _checked(weights: csr_array, source: TriangleMesh, skeleton: Skeleton) -> cs
     weights = csr_array(weights, dtype=np.float64)
     if not (np.isfinite(weights.data).all() and (weights.data >= 0).all()):
         raise RigError("The weights of the bones should be finite numbers that are not negative.")
-    total = np.asarray(weights.sum(axis=1)).ravel()
-    scaled: csr_array = weights.multiply(1 / np.where(total > 0, total, 1)[:, None]).tocsr()
-    return csr_array(scaled)
+    return row_shares(weights)
 
 
 def _of_main(x: CleanSurface, weights: csr_array) -> csr_array:
@@ -323,9 +322,7 @@ def _proxy_weights(proxy: Proxy, weights: csr_array) -> csr_array:
     """Carry weights of a dense mesh to the proxy's vertices: the means of those that each stands for."""
     if proxy.is_identity:
         return weights
-    gathered = _evaluation(proxy.points, proxy.mesh).T @ weights
-    total = np.asarray(gathered.sum(axis=1)).ravel()
-    return csr_array(gathered.multiply(1 / np.where(total > 0, total, 1)[:, None]))
+    return row_shares(csr_array(_evaluation(proxy.points, proxy.mesh).T @ weights))
 
 
 def _maps_steps(pair: _Pair, positions: Floats, homes: Homes) -> Steps[tuple[SurfaceMap, SurfaceMap]]:

@@ -67,15 +67,6 @@ class Skeleton:
             layer = np.flatnonzero(np.isin(self.parents, layer))
         return np.array(found, np.int64)
 
-    @cached_property
-    def subtrees(self) -> Bools:
-        """Tell for each bone which bones hang on it, itself as well, (b, b)."""
-        hanging = np.eye(len(self), dtype=bool)
-        for bone in self.order[::-1]:
-            if self.parents[bone] >= 0:
-                hanging[self.parents[bone]] |= hanging[bone]
-        return hanging
-
     def children(self, bone: int) -> Ints:
         """Bones that hang directly on a bone."""
         return np.flatnonzero(self.parents == bone)
@@ -87,12 +78,14 @@ class Skeleton:
             found.append(int(self.parents[found[-1]]))
         return found[:-1]
 
-    def below(self, bone: int) -> list[int]:
-        """All bones that hang on a bone, parents before their children."""
-        found = [bone]
-        for each in found:
-            found += self.children(each).tolist()
-        return found[1:]
+    @cached_property
+    def hanging(self) -> Bools:
+        """Which bones hang on each bone, itself as well, (b above, b)."""
+        found = np.eye(len(self), dtype=bool)
+        for bone in self.order[::-1]:
+            if self.parents[bone] >= 0:
+                found[self.parents[bone]] |= found[bone]
+        return found
 
     def nearest_above(self, chosen: Bools) -> Ints:
         """For each bone the nearest of some bones that it hangs on, -1 if there is none, (b,)."""

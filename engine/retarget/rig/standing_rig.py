@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.procrustes import nearest_rotations
+from ...geometry.procrustes import across_axes, nearest_frame, nearest_rotations
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
@@ -17,7 +17,7 @@ from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, at_once
 from .bend_directions import kept_bends
 from .joint_carriers import joint_places
-from .joint_placement import PlacedJoints, across_axes, swung, with_lengths
+from .joint_placement import NEAR_FRAME, PlacedJoints, swung, with_lengths
 from .joint_symmetry import mirrored_joints
 from .skeleton import Skeleton
 
@@ -258,10 +258,7 @@ class _Field:
     def upright(self, frames: Floats | None) -> Floats:
         """Find how the whole body is turned: as one of the frames if that is near."""
         turn = self._similar(self.places[:1], (self.areas / self.areas.sum())[None]).turns[0]
-        if frames is None or not len(frames):
-            return turn
-        cosines = (np.einsum("kij,ij->k", frames, turn) - 1) / 2
-        return frames[cosines.argmax()] if cosines.max() > np.cos(np.pi / 4) else turn
+        return nearest_frame(turn, frames, NEAR_FRAME)
 
     def _similar(self, points: Floats, weights: Floats) -> _Moved:
         """Move points (k, 3) by the similarities that weights (k, n), which sum to one, make best."""

@@ -222,11 +222,7 @@ class _Seeking:
         for part in _BETWEEN:
             points = places + part * lines
             found = self._search.nearest(points)
-            corners = self._triangles[found.triangles]
-            nearest, normals = (
-                np.einsum("pc,pcd->pd", found.barycentric, values[corners])
-                for values in (self._mesh.vertices, self._normals)
-            )
+            nearest, normals = (found.interpolate(self._triangles, v) for v in (self._mesh.vertices, self._normals))
             seeing &= np.einsum("pd,pd->p", points - nearest, normals) > 0
         return seeing
 

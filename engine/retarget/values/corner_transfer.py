@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.procrustes import least_turns
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.polygons import Polygons
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints, unit_vectors
-from ...runtime.errors import MatchError, MeshError
+from ...runtime.errors import MeshError
 from .charts import cut_into_sheets
 from .deformation_gradients import surface_frames
 from .face_correspondence import FacePlaces
@@ -51,15 +52,8 @@ def carry_corner_values(values: ArrayLike, source: Polygons, places: FacePlaces)
     -------
     (l_y, ...) array
         For each corner of the target; interpolated if the values are real numbers, else that of the nearest corner.
-
-    Raises
-    ------
-    MatchError
-        If there is not one value for each corner.
     """
     array = np.asarray(values)
-    if array.ndim == 0 or len(array) != source.corner_count:
-        raise MatchError(f"There should be one value for each of {source.corner_count} corners, not {array.shape}.")
     flat = array.reshape(len(array), -1)
     if np.issubdtype(array.dtype, np.inexact):
         tolerance = _SAME * float(np.ptp(flat, axis=0).max(initial=0.0)) if len(flat) else 0.0
@@ -130,7 +124,7 @@ def carry_normals(
     vertices = places.polygons.corner_vertices
     smooth = places.map.transfer(places.image.vertex_normals)
     turned = np.einsum("nij,nj->ni", rotations, smooth)
-    last = _shortest_rotations(unit_vectors(turned, _CANCELLED), target.vertex_normals)
+    last = least_turns(unit_vectors(turned, _CANCELLED), target.vertex_normals)
     whole = last @ rotations
     result = unit_vectors(np.einsum("lij,lj->li", whole[vertices], carried), _CANCELLED)
     # Where normals cancel out there is none; the target's own is as good as any.
@@ -171,7 +165,7 @@ def turned_normals(normals: Floats, corner_vertices: Ints, mesh: TriangleMesh, p
     rotations = surface_frames(parts.closed, welded, radius=_TURN_RADIUS).rotations
     turned = np.einsum("nij,nj->ni", rotations, parts.closed.vertex_normals)
     now = TriangleMesh(welded, parts.triangles).vertex_normals
-    whole = _shortest_rotations(unit_vectors(turned, _CANCELLED), now) @ rotations
+    whole = least_turns(unit_vectors(turned, _CANCELLED), now) @ rotations
     homes = parts.welded[corner_vertices]
     return unit_vectors(np.einsum("lij,lj->li", whole[homes], normals), _CANCELLED)
 
@@ -181,15 +175,3 @@ def _interpolated(values: Floats, source: Polygons, places: FacePlaces, toleranc
     sheets = cut_into_sheets(places.image, source, values, tolerance)
     found = places.on_sheets(sheets)
     return sheets.at(found.triangles, found.barycentric)
-
-
-def _shortest_rotations(start: Floats, end: Floats) -> Floats:
-    """Rotations that turn unit vectors (n, 3) into others by the least angle; none where these are opposite."""
-    axis, cosine = np.cross(start, end), np.einsum("nd,nd->n", start, end)
-    zero = np.zeros(len(axis))
-    x, y, z = axis.T
-    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
-    proper = start.any(axis=1) & end.any(axis=1) & (cosine > -1 + 1e-9)
-    factor = np.where(proper, 1 / np.where(proper, 1 + cosine, 1), 0)
-    turn = np.eye(3) + cross + factor[:, None, None] * (cross @ cross)
-    return np.where(proper[:, None, None], turn, np.eye(3))

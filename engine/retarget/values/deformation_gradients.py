@@ -11,6 +11,7 @@ from scipy.sparse.linalg import SuperLU
 from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
+from ...geometry.procrustes import nearest_rotations
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
@@ -276,6 +277,4 @@ def _bounded(scales: Floats) -> Floats:
 
 def _orthogonal(matrices: Floats, handedness: float) -> Floats:
     """Orthogonal matrices of such a determinant, 1 or -1, that are nearest to matrices (n, 3, 3)."""
-    left, _, right = np.linalg.svd(matrices)
-    left[:, :, 2] *= (handedness * np.sign(np.linalg.det(left @ right)))[:, None]
-    return left @ right
+    return handedness * nearest_rotations(handedness * matrices)

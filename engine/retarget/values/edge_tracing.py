@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from ...mesh.connectivity.edge_chains import edge_chains, way_to_root
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, ranges
+from ...runtime.arrays import TINY, Floats, Ints, ranges, shares_along
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
 
@@ -105,8 +105,6 @@ def trace_edges_steps(
         If edges and maps do not belong together.
     """
     values = np.asarray(values, np.float64)
-    if values.shape != (len(marked),):
-        raise MatchError(f"There should be one value for each of {len(marked)} marked edges, not {values.shape}.")
     _check(source, edges, source_to_target, target_to_source)
     traced = np.zeros(len(edges))
     if not len(marked) or not len(edges):
@@ -135,10 +133,7 @@ def nearest_edge_values(
     middles = target_to_source.positions[edges].mean(axis=1)
     found = cKDTree(ends.mean(axis=1)).query(middles, np.arange(1, min(_TRIED, len(ends)) + 1))[1]
     start, along = ends[found, 0], ends[found, 1] - ends[found, 0]  # (e_y, tried, 3)
-    offset = middles[:, None] - start
-    square = np.maximum(np.einsum("etd,etd->et", along, along), TINY)
-    part = (np.einsum("etd,etd->et", offset, along) / square).clip(0, 1)
-    away = np.linalg.norm(offset - part[..., None] * along, axis=2)
+    away = _from_segments(middles[:, None], start, along)
     return values[np.take_along_axis(found, away.argmin(axis=1)[:, None], axis=1)[:, 0]]
 
 
@@ -259,7 +254,7 @@ def _with_bends(points: Floats, chosen: list[int], step: float) -> Ints:
         first, last = left.pop()
         if last - first < 2:
             continue
-        away = _from_segment(points[first + 1 : last], points[first], points[last])
+        away = _from_segments(points[first + 1 : last], points[first], points[last] - points[first])
         if away.max() > step:
             bend = first + 1 + int(away.argmax())
             kept.add(bend)
@@ -267,11 +262,9 @@ def _with_bends(points: Floats, chosen: list[int], step: float) -> Ints:
     return np.array(sorted(kept))
 
 
-def _from_segment(points: Floats, start: Floats, end: Floats) -> Floats:
-    """Distances of points (k, 3) from a straight line between two others."""
-    along = end - start
-    part = ((points - start) @ along / max(float(along @ along), TINY)).clip(0, 1)
-    return np.linalg.norm(points - start - part[:, None] * along, axis=1)
+def _from_segments(points: Floats, starts: Floats, ways: Floats) -> Floats:
+    """Distances of points (..., 3) from segments, (...)."""
+    return np.linalg.norm(points - starts - shares_along(points, starts, ways)[..., None] * ways, axis=-1)
 
 
 def _sampled(points: Floats, spacing: float) -> tuple[Floats, Ints]:

@@ -87,13 +87,12 @@ def carry_offsets_steps(
     fill = _Filling(target, target_to_source.confidence >= _LEAST_CONFIDENCE)
     factors = _factors(frames, scaling)
     parts = WeldedParts.of(target)
-    means = parts.mean_over(np.ones(target.vertex_count, bool))
     carried = np.zeros((len(array), target.vertex_count, 3))
     for number, key in enumerate(array):
         moved = target_to_source.transfer(factors[:, None] * frames.turned(key))
         moved = fill(moved)
         if parts.seams:
-            moved = (means @ moved)[parts.welded]
+            moved = (parts.means @ moved)[parts.welded]
         lengths = np.linalg.norm(moved, axis=1)
         least = threshold * float((factors * np.linalg.norm(key, axis=1)).max(initial=0.0))
         carried[number] = np.where((lengths > least)[:, None], moved, 0.0)

@@ -86,7 +86,7 @@ def ends_at_joint(
     skeleton : Skeleton
         The bones.
     """
-    with_children = skeleton.subtrees
+    with_children = skeleton.hanging
     on_body, on_item = (
         with_children @ (part.T @ mesh.vertex_areas) for part, mesh in zip(weights, (body, item), strict=True)
     )

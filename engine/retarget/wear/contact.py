@@ -83,9 +83,7 @@ class Surface:
         """Which vertices lie on the rim of a hole, (n,)."""
         if self.sewn is not None:
             return self.sewn.surface.rim[self.sewn.parts.welded]
-        rim = np.zeros(self.mesh.vertex_count, bool)
-        rim[self.mesh.boundary_edges] = True
-        return rim
+        return marked(self.mesh.boundary_edges, self.mesh.vertex_count)
 
     @cached_property
     def normals(self) -> Floats:
@@ -123,7 +121,7 @@ class Surface:
             return self.sewn.clearance(points, starts)
         found = self.search.nearest(points) if starts is None else self.search.walk(points, starts)
         corners, barycentric = self.mesh.triangles[found.triangles], found.barycentric
-        feet = np.einsum("kc,kci->ki", barycentric, self.mesh.vertices[corners])
+        feet = found.interpolate(self.mesh.triangles, self.mesh.vertices)
         inside = (barycentric > _INSIDE).all(axis=1)
         blended = unit_vectors(np.einsum("kc,kci->ki", barycentric, self._normals_at(corners)))
         normals = np.where(inside[:, None], self.mesh.triangle_normals[found.triangles], blended)
@@ -160,11 +158,7 @@ class _Sewn:
     def clearance(self, points: Floats, starts: Ints | None) -> Clearance:
         """Measure as the cut one does, in its numbers of vertices."""
         found = self.surface.clearance(points, None if starts is None else self.starts[starts])
-        return replace(found, vertices=self._first[found.vertices])
-
-    @cached_property
-    def _first(self) -> Ints:
-        return np.unique(self.parts.welded, return_index=True)[1]
+        return replace(found, vertices=self.parts.first[found.vertices])
 
 
 def surface_samples(mesh: TriangleMesh, spacing: float) -> csr_array:

@@ -11,7 +11,7 @@ from ...runtime.errors import RigError
 from ..motion.bone_pairing import BonePairing
 from ..motion.paired_weights import paired_weights
 from ..rig.skeleton import Skeleton
-from ..weights.skin_weights import row_sums
+from ..weights.skin_weights import row_shares, row_sums
 
 
 def handed_weights(
@@ -56,15 +56,10 @@ def handed_weights(
     """
     if not (own.shape == below.shape and on_skin.shape == (len(positions), len(bones[1]))):
         raise RigError(f"Weights of the shapes {own.shape}, {below.shape} and {on_skin.shape} do not fit together.")
-    own, below, on_skin = (_normalised(each) for each in (own, below, on_skin))
-    handed = _normalised(paired_weights(own, positions, pairing, *bones))
+    own, below, on_skin = (row_shares(each) for each in (own, below, on_skin))
+    handed = row_shares(paired_weights(own, positions, pairing, *bones))
     different = 0.5 * row_sums(abs(own - below))
     different = np.where(row_sums(below) > 0, different, 1.0)
     share = np.where(row_sums(handed) > 0, different, 0.0)
     share = np.where(row_sums(on_skin) > 0, share, 1.0)
     return csr_array(diags_array(share) @ handed + diags_array(1 - share) @ on_skin)
-
-
-def _normalised(weights: csr_array) -> csr_array:
-    total = row_sums(weights)
-    return csr_array(diags_array(1 / np.where(total > 0, total, 1.0)) @ weights)

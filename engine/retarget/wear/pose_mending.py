@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
@@ -185,11 +186,7 @@ def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
     """Find how an item lies on the body."""
     body, unit = posed.body, posed.unit
     found = posed.search.nearest(item.positions)
-    corners = body.triangles[found.triangles]
-    below = csr_array(
-        (found.barycentric.ravel(), corners.ravel(), np.arange(0, corners.size + 1, 3)),
-        shape=(len(item.positions), body.vertex_count),
-    )
+    below = interpolation_matrix(found.barycentric, body.triangles[found.triangles], body.vertex_count)
     starts = found.nearest_vertices(body.triangles)
     rest = posed.skin.clearance(item.positions, starts)
     lying = (row_sums(item.weights) > 0) & rest.known
@@ -221,7 +218,7 @@ def _deepest_of_steps(common: tuple[_PosedBody, _Ways], bones: Ints) -> Steps[li
     deepest = [np.zeros((len(weights), len(chosen))) for _, chosen, weights in ways]
     for number, bone in enumerate(bones):
         yield Progress(number / len(bones), "Trying poses")
-        hanging = skeleton.subtrees[bone]
+        hanging = skeleton.hanging[bone]
         on_skin = row_sums(posed.weights[:, hanging])
         if on_skin @ body.vertex_areas < _LARGE_PART * body.area:
             continue

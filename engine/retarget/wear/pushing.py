@@ -11,6 +11,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 
 from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
 from .contact import Surface
@@ -330,7 +331,7 @@ class _Under:
         points, normals = self._points[near], self._normals[near]
         found = item.search.nearest(points)
         corners = mesh.triangles[found.triangles]
-        away = np.einsum("kc,kci->ki", found.barycentric, positions[corners]) - points
+        away = found.interpolate(mesh.triangles, positions) - points
         height = np.einsum("ki,ki->k", away, normals)
         distance = np.sqrt(found.squared_distances)
         self._corners[near], self._seen[near] = corners, positions[corners]
@@ -346,9 +347,7 @@ class _Under:
         under &= ~((found.barycentric > 1e-3) <= item.rim[corners]).all(axis=1)
         if not under.any():
             return None
-        k = int(under.sum())
-        starts = np.arange(0, 3 * k + 1, 3)
-        rows = csr_array((found.barycentric[under].ravel(), corners[under].ravel(), starts), shape=(k, len(positions)))
+        rows = interpolation_matrix(found.barycentric[under], corners[under], len(positions))
         return rows, (_MARGIN * unit - height[under])[:, None] * normals[under]
 
 

@@ -10,7 +10,7 @@ from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, group_sums
+from ...runtime.arrays import Bools, Floats, Ints, group_extents, group_sums
 
 _TINY, _SMALL = 0.02, 0.12
 """Size of a loose part, in units of the root of the body's area, up to which it is rigid whatever its shape, and up to
@@ -102,16 +102,13 @@ def _groups(item: TriangleMesh, chosen: Bools, gap: float, largest: float, parts
     n = item.vertex_count
     inside = chosen[item.edges].all(axis=1)
     tails, heads = item.edges[inside].T
-    welded = np.arange(n) if parts is None else np.unique(parts.welded, return_index=True)[1][parts.welded]
+    welded = np.arange(n) if parts is None else parts.first[parts.welded]
     labels = joined_components(n, np.append(tails, np.arange(n)), np.append(heads, welded))
     vertices = np.flatnonzero(chosen)
     pairs = _touching(item, chosen, labels, gap)
     count = int(labels.max()) + 1
     groups = joined_components(count, *pairs.T)[labels]
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, groups[vertices], item.vertices[vertices])
-    np.maximum.at(high, groups[vertices], item.vertices[vertices])
-    too_large = ((high - low).max(axis=1) > largest)[groups]
+    too_large = (group_extents(groups[vertices], item.vertices[vertices], count) > largest)[groups]
     pieces = np.where(too_large, count + labels, groups)
     numbers = np.full(n, -1)
     numbers[chosen] = np.unique(pieces[chosen], return_inverse=True)[1].ravel()

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 
-import numpy as np
 from scipy.sparse import csr_array
 
 from ...mesh.connectivity.welded_parts import WeldedParts
@@ -31,8 +30,7 @@ def sewn(item: WornItem) -> tuple[WornItem, Ints | None]:
     parts = WeldedParts.of(item.mesh)
     if not parts.seams:
         return item, None
-    mean = parts.mean_over(np.ones(item.mesh.vertex_count, bool))
-    first = np.unique(parts.welded, return_index=True)[1]
+    mean, first = parts.means, parts.first
     return (
         replace(
             item,

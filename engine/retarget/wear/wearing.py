@@ -399,7 +399,6 @@ def _fitted(work: _Work, skin: Surface, source_to_target: SurfaceMap, units: tup
         scales=moved.scales,
         places=moved.places,
         pieces=work.pieces,
-        clearance_before=work.below.distances,
         clearance=found.distances,
         pushed=work.pushed,
         confidence=moved.places @ source_to_target.confidence,

@@ -68,8 +68,8 @@ class FittedItem:
         What part of each vertex each of the m vertices of the first body carried; rows sum to one.
     pieces : (n,) array of int
         The rigid piece that each vertex belongs to, -1 where it bends.
-    clearance_before, clearance : (n,) array of float
-        Distance from the skin on the first body and on the second, each in its units, negative inside.
+    clearance : (n,) array of float
+        Distance from the skin of the second body, negative inside.
     pushed : (n,) array of float
         How far each was pushed, so that nothing pokes through.
     confidence : (n,) array of float
@@ -85,7 +85,6 @@ class FittedItem:
     scales: Floats
     places: csr_array
     pieces: Ints
-    clearance_before: Floats
     clearance: Floats
     pushed: Floats
     confidence: Floats

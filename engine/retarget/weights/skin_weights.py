@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags_array, vstack
 
 from ...mesh.surface_map import SurfaceMap
+from ...mesh.surface_points import interpolation_matrix
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import MatchError, RigError
 
@@ -43,11 +44,7 @@ def carried(weights: csr_array, surface_map: SurfaceMap) -> csr_array:
             f"There should be weights for each of the {surface_map.image_vertex_count} vertices that the map leads "
             f"to, but there are {weights.shape[0]} rows."
         )
-    m = len(surface_map)
-    corners = csr_array(
-        (surface_map.barycentric.ravel(), surface_map.corners.ravel(), 3 * np.arange(m + 1)),
-        shape=(m, weights.shape[0]),
-    )
+    corners = interpolation_matrix(surface_map.barycentric, surface_map.corners, weights.shape[0])
     return _clean(csr_array(corners @ weights))
 
 
@@ -110,11 +107,6 @@ def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> c
         The same with at most so many entries in each row, unless more are locked.  Sums of rows stay what they were,
         except where nothing but locked ones is left.
 
-    Raises
-    ------
-    RigError
-        If the number is less than one.
-
     Notes
     -----
     If t is the largest weight of a vertex that has to go, a weight w that stays becomes
@@ -122,8 +114,6 @@ def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> c
     the one to go, and neighbours that differ a little in their weights do so afterwards as well.  Weights that
     are as large as the first that goes are shared out evenly if there are no others.
     """
-    if count < 1:
-        raise RigError(f"A vertex must keep one weight at least, not {count}.")
     free = _free(locked, weights.shape[1])
     result = _clean(weights.copy())
     rows = _rows(result)
@@ -207,6 +197,13 @@ def row_sums(weights: csr_array) -> Floats:
     """Sum the weights of each vertex, (m,)."""
     sums = np.bincount(_rows(weights), weights.data, weights.shape[0])
     return sums.astype(np.float64)  # without entries there are whole numbers
+
+
+def row_shares(weights: csr_array) -> csr_array:
+    """Divide each row by its sum, where there is one: each then sums to one."""
+    sums, shares = row_sums(weights), weights.copy()
+    shares.data = shares.data * np.repeat(1 / np.where(sums > 0, sums, 1), np.diff(shares.indptr))
+    return shares
 
 
 def row_differences(one: csr_array, other: csr_array) -> Floats:

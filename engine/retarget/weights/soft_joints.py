@@ -52,9 +52,8 @@ def with_soft_joints(
     """
     if source_parts.part_count == 1:
         return weights
-    first = np.unique(parts.welded, return_index=True)[1]
-    plate = source_parts.vertex_labels[surface_map.nearest_vertices][first]
-    values = csr_array(parts.mean_over(np.ones(parts.mesh.vertex_count, bool)) @ weights)
+    plate = source_parts.vertex_labels[surface_map.nearest_vertices][parts.first]
+    values = csr_array(parts.means @ weights)
     one, other = parts.edges.T
     joint = plate[one] != plate[other]
     joint[joint] = row_differences(values[one[joint]], values[other[joint]]) > _JUMP

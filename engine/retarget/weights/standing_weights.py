@@ -9,7 +9,7 @@ from scipy.sparse.linalg import splu
 
 from ...geometry.laplacian import laplace_beltrami
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, shares_along
 from ...runtime.errors import RigError
 from ..rig.skeleton import Skeleton
 
@@ -80,9 +80,7 @@ def _distances(mesh: TriangleMesh, skeleton: Skeleton, bones: Ints) -> Floats:
     result = np.empty((mesh.vertex_count, len(bones)))
     for column, bone in enumerate(bones):
         head, axis = skeleton.heads[bone], skeleton.tails[bone] - skeleton.heads[bone]
-        square = max(float(axis @ axis), TINY)
-        along = ((mesh.vertices - head) @ axis / square).clip(0, 1)
-        away = mesh.vertices - head - along[:, None] * axis
+        away = mesh.vertices - head - shares_along(mesh.vertices, head, axis)[:, None] * axis
         far = np.linalg.norm(away, axis=1)
         facing = (away * mesh.vertex_normals).sum(axis=1) / np.maximum(far, TINY)
         result[:, column] = far * (1 + (_AGAINST - 1) * np.clip(-facing, 0, 1))

@@ -1642,9 +1642,6 @@ MESSAGES: Final[dict[str, str]] = {
     "The stored map is one of meshes with other vertices. Match again.": (
         "保存されたマップは頂点の異なるメッシュのものです。再マッチングしてください。"
     ),
-    "Some distances are not finite: all points must lie on one connected part of the surface.": (
-        "一部の距離が有限ではありません。すべてのポイントは、つながった一つの表面上になければなりません。"
-    ),
     "No matching is possible: too many pairs of a point and a candidate are forbidden.": (
         "マッチングできません。ポイントと候補の組が多く禁止されすぎています。"
     ),
@@ -2141,16 +2138,9 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} Coarse Points need at least as many Coarse Candidates, not {1}.": (
         "粗いポイント{0}個には、候補も同数以上必要です（現在{1}）。"
     ),
-    "{0} points cannot be matched: the {1} has only {2} vertices. Use fewer points or subdivide the mesh.": (
-        "{0}個のポイントはマッチングできません。{1}の頂点は{2}個だけです。ポイントを減らすか、メッシュを細分"
-        "化してください。"
-    ),
     "{0} points cannot be matched: the {1} has only {2} vertices{3}. Use fewer points or subdivide the mesh.": (
         "{0}個のポイントはマッチングできません。{1}の頂点は{2}個だけです{3}。ポイントを減らすか、メッシュを細"
         "分化してください。"
-    ),
-    "{0} samples were asked of a surface with {1} vertices: use fewer points or a finer mesh.": (
-        "{1}個の頂点の表面に{0}個のサンプルが求められました。ポイントを減らすか、細かいメッシュを使ってください。"
     ),
     '"{0}" cannot be written: {1}. Choose another place.': "「{0}」に書き込めません：{1}。別の場所を選んでください。",
     '"{0}" cannot be read: {1}. Choose another file.': "「{0}」を読み込めません：{1}。別のファイルを選んでください。",

@@ -1354,9 +1354,6 @@ MESSAGES: Final[dict[str, str]] = {
         "已存映射的属性中含有并非由匹配写入的数值。请重新匹配。"
     ),
     "The stored map is one of meshes with other vertices. Match again.": "已存映射属于顶点不同的网格。请重新匹配。",
-    "Some distances are not finite: all points must lie on one connected part of the surface.": (
-        "某些距离不是有限值：所有点必须位于表面的同一连通部分上。"
-    ),
     "No matching is possible: too many pairs of a point and a candidate are forbidden.": (
         "无法匹配：被禁止的点与候选组合过多。"
     ),
@@ -1752,14 +1749,8 @@ MESSAGES: Final[dict[str, str]] = {
     "{0} Coarse Points need at least as many Coarse Candidates, not {1}.": (
         "{0} 个粗匹配点至少需要同样多的粗匹配候选，而不是 {1} 个。"
     ),
-    "{0} points cannot be matched: the {1} has only {2} vertices. Use fewer points or subdivide the mesh.": (
-        "无法匹配 {0} 个点：{1}只有 {2} 个顶点。请减少点数或细分网格。"
-    ),
     "{0} points cannot be matched: the {1} has only {2} vertices{3}. Use fewer points or subdivide the mesh.": (
         "无法匹配 {0} 个点：{1}只有 {2} 个顶点{3}。请减少点数或细分网格。"
-    ),
-    "{0} samples were asked of a surface with {1} vertices: use fewer points or a finer mesh.": (
-        "要求在只有 {1} 个顶点的表面上取 {0} 个样本：请减少点数或使用更细的网格。"
     ),
     '"{0}" cannot be written: {1}. Choose another place.': "无法写入“{0}”：{1}。请选择其他位置。",
     '"{0}" cannot be read: {1}. Choose another file.': "无法读取“{0}”：{1}。请选择其他文件。",

@@ -83,7 +83,7 @@ def registered(watched):
 def starts(bodies):
     """Start from twenty true pairs of vertices, and from their mirror images."""
     x, y, rest_x, rest_y = bodies
-    chosen = x.samples[:20]
+    chosen = x.samples.vertices[:20]
     gaps = [np.linalg.norm(rest_x[chosen][:, None] * [1, side, 1] - rest_y, axis=2) for side in (1, -1)]
     return [
         start_from(x, y, chosen, gap.argmin(axis=1), name) for gap, name in zip(gaps, ("true", "mirror"), strict=True)
@@ -158,10 +158,10 @@ def test_of_two_starts_the_one_that_keeps_the_orientation_is_taken(bodies, start
 
 def hind_legs_exchanged(x, y, rest_x, rest_y):
     """Start from pairs of vertices of which those on the hind legs are the mirror images of the true ones."""
-    places = rest_x[x.samples].copy()
+    places = rest_x[x.samples.vertices].copy()
     places[(places[:, 0] < -0.2) & (places[:, 2] < -0.4), 1] *= -1
     images = np.linalg.norm(places[:, None] - rest_y, axis=2).argmin(axis=1)
-    return start_from(x, y, x.samples, images, "exchanged")
+    return start_from(x, y, x.samples.vertices, images, "exchanged")
 
 
 def test_limbs_that_the_best_hypothesis_exchanges_are_put_right(bodies, monkeypatch):
@@ -188,8 +188,8 @@ def test_where_a_map_is_nearly_an_isometry_no_rough_ones_are_followed(registered
 
 def turned_start(x, y, rest_x, rest_y):
     """Start from pairs of vertices of which one is where the other would be if the body were turned round."""
-    turned = np.linalg.norm(rest_x[x.samples[:40]][:, None] * [-1, -1, 1] - rest_y, axis=2).argmin(axis=1)
-    return start_from(x, y, x.samples[:40], turned, "turned")
+    turned = np.linalg.norm(rest_x[x.samples.vertices[:40]][:, None] * [-1, -1, 1] - rest_y, axis=2).argmin(axis=1)
+    return start_from(x, y, x.samples.vertices[:40], turned, "turned")
 
 
 def test_a_matching_as_it_is_takes_the_place_of_hypotheses_that_are_wrong(bodies, monkeypatch):
@@ -215,7 +215,7 @@ def test_a_matching_as_it_is_takes_the_place_of_hypotheses_that_are_wrong(bodies
 @pytest.mark.parametrize("agreeing", [True, False])
 def test_matchings_are_followed_only_if_they_agree_with_landmarks(agreeing, bodies, monkeypatch):
     x, y, rest_x, rest_y = bodies
-    known = x.samples[:1]
+    known = x.samples.vertices[:1]
     partner = np.linalg.norm(rest_x[known] * [-1, -1, 1] - rest_y, axis=1).argmin(keepdims=True)
     places = (LandmarkPlaces(vertices, vertices, vertices) for vertices in (known, partner))
     hypotheses = run(map_hypotheses_steps(x, y, [turned_start(*bodies)], search=False))
@@ -385,7 +385,7 @@ def long_bodies():
 def upset(long_bodies):
     """The fish on the bent one, with its tail upside down, and what follows it."""
     x, y = long_bodies
-    chosen = x.samples[:20]
+    chosen = x.samples.vertices[:20]
     pair = run(registered_pair_steps(x, y, [start_from(x, y, chosen, chosen)], search=False))
     right = pair.candidates[0]
     over = np.where(x.mesh.vertices[:, 0] > 0.65, -1, 1)
@@ -416,8 +416,8 @@ def test_long_bodies_stay_where_turning_them_back_is_less_credible_or_landmarks_
     follow, candidate = upset
     better = replace(candidate, score=candidate.score - 100)
     assert run(follow.rolled_back_steps([better]))[0][0] is better
-    held = SurfacePoints.at_vertices(follow.x.mesh, follow.x.samples[:1])
-    ties = Ties.at(follow.x.mesh, held, follow.target.vertices[follow.x.samples[:1]])
+    held = SurfacePoints.at_vertices(follow.x.mesh, follow.x.samples.vertices[:1])
+    ties = Ties.at(follow.x.mesh, held, follow.target.vertices[follow.x.samples.vertices[:1]])
     assert run(replace(follow, ties=ties).rolled_back_steps([candidate])) == [[candidate]]
 
 
@@ -440,7 +440,7 @@ def test_a_way_to_lie_that_is_no_better_at_first_is_registered_closely_as_well(l
     own = Follower.close_steps
     monkeypatch.setattr(Follower, "rolled_back_steps", ways)
     monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.registration) or own(self, c))
-    chosen = x.samples[:20]
+    chosen = x.samples.vertices[:20]
     pair = run(registered_pair_steps(x, y, [start_from(x, y, chosen, chosen)]))
     assert over in closely
     assert len(closely) == 2
@@ -468,7 +468,7 @@ def test_meshes_with_fewer_vertices_than_eigenpairs_are_registered_too():
     vertices, triangles = icosphere(3)  # 92 vertices
     vertices = vertices * [1, 1.3, 1.8] + 0.2 * vertices[:, :1] * vertices[:, 1:2]
     x, y = shape(vertices, triangles), shape(1.1 * vertices, triangles)
-    start = start_from(x, y, x.samples[:20], x.samples[:20])
+    start = start_from(x, y, x.samples.vertices[:20], x.samples.vertices[:20])
     pair = run(registered_pair_steps(x, y, [start], search=False))
     points = pair.registration.on_target
     images = SurfacePoints.from_barycentric(y.mesh, points.triangles, points.barycentric).positions

@@ -4,7 +4,6 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from engine import MatchError
 from engine.dense.extremity_search import beam_matchings
 
 
@@ -33,27 +32,18 @@ def test_a_wide_beam_finds_the_best_of_all_matchings(seed):
     best = sorted(
         (cost(distances_x, distances_y, dissimilarity, images), images) for images in permutations(range(6), 4)
     )
-    np.testing.assert_allclose(found.costs, [value for value, _ in best[:50]])
-    assert [tuple(images) for images in found.images] == [images for _, images in best[:50]]
+    assert [tuple(images) for images in found] == [images for _, images in best[:50]]
 
 
 def test_a_narrow_beam_finds_an_exact_copy_and_never_an_image_twice():
     rng, distances, dissimilarity = problem(7, 6, 10)
     order = rng.permutation(10)[:6]
     found = beam_matchings(distances[np.ix_(order, order)], distances, 0 * dissimilarity, kept=40, width=100)
-    np.testing.assert_array_equal(found.images[0], order)
-    assert found.costs[0] == 0
-    assert (np.diff(found.costs) >= 0).all()
-    assert found.images.shape == (40, 6)
-    assert all(len(set(images)) == 6 for images in found.images.tolist())
+    np.testing.assert_array_equal(found[0], order)
+    assert found.shape == (40, 6)
+    assert all(len(set(images)) == 6 for images in found.tolist())
 
 
 def test_no_more_matchings_than_there_are():
     _, distances, dissimilarity = problem(3, 3, 3)
-    assert len(beam_matchings(distances, distances, dissimilarity, kept=50).images) == 6
-
-
-def test_more_points_than_candidates_are_refused():
-    _, distances, _ = problem(3, 3, 3)
-    with pytest.raises(MatchError, match="4 points cannot be matched to 3"):
-        beam_matchings(np.zeros((4, 4)), distances, np.zeros((4, 3)), kept=1)
+    assert len(beam_matchings(distances, distances, dissimilarity, kept=50)) == 6

@@ -24,8 +24,13 @@ MIRROR = SAME[::-1].copy()
 
 
 @dataclass(frozen=True)
+class Samples:
+    rows: np.ndarray
+
+
+@dataclass(frozen=True)
 class Line:
-    sample_rows: np.ndarray
+    samples: Samples
     is_reflection: bool = False
 
     def reflected(self):
@@ -51,7 +56,7 @@ class LineMap:
 def scene(pairs):
     """Two lines whose samples begin with landmarks, and these."""
     ends = [np.array(vertices) for vertices in zip(*pairs, strict=True)]
-    lines = [Line(np.abs(PLACES[end][:, None] - PLACES)) for end in ends]
+    lines = [Line(Samples(np.abs(PLACES[end][:, None] - PLACES))) for end in ends]
     return *lines, Landmarks(*(LandmarkPlaces(end, end, end) for end in ends))
 
 
@@ -129,7 +134,7 @@ def test_mirrored_maps_of_the_reflection_do_not_count(monkeypatch):
 def test_enough_landmarks_are_a_start_of_their_own(monkeypatch, count, own):
     x, y, landmarks = scene([(2, 2), (9, 9), (15, 15)][:count])
     asked = proposing(monkeypatch, [LineMap(SAME, SAME)], [])
-    other = LandmarkStart(x.sample_rows[:1], y.sample_rows[:1], "elsewhere")
+    other = LandmarkStart(x.samples.rows[:1], y.samples.rows[:1], "elsewhere")
     run(steered_hypotheses_steps(x, y, [other], landmarks, search=False))
     assert asked == [(False, ["elsewhere", *own], False, False)]
 

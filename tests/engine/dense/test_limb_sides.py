@@ -100,7 +100,7 @@ def test_a_body_without_limbs_is_left_alone():
 def test_nothing_is_said_where_the_maps_do_not_agree(bodies):
     x, y = bodies
     maps = exchanged(x, y, FORE)
-    nowhere = PointMaps(maps.on_y, np.full_like(maps.on_x, x.shape.samples[0]))
+    nowhere = PointMaps(maps.on_y, np.full_like(maps.on_x, x.shape.samples.vertices[0]))
     assert run(repaired_start_steps(x.shape, y.shape, nowhere)) is None
 
 

@@ -100,7 +100,7 @@ def test_changes_of_distances_are_close_to_measured_ones(body, bent):
     for x, y, images in ((body, bent, points.on_y), (bent, body, points.on_x)):
         ends = y.vertices[images[:10]]
         measured = y.shape.solver.distances(ends)[:, ends] / y.shape.scale
-        changes.append(np.abs(x.shape.sample_distances[:10, :10] - measured).mean())
+        changes.append(np.abs(x.shape.samples.distances[:10, :10] - measured).mean())
     assert distance_term(body, bent, points, 10) == pytest.approx(np.mean(changes), abs=0.01)
 
 

@@ -12,7 +12,7 @@ def body():
 
 
 def test_fine_samples_begin_with_the_coarse_ones_and_are_distinct(body):
-    np.testing.assert_array_equal(body.vertices[: body.coarse_count], body.shape.samples)
+    np.testing.assert_array_equal(body.vertices[: body.coarse_count], body.shape.samples.vertices)
     assert len(np.unique(body.vertices)) == len(body.vertices) == 800
 
 

@@ -67,8 +67,8 @@ def test_diffusion_distances_have_a_root_mean_square_of_one(shapes):
 
 def test_geodesic_distances_are_those_of_the_shapes(shapes):
     pair = Pair(*shapes, PLAIN)
-    np.testing.assert_array_equal(pair.source_distances, shapes[0].sample_distances)
-    np.testing.assert_array_equal(pair.target_distances, shapes[1].sample_distances)
+    np.testing.assert_array_equal(pair.source_distances, shapes[0].samples.distances)
+    np.testing.assert_array_equal(pair.target_distances, shapes[1].samples.distances)
 
 
 @pytest.mark.parametrize(

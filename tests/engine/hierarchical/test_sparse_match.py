@@ -28,7 +28,7 @@ def solved(pair):
 
 def numbers_of(answer):
     """Which samples of the target the images are."""
-    samples = answer.coarse.pair.target.samples
+    samples = answer.coarse.pair.target.samples.vertices
     return np.array([np.flatnonzero(samples == vertex)[0] for vertex in answer.points.nearest_vertices])
 
 
@@ -90,7 +90,7 @@ def test_settling_lowers_the_distortion(shapes, answers):
 
 @pytest.mark.parametrize("solver", ["hierarchical", "gmds"])
 def test_landmarks_stay_with_their_partners(shapes, solver):
-    vertices = [shape.samples[[20, 30]] for shape in shapes]
+    vertices = [shape.samples.vertices[[20, 30]] for shape in shapes]
     known = [shape.starting_with(own) for shape, own in zip(shapes, vertices, strict=True)]
     for shape in known:
         run(shape.sample_steps(SETTINGS.samples))
@@ -103,7 +103,7 @@ def test_landmarks_stay_with_their_partners(shapes, solver):
 def test_all_at_once_some_points_are_matched_as_well_as_can_be(shapes, points):
     pair = Pair(*shapes, replace(SETTINGS, solver="flat", points=points))
     found, laps = solved(pair)
-    best = brute_force(pair.problem(points, flat_candidates(points, pair.target.sample_count)))
+    best = brute_force(pair.problem(points, flat_candidates(points, len(pair.target.samples))))
     assert min(answer.distortion for answer in found) == pytest.approx(best)
     assert laps == ["flat"]
 
@@ -120,7 +120,7 @@ def test_an_answer_takes_over_another_matching(answers):
 def test_moved_points_have_the_distances_between_where_they_are(answers):
     answer, pair = answers[0], answers[0].coarse.pair
     numbers = np.roll(numbers_of(answer), 1)
-    places = SurfacePoints.at_vertices(pair.target.mesh, pair.target.samples[numbers])
+    places = SurfacePoints.at_vertices(pair.target.mesh, pair.target.samples.vertices[numbers])
     run(pair.target_metric.prepare_nearest_steps(places))
     other = moved(answer, places)
     np.testing.assert_allclose(other.distances, pair.target_distances[np.ix_(numbers, numbers)], atol=0.03)

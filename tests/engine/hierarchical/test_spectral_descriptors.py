@@ -8,7 +8,6 @@ from engine import HierMatchError, TriangleMesh
 from engine.geometry.eigenpairs import eigenpairs
 from engine.hierarchical.spectral_descriptors import (
     automatic_energies,
-    automatic_times,
     eigenfunction_descriptor,
     heat_kernel_signatures,
     multiplets,
@@ -34,20 +33,16 @@ def test_all_points_of_a_sphere_are_alike(sphere, signatures):
     np.testing.assert_allclose(signatures(sphere), 1, atol=0.05)
 
 
+def trace(spectrum, times):
+    return np.exp(-np.outer(spectrum.values * spectrum.area, times)).sum(axis=0)
+
+
 def test_heat_stays_on_a_sphere_as_it_should(sphere):
     times = np.array([0.01, 0.05, 0.2, 1.0])
     degrees = np.arange(40)[:, None]
     exact = ((2 * degrees + 1) * np.exp(-4 * np.pi * degrees * (degrees + 1) * times)).sum(axis=0)
-    found = heat_kernel_signatures(sphere, times, relative=False)
+    found = heat_kernel_signatures(sphere, times) * trace(sphere, times)
     np.testing.assert_allclose(found, np.broadcast_to(exact, found.shape), rtol=0.03)
-
-
-def test_the_mean_is_the_trace(poses):
-    spectrum = poses[0]
-    times = automatic_times(9)
-    trace = np.exp(-np.outer(spectrum.values * spectrum.area, times)).sum(axis=0)
-    mean = spectrum.mass @ heat_kernel_signatures(spectrum, times, relative=False) / spectrum.area
-    np.testing.assert_allclose(mean, trace, rtol=1e-9)
 
 
 @pytest.mark.parametrize("signatures", SIGNATURES.values(), ids=SIGNATURES)
@@ -78,7 +73,7 @@ def test_units_order_and_motion_do_not_matter(signatures):
 
 def test_tips_keep_their_heat():
     vertices, triangles, rest = creature(0.0, 12)
-    signatures = heat_kernel_signatures(eigenpairs(TriangleMesh(vertices, triangles), 80), [0.02])[:, 0]
+    signatures = heat_kernel_signatures(eigenpairs(TriangleMesh(vertices, triangles), 80), np.array([0.02]))[:, 0]
     tail = np.linalg.norm(rest - [-1.3, 0, 0.16], axis=1).argmin()
     belly = np.linalg.norm(rest - [0, 0, -0.3], axis=1).argmin()
     assert signatures[tail] > 2 * signatures[belly]
@@ -94,8 +89,6 @@ def test_waves_of_one_energy_see_the_functions_of_that_energy():
 
 
 def test_automatic_scales():
-    assert (np.diff(automatic_times()) > 0).all()
-    assert len(automatic_times(5)) == 5
     energies = automatic_energies(100, 20)
     assert len(energies) == 20
     np.testing.assert_allclose(np.diff(energies), energies[1] - energies[0])
@@ -129,18 +122,6 @@ def test_multiplets_of_known_shapes(sphere):
     assert [len(group) for group in multiplets(sphere.values[1:36])] == [3, 5, 7, 9, 11]
     tube = eigenpairs(TriangleMesh(*torus(40, 16)), 4)
     assert len(multiplets(tube.values[1:3])[0]) == 2
-
-
-@pytest.mark.parametrize("times", [[0.0, 1.0], [-1.0], [[1.0]], [np.nan]])
-def test_bad_times(sphere, times):
-    with pytest.raises(HierMatchError, match="times"):
-        heat_kernel_signatures(sphere, times)
-
-
-@pytest.mark.parametrize("energies", [[1.0], [2.0, 1.0], [[1.0, 2.0]]])
-def test_bad_energies(sphere, energies):
-    with pytest.raises(HierMatchError, match="energies"):
-        wave_kernel_signatures(sphere, energies)
 
 
 @pytest.mark.parametrize("count", [0, 81, 500])

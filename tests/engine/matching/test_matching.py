@@ -85,7 +85,7 @@ def _squares(first, second):
 def test_without_settling_the_points_stay_at_samples_and_the_distortion_is_larger(result, bodies):
     target = Shape(bodies[1])
     plain = match(bodies[0], target, replace(QUICK, settle=False))
-    assert set(plain.target_points.nearest_vertices) <= set(target.samples)
+    assert set(plain.target_points.nearest_vertices) <= set(target.samples.vertices)
     np.testing.assert_array_equal(plain.target_points.barycentric.max(axis=1), 1)
     assert len(set(plain.target_points.nearest_vertices)) == QUICK.points
     assert result.distortion < plain.distortion
@@ -139,9 +139,9 @@ def _reordered(mesh):
 def test_a_shape_is_measured_once_for_many_matches(bodies, result):
     source, target = Shape(bodies[0]), Shape(bodies[1])
     first = match(source, target, QUICK)
-    rows = source.sample_rows
+    rows = source.samples.rows
     second = match(source, target, QUICK)
-    assert source.sample_rows is rows
+    assert source.samples.rows is rows
     np.testing.assert_array_equal(first.target_points.triangles, second.target_points.triangles)
     np.testing.assert_array_equal(first.target_points.triangles, result.target_points.triangles)
 

@@ -31,7 +31,7 @@ def stiffness(ball):
 
 
 def held(ties, stiffness, positions):
-    return ties.held(positions, ties.response(splu(stiffness).solve))
+    return ties.held(positions, splu(stiffness).solve(ties.forces))
 
 
 def test_tied_points_are_evaluated_where_they_are(ball, points):

@@ -107,7 +107,9 @@ def test_other_parts_come_by_size():
     surface = clean(TriangleMesh(*together(*shifted)))
     assert surface.mesh is surface.main.mesh is surface.pieces[0].mesh
     assert surface.mesh.area == pytest.approx(TriangleMesh(*balls[1]).area)
-    assert [part.area for part in surface.parts] == pytest.approx([TriangleMesh(*balls[i]).area for i in (2, 0)])
+    assert [piece.mesh.area for piece in surface.pieces[1:]] == pytest.approx(
+        [TriangleMesh(*balls[i]).area for i in (2, 0)]
+    )
     count = len(balls[0][0])
     assert surface.vertex_parts.tolist() == [2] * count + [0] * count + [1] * count
     for vertex in range(3 * count):
@@ -130,7 +132,6 @@ def stand_in():
         np.zeros(around.vertex_count, np.int64),
         np.zeros(around.triangle_count, np.int64),
         nothing,
-        inverted=False,
         place_triangles=place.triangles,
         place_barycentric=place.barycentric,
         shown=shown,

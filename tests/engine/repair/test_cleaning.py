@@ -89,8 +89,8 @@ def test_clean_meshes_stay_as_they_are(shape):
     surface = clean(mesh)
     assert surface.mesh is mesh
     assert surface.notes == ()
-    assert surface.parts == ()
-    assert not surface.inverted
+    assert len(surface.pieces) == 1
+    assert not surface.counts.inverted
     assert np.array_equal(surface.vertex_images, np.arange(mesh.vertex_count))
     assert not surface.vertex_parts.any()
     assert np.array_equal(surface.main.original_triangles, np.arange(mesh.triangle_count))
@@ -133,7 +133,7 @@ def test_loose_triangles_are_put_together(body):
     surface = cleaned(in_pieces(*body))
     assert_like(surface, body)
     assert_leads_back(surface)
-    assert len(surface.parts) == 0
+    assert len(surface.pieces) == 1
 
 
 def test_surfaces_that_touch_stay_apart():
@@ -143,11 +143,11 @@ def test_surfaces_that_touch_stay_apart():
     flat[:, 0] = flat[:, 0].clip(max=0.5)
     mirrored = flat * [-1, 1, 1] + [1, 0, 0], sphere[1][:, ::-1]
     surface = cleaned(together((flat, sphere[1]), mirrored))  # each vertex of the flat sides twice
-    assert len(surface.parts) == 1
+    assert len(surface.pieces) == 2
     assert surface.notes == ("The source has 1 smaller part: it follows its surroundings.",)
     assert surface.mesh.is_closed
-    assert surface.parts[0].is_closed
-    assert len(cleaned((left, triangles)).parts) == 0
+    assert surface.pieces[1].mesh.is_closed
+    assert len(cleaned((left, triangles)).pieces) == 1
 
 
 def test_fins_are_cut_off(body):
@@ -156,8 +156,8 @@ def test_fins_are_cut_off(body):
     assert_like(surface, body)
     assert_leads_back(surface)
     assert surface.notes[0] == "The source had 3 non-manifold edges: they were opened for matching."
-    assert len(surface.parts) == 1
-    assert_manifold(surface.parts[0])
+    assert len(surface.pieces) == 2
+    assert_manifold(surface.pieces[1].mesh)
     assert (surface.vertex_parts[: len(body[0])] == 0).all()
     assert (surface.vertex_parts[len(body[0]) :] == 1).all()
 
@@ -177,7 +177,7 @@ def test_inner_walls_are_cut_out():
     assert_like(
         surface, (vertices[[*range(len(vertices) - 2), -1]], np.where(closed == centres[2], centres[1], closed))
     )
-    assert len(surface.parts) == 1
+    assert len(surface.pieces) == 2
 
 
 def test_touching_vertices_are_separated():
@@ -235,7 +235,7 @@ def test_flakes_that_touch_in_a_vertex_are_no_gap():
     flakes = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [-1, 0, 0], [-1, -1, 0]]) * 0.1 + [0, 0, 3]
     faces = np.array([[0, 1, 2], [0, 3, 4]]) + len(vertices)
     surface = cleaned((np.concatenate([vertices, flakes]), np.concatenate([triangles, faces])))
-    assert [part.triangle_count for part in surface.parts] == [1, 1]
+    assert [piece.mesh.triangle_count for piece in surface.pieces[1:]] == [1, 1]
     assert surface.main.mesh.triangle_count == len(triangles)
 
 
@@ -253,11 +253,11 @@ def test_sheets_that_share_an_edge_and_its_ends_become_manifold():
 def test_inverted_normals_are_turned_out(body):
     vertices, triangles = body
     surface = cleaned((vertices, triangles[:, [0, 2, 1]]))
-    assert surface.inverted
+    assert surface.counts.inverted
     assert surface.notes == ("The normals of the source point inwards: they were read the other way round.",)
     assert np.array_equal(surface.mesh.triangles, triangles)
     assert_leads_back(surface)
-    assert not cleaned(body).inverted
+    assert not cleaned(body).counts.inverted
 
 
 @pytest.mark.parametrize("part", [0.05, 0.4])
@@ -266,11 +266,11 @@ def test_inconsistent_normals_are_made_to_agree(body, part):
     surface = cleaned(messy)
     assert_like(surface, body)
     assert_leads_back(surface)
-    assert not surface.inverted
+    assert not surface.counts.inverted
     wrong = int((messy[1] != body[1]).any(axis=1).sum())
     assert surface.notes[0].startswith(f"The source had {wrong:,} faces with normals against their neighbours")
     inverted = cleaned((messy[0], messy[1][:, ::-1]))
-    assert inverted.inverted
+    assert inverted.counts.inverted
     assert_like(inverted, body)
 
 
@@ -278,7 +278,7 @@ def test_normals_of_a_cut_body_are_turned_out(body):
     vertices, triangles = body
     legless = triangles[(vertices[triangles].mean(axis=1)[:, 2] > -0.4)]
     surface = cleaned((vertices, legless[:, ::-1]))
-    assert surface.inverted
+    assert surface.counts.inverted
     assert_manifold(surface.mesh)
     assert len(surface.mesh.boundary_edges)
     assert any("4 large openings" in note for note in surface.notes)
@@ -289,7 +289,7 @@ def test_a_sheet_keeps_its_side():
     vertices = vertices + np.random.default_rng(0).normal(0, 0.01, vertices.shape)
     for sheet in (triangles, triangles[:, ::-1]):
         surface = cleaned((vertices, sheet))
-        assert not surface.inverted
+        assert not surface.counts.inverted
         assert np.array_equal(surface.mesh.triangles, sheet)
         turned = cleaned(partly_turned(vertices, sheet, 0.2))
         assert np.allclose(turned.mesh.triangle_normals, surface.mesh.triangle_normals)
@@ -394,7 +394,7 @@ def test_a_limb_that_is_cut_off_stays_open(body):
     surface = cleaned((vertices, triangles[~leg]))
     assert_manifold(surface.mesh)
     assert characteristic(surface.mesh) == 1
-    assert not surface.inverted
+    assert not surface.counts.inverted
     assert "The source has 1 large opening: the surface ends there." in surface.notes
     assert_leads_back(surface)
 
@@ -406,10 +406,10 @@ def test_parts_are_sorted_by_area(body):
     surface = cleaned(messy)
     assert_like(surface, body)
     assert_leads_back(surface)
-    assert [part.triangle_count for part in surface.parts] == [len(eye[1]), len(tooth[1])]
+    assert [piece.mesh.triangle_count for piece in surface.pieces[1:]] == [len(eye[1]), len(tooth[1])]
     assert np.array_equal(np.bincount(surface.vertex_parts), [len(body[0]), len(eye[0]), len(tooth[0])])
-    assert [piece.inverted for piece in surface.pieces] == [False, True, False]
-    assert all(volume(part) > 0 for part in surface.parts)
+    assert [piece.turned.all() for piece in surface.pieces] == [False, True, False]
+    assert all(volume(piece.mesh) > 0 for piece in surface.pieces[1:])
 
 
 @pytest.mark.parametrize(("size", "main"), [(0.8, "body"), (1.5, "body"), (3.0, "sheet")])
@@ -433,7 +433,7 @@ def test_thousands_of_crumbs_are_in_no_part():
     random = np.random.default_rng(0)
     crumbs = random.normal(size=(300, 1, 3)) * 3 + random.normal(size=(300, 3, 3)) * 0.01
     surface = cleaned(together(icosphere(3), (crumbs.reshape(-1, 3), np.arange(900).reshape(-1, 3))))
-    assert len(surface.parts) == 256
+    assert len(surface.pieces) == 257
     assert (surface.vertex_parts < 0).sum() == 3 * 44
     assert "300 smaller parts" in surface.notes[-1]
 

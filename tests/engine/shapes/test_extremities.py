@@ -37,7 +37,7 @@ def ends(rest):
 
 def test_the_ends_of_legs_and_tail_are_tips(body):
     made, rest = body
-    tips = rest[made.samples[limb_tips(made)]]
+    tips = rest[made.samples.vertices[limb_tips(made)]]
     assert cKDTree(tips).query(ends(rest))[0].max() < 0.1 * np.sqrt(made.mesh.area)
 
 
@@ -51,7 +51,7 @@ def test_tips_are_few_and_the_farthest_come_first(body):
 def test_tips_do_not_depend_on_units_or_place(body):
     made, _ = body
     moved = shape(1000 * made.mesh.vertices + [5.0, -3.0, 7.0], made.mesh.triangles)
-    assert (moved.samples[limb_tips(moved)] == made.samples[limb_tips(made)]).all()
+    assert (moved.samples.vertices[limb_tips(moved)] == made.samples.vertices[limb_tips(made)]).all()
 
 
 # --- extremities
@@ -61,7 +61,7 @@ def test_tips_do_not_depend_on_units_or_place(body):
 def test_each_leg_and_the_tail_have_an_extremity_of_their_own(body, apart):
     made, rest = body
     chosen = spread_extremities(made, 8, apart)
-    distance, nearest = cKDTree(rest[made.samples[chosen]]).query(ends(rest))
+    distance, nearest = cKDTree(rest[made.samples.vertices[chosen]]).query(ends(rest))
     assert distance.max() < 0.1 * np.sqrt(made.mesh.area)
     assert len(set(nearest)) == 5
 
@@ -70,7 +70,7 @@ def test_each_leg_and_the_tail_have_an_extremity_of_their_own(body, apart):
 def test_limbs_of_other_lengths_have_the_same_extremities(legs, tail):
     vertices, triangles = relative_of_creature(legs, tail)
     made = shape(vertices, triangles)
-    chosen = vertices[made.samples[spread_extremities(made, 7, 0.25)]]
+    chosen = vertices[made.samples.vertices[spread_extremities(made, 7, 0.25)]]
     assert cKDTree(chosen).query(ends(vertices))[0].max() < 0.15 * np.sqrt(made.mesh.area)
 
 
@@ -86,7 +86,7 @@ def test_extremities_are_different_places_and_as_many_as_there_is_room_for():
     ball = shape(*icosphere(6))
     chosen = spread_extremities(ball, 6, 0.4)
     assert len(chosen) == len(set(chosen)) == 6
-    between = ball.sample_distances[np.ix_(chosen, chosen)] + np.eye(6)
+    between = ball.samples.distances[np.ix_(chosen, chosen)] + np.eye(6)
     assert between.min() > 0.3
     assert len(spread_extremities(ball, 100, 0.4)) < 20
     assert (spread_extremities(ball, 3, 0.4) == chosen[:3]).all()

@@ -30,8 +30,8 @@ def one_after_the_other(mesh, wanted=WANTED):
 
 def assert_same(first, second, wanted=WANTED):
     first, second = (shape.limited(wanted.samples, wanted.measured) for shape in (first, second))
-    np.testing.assert_array_equal(first.samples, second.samples)
-    np.testing.assert_array_equal(first.sample_rows, second.sample_rows)
+    np.testing.assert_array_equal(first.samples.vertices, second.samples.vertices)
+    np.testing.assert_array_equal(first.samples.rows, second.samples.rows)
     np.testing.assert_array_equal(first.spectrum.functions, second.spectrum.functions)
 
 
@@ -57,7 +57,7 @@ def test_what_they_have_is_not_computed_again():
 def test_eigenpairs_may_not_be_wanted():
     shapes = [Shape(mesh) for mesh in meshes()]
     run(prepared_shapes_steps(*shapes, Wanted(30)))
-    assert [shape.sample_count for shape in shapes] == [30, 30]
+    assert [len(shape.samples) for shape in shapes] == [30, 30]
     with pytest.raises(RuntimeError, match="spectrum"):
         shapes[0].spectrum  # noqa: B018
 
@@ -78,7 +78,7 @@ def test_what_is_sent_is_the_same_as_long_as_nothing_changes():
     run(shape.sample_steps(60, 30))
     more = shape.lean()
     assert more is not sent
-    assert (len(sent.sample_rows), len(more.sample_rows)) == (12, 30)
+    assert (len(sent.samples.rows), len(more.samples.rows)) == (12, 30)
     run(shape.spectrum_steps(25))
     assert shape.lean() is not more
 
@@ -90,4 +90,4 @@ def test_what_arrives_elsewhere_says_the_same_of_the_surface():
     assert not hasattr(arrived.shape, "original")
     for name in "functions", "vertices", "signatures", "patches", "curvature", "gradients", "places":
         np.testing.assert_array_equal(getattr(arrived, name), getattr(sent, name))
-    np.testing.assert_array_equal(arrived.shape.sample_distances, sent.shape.sample_distances)
+    np.testing.assert_array_equal(arrived.shape.samples.distances, sent.shape.samples.distances)

@@ -125,12 +125,12 @@ def test_the_vertices_of_the_shape_come_first_and_its_samples_stay(bodies):
     assert n < finer.mesh.vertex_count <= 4 * n
     np.testing.assert_array_equal(finer.mesh.vertices[:n], shape.mesh.vertices)
     for each in (finer, other):
-        np.testing.assert_array_equal(each.samples, shape.samples)
-        assert (each.sample_count, each.measured_count) == (60, 12)
-        np.testing.assert_array_equal(each.sample_rows[:, :n], shape.sample_rows)
-        true = each.solver.distances(each.samples[:12]) / each.scale
-        assert np.abs(each.sample_rows[:12] - true).max() < 0.03
-        assert np.abs(each.sample_rows[:12] - true).mean() < 0.005
+        np.testing.assert_array_equal(each.samples.vertices, shape.samples.vertices)
+        assert (len(each.samples), each.samples.measured) == (60, 12)
+        np.testing.assert_array_equal(each.samples.rows[:, :n], shape.samples.rows)
+        true = each.solver.distances(each.samples.vertices[:12]) / each.scale
+        assert np.abs(each.samples.rows[:12] - true).max() < 0.03
+        assert np.abs(each.samples.rows[:12] - true).mean() < 0.005
         assert isinstance(each.spectrum, Spectrum)
         assert len(each.spectrum) == 30
     assert finer.spectrum is other.spectrum

@@ -34,23 +34,23 @@ def mesh(request):
 
 def test_the_first_are_measured_and_the_others_estimated(mesh):
     shape = sampled(mesh, (COUNT, MEASURED)).limited(COUNT, MEASURED)
-    assert (shape.sample_count, shape.measured_count) == (COUNT, MEASURED)
-    true = shape.solver.distances(shape.samples) / shape.scale
-    np.testing.assert_allclose(shape.sample_rows[:MEASURED], true[:MEASURED], rtol=1e-6)
-    errors = shape.sample_rows[MEASURED:] - true[MEASURED:]
+    assert (len(shape.samples), shape.samples.measured) == (COUNT, MEASURED)
+    true = shape.solver.distances(shape.samples.vertices) / shape.scale
+    np.testing.assert_allclose(shape.samples.rows[:MEASURED], true[:MEASURED], rtol=1e-6)
+    errors = shape.samples.rows[MEASURED:] - true[MEASURED:]
     assert abs(errors.mean()) < 0.008
     assert np.abs(errors).mean() < 0.02
-    lengths = shape.solver.path_lengths(shape.samples) / shape.scale
+    lengths = shape.solver.path_lengths(shape.samples.vertices) / shape.scale
     assert (lengths > true - 1e-9).all()
     assert np.abs(lengths - true).mean() > 1.5 * np.abs(errors).mean()  # what is gained by comparing them
 
 
 def test_distances_between_samples_are_measured_where_they_can_be(mesh):
     shape = sampled(mesh, (COUNT, MEASURED)).limited(COUNT, MEASURED)
-    between = shape.sample_distances
+    between = shape.samples.distances
     np.testing.assert_array_equal(between, between.T)
     np.testing.assert_array_equal(between.diagonal(), 0)
-    measured = shape.sample_rows[:MEASURED, shape.samples[MEASURED:]]
+    measured = shape.samples.rows[:MEASURED, shape.samples.vertices[MEASURED:]]
     np.testing.assert_array_equal(between[:MEASURED, MEASURED:], measured)
 
 
@@ -60,32 +60,34 @@ def test_what_was_asked_for_before_does_not_matter(mesh):
     for before in others:
         shape = sampled(mesh, *before, (COUNT, MEASURED))
         view = shape.limited(COUNT, MEASURED)
-        np.testing.assert_array_equal(view.samples, alone.samples)
-        np.testing.assert_array_equal(view.sample_rows, alone.sample_rows)
-        assert view.measured_count == MEASURED
+        np.testing.assert_array_equal(view.samples.vertices, alone.samples.vertices)
+        np.testing.assert_array_equal(view.samples.rows, alone.samples.rows)
+        assert view.samples.measured == MEASURED
         run(shape.sample_steps(COUNT))
-        assert shape.limited(COUNT).measured_count == COUNT
-        np.testing.assert_array_equal(shape.limited(COUNT).sample_rows, sampled(mesh, (COUNT,)).sample_rows)
+        assert shape.limited(COUNT).samples.measured == COUNT
+        np.testing.assert_array_equal(shape.limited(COUNT).samples.rows, sampled(mesh, (COUNT,)).samples.rows)
 
 
 def test_fewer_of_the_estimated_ones_are_the_first_of_them(mesh):
     shape = sampled(mesh, (COUNT, MEASURED)).limited(COUNT, MEASURED)
     for count, measured in ((30, MEASURED), (8, 8)):
         fewer = shape.limited(count)
-        assert (fewer.sample_count, fewer.measured_count) == (count, measured)
-        np.testing.assert_array_equal(fewer.sample_rows, shape.sample_rows[:count])
+        assert (len(fewer.samples), fewer.samples.measured) == (count, measured)
+        np.testing.assert_array_equal(fewer.samples.rows, shape.samples.rows[:count])
 
 
 def test_other_samples_of_a_shape_with_estimates_are_measured():
     shape = sampled(TriangleMesh(*creature(0.5, 11)[:2]), (COUNT, MEASURED)).limited(COUNT, MEASURED)
     other = shape.starting_with(np.array([5, 9]))
     run(other.sample_steps(20))
-    assert other.measured_count == other.sample_count == 20
-    np.testing.assert_allclose(other.sample_rows, other.solver.distances(other.samples) / other.scale, rtol=1e-6)
+    assert other.samples.measured == len(other.samples) == 20
+    np.testing.assert_allclose(
+        other.samples.rows, other.solver.distances(other.samples.vertices) / other.scale, rtol=1e-6
+    )
 
 
 def test_of_few_vertices_all_are_measured():
     mesh = TriangleMesh(*icosphere(1))
     shape = sampled(mesh, (200, 100))
     assert shape.limited(200, 100) is shape
-    assert shape.sample_count == shape.measured_count == mesh.vertex_count
+    assert len(shape.samples) == shape.samples.measured == mesh.vertex_count

@@ -140,9 +140,9 @@ def test_rows_of_the_samples_are_used(monkeypatch):
     run(shape.sample_steps(20))
     monkeypatch.setattr(shape.solver, "distances_in_blocks", lambda rows: pytest.fail("again") if len(rows) else ())
     distances = SurfaceDistances(shape)
-    points = SurfacePoints.at_vertices(shape.mesh, shape.samples)
+    points = SurfacePoints.at_vertices(shape.mesh, shape.samples.vertices)
     distances.prepare(points)
-    np.testing.assert_allclose(distances.between(points), shape.sample_distances, atol=1e-5)
+    np.testing.assert_allclose(distances.between(points), shape.samples.distances, atol=1e-5)
 
 
 def test_estimates_from_the_samples_are_not_used():
@@ -150,9 +150,9 @@ def test_estimates_from_the_samples_are_not_used():
     run(shape.sample_steps(30, 10))
     estimated = shape.limited(30, 10)
     distances = SurfaceDistances(estimated)
-    points = SurfacePoints.at_vertices(shape.mesh, estimated.samples)
+    points = SurfacePoints.at_vertices(shape.mesh, estimated.samples.vertices)
     distances.prepare(points)
-    true = shape.solver.distances(estimated.samples)[:, estimated.samples] / shape.scale
+    true = shape.solver.distances(estimated.samples.vertices)[:, estimated.samples.vertices] / shape.scale
     np.testing.assert_allclose(distances.between(points), (true + true.T) / 2, atol=1e-5)
 
 

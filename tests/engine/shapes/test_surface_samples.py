@@ -75,7 +75,7 @@ def test_shapes_that_differ_in_their_samples_share_the_rest():
         assert other.laplace is shape.laplace
         assert other.spectrum is shape.spectrum
         assert other.solver is shape.solver
-    assert (few.sample_count, own.sample_count) == (8, 0)
+    assert (len(few.samples), len(own.samples)) == (8, 0)
     run(few.sample_steps(15))  # more than it was limited to
-    assert (few.sample_count, few.measured_count, shape.sample_count) == (15, 15, 20)
-    np.testing.assert_array_equal(few.samples, shape.samples[:15])
+    assert (len(few.samples), few.samples.measured, len(shape.samples)) == (15, 15, 20)
+    np.testing.assert_array_equal(few.samples.vertices, shape.samples.vertices[:15])

@@ -21,7 +21,6 @@ def fitted(*, confidence=1.0, bare=0, through=0.0):
         scales=zeros + 1,
         places=csr_array((10, 4)),
         pieces=np.full(10, -1),
-        clearance_before=zeros,
         clearance=zeros,
         pushed=zeros,
         confidence=zeros + confidence,

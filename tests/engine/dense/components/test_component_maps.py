@@ -74,7 +74,7 @@ def test_a_clean_mesh_needs_no_followers(rest):
     assert np.array_equal(result.surroundings, np.arange(len(rest[0])))
     assert (result.confidence == 1).all()
     assert np.array_equal(result.partners, [0])
-    assert x.parts == ()
+    assert len(x.pieces) == 1
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
@@ -88,7 +88,7 @@ def test_eyes_find_the_eyes_at_their_place(rest, mirrored):
         vertices = vertices * [-1, 1, 1]
     x, y, result = followed(x_mesh, (vertices, triangles), len(rest[0]))
     assert_valid(result, y)
-    assert y.inverted == mirrored
+    assert y.counts.inverted == mirrored
     assert (result.partners[1:] > 0).all()
     count, eye = len(rest[0]), len(ball(LEFT_EYE, 0.05)[0])
     left, right = np.arange(count, count + eye), np.arange(count + eye, count + 2 * eye)
@@ -121,7 +121,7 @@ def test_parts_of_another_size_or_place_are_no_partners(rest, other):
     x, y, result = followed(together(rest, ball(LEFT_EYE, 0.05)), together(rest, other), len(rest[0]))
     assert_valid(result, y)
     assert np.array_equal(result.partners, [0, 0])
-    assert len(x.parts) == len(y.parts) == 1
+    assert len(x.pieces) == len(y.pieces) == 2
 
 
 def test_parts_of_another_shape_are_no_partners(rest):

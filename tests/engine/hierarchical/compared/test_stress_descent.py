@@ -138,9 +138,9 @@ def test_between_vertices_it_comes_closer_than_at_them():
     mesh_x = TriangleMesh(vertices_x, triangles_x)
     source, target = Shape(mesh_x), Shape(TriangleMesh(*creature(0.0, 9, turn=0.8)[:2]))
     run(source.sample_steps(24))
-    samples = source.samples
+    samples = source.samples.vertices
     start = nearest_vertices(target.mesh, source.mesh.vertices[samples])
-    steps = settle_steps(SurfaceDistances(target), start, Stress(source.sample_distances))
+    steps = settle_steps(SurfaceDistances(target), start, Stress(source.samples.distances))
     settled = run(steps)
     before, after = (
         np.linalg.norm(points.positions - source.mesh.vertices[samples], axis=1) for points in (start, settled.points)

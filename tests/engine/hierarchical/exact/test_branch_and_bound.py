@@ -301,22 +301,3 @@ def test_a_problem_without_any_matching_is_an_error():
 def test_a_problem_that_needs_too_much_memory_is_refused():
     with pytest.raises(MatchError, match="100 points and 101 candidates are too many"):
         branch_and_bound(random_problem(9, 100, 101))
-
-
-def test_distances_that_are_none_are_refused():
-    problem = random_problem(10, 3, 4)
-    for name, value, message in [
-        ("source_distances", np.inf, "connected"),
-        ("target_distances", np.nan, "connected"),
-        ("target_distances", -1.0, "negative"),
-    ]:
-        distances = getattr(problem, name).copy()
-        distances[0, 1] = distances[1, 0] = value
-        with pytest.raises(MatchError, match=message):
-            branch_and_bound(replaced(problem, **{name: distances}))
-    lopsided = problem.source_distances.copy()
-    lopsided[0, 1] += 1
-    with pytest.raises(MatchError, match="symmetric"):
-        branch_and_bound(replaced(problem, source_distances=lopsided))
-    with pytest.raises(MatchError, match="not numbers"):
-        branch_and_bound(replaced(problem, linear=np.full((3, 4), np.nan)))

@@ -39,6 +39,8 @@ def test_what_is_no_skeleton_is_refused(parents, heads, message):
 
 def test_subtrees_hold_all_that_hangs_on_a_bone():
     tree = skeleton([2, 0, -1, 2])  # not in order
-    found = [set(np.flatnonzero(row)) for row in tree.subtrees]
+    found = [set(np.flatnonzero(row)) for row in tree.hanging]
     assert found == [{0, 1}, {1}, {0, 1, 2, 3}, {3}]
-    assert found == [{bone, *tree.below(bone)} for bone in range(4)]
+    assert all(
+        set(tree.above(bone)) == {other for other in range(4) if bone in found[other]} - {bone} for bone in range(4)
+    )

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import MatchError, MeshError, SurfaceMap, TriangleMesh
-from engine.retarget.values.corner_transfer import carry_corner_values, carry_normals, carry_point_marks
+from engine import MeshError, SurfaceMap, TriangleMesh
+from engine.retarget.values.corner_transfer import carry_normals, carry_point_marks
 from engine.retarget.values.face_correspondence import FacePlaces
 from tests.faces import closest_map, grid, triangulated, tube
 from tests.shapes import rotation
@@ -37,12 +37,10 @@ def test_deviating_normals_turn_with_the_surface():
     np.testing.assert_allclose(carried, flat @ turn.T, atol=1e-9)
 
 
-def test_one_value_for_each_corner():
+def test_one_normal_for_each_corner():
     side = grid(2, 2)
     image = triangulated(*side[:2])
     places = FacePlaces(image, side[1], SurfaceMap.identity(image))
-    with pytest.raises(MatchError, match="each of 16 corners"):
-        carry_corner_values(np.zeros(9), side[1], places)
     with pytest.raises(MeshError, match="each of 16 corners"):
         carry_normals(np.zeros((9, 3)), side[1], places, image, np.zeros((9, 3, 3)))
 

@@ -120,11 +120,6 @@ def test_locked_weights_stay_and_count():
     np.testing.assert_allclose(left, [0.01, 0, 0, 0])
 
 
-def test_a_limit_below_one_is_refused():
-    with pytest.raises(RigError, match="one weight at least"):
-        limited(random_weights(0), 0)
-
-
 def test_tiny_weights_go_but_never_the_last_one():
     locked = np.array([False, False, True])
     weights = sparse([[0.005, 0.9, 0.004], [0.002, 0.001, 0]])
