@@ -31,9 +31,6 @@ _FEW_PAIRS = 15_000
 """Pairs of a point and a triangle up to which all are tried: that takes 0.1 microseconds a pair, and never misses.  A
 search from the nearest vertices takes at least 1.4 milliseconds."""
 
-_FLAT = 1e-9
-"""Squared sine of an angle of a triangle up to which scalar products do not tell where in it a point is."""
-
 _TREE_CHUNK = 100_000
 """Points looked up in the tree at once, which bounds the memory of their coordinates and normals side by side."""
 
@@ -146,11 +143,6 @@ class ClosestPoints:
         self._rings = rings
         self._coordinates = np.ascontiguousarray(vertices.T)  # (3, n): whole rows are faster to compute with
         self._trees: dict[float, cKDTree] = {}
-
-    @cached_property
-    def _fans(self) -> _Fans:
-        """What a walk needs to know of the surface."""
-        return _Fans(self._rings, self.vertices)
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out what is computed when that is asked for."""
@@ -294,20 +286,20 @@ class ClosestPoints:
         origin, ab, ac, own = a - centre, b - a, c - a, points - centre.T
         ab_ab, ab_ac, ac_ac = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac)
         ab_ap, ac_ap = own @ ab - _dot(origin, ab), own @ ac - _dot(origin, ac)  # (k, m)
-        products = np.broadcast_arrays(ab_ab, ab_ac, ac_ac, ab_ap, ac_ap)
-        v, w = (part.reshape(ab_ap.shape) for part in _closest_by_products(*(each.ravel() for each in products)))
+        divisor = np.maximum(ab_ab, TINY)
+        height = ac - (ab_ac / divisor) * ab
+        w = (ac_ap - (ab_ac / divisor) * ab_ap) / np.maximum(_dot(height, height), TINY)
+        v = (ab_ap - w * ab_ac) / divisor
+        inside = (v >= 0) & (w >= 0) & (v + w <= 1)
+        sides = _closest_on_sides(ab_ab, ab_ac, ac_ac, ab_ap, ac_ap)
+        v, w = (np.where(inside, *pair) for pair in zip((v, w), sides, strict=True))
         cost = v * (v * ab_ab - 2 * ab_ap) + w * (w * ac_ac + 2 * v * ab_ac - 2 * ac_ap)
         cost += _dot(origin, origin) - 2 * own @ origin  # all but |own|^2, which a point's triangles have in common
         if normals is not None and normal_weight:
             product = normals @ self._triangle_normals
             cost += normal_weight * np.maximum(normal_gate - product, 0)
         triangles = cost.argmin(axis=1)
-        return self._in_triangles(points, triangles)
-
-    def _in_triangles(self, points: Floats, triangles: Ints) -> FoundPoints:
-        """Find the closest point of a triangle (k,) for each point (k, d)."""
-        corners = (self.vertices.take(corner, axis=0) for corner in self.triangles.take(triangles, axis=0).T)
-        return FoundPoints(triangles, *closest_in_triangles(points, *corners))
+        return FoundPoints(triangles, *closest_in_triangles(points, *(part.T[triangles] for part in (a, b, c))))
 
     def at_vertices(self, points: Floats, vertices: Ints) -> FoundPoints:
         """Name vertices (k,), which must have triangles, as what was found for points (k, 3)."""
@@ -361,18 +353,19 @@ class ClosestPoints:
         starts = starts[:, None] if starts.ndim == 1 else starts
         if not self._rings.counts[starts].all():
             raise MeshError("A search along the surface starts at a vertex without a triangle. Delete loose vertices.")
-        triangles = np.empty(len(points), np.int64)
-        for first in range(0, len(points), _BLOCK):
+        k = len(points)
+        triangles, barycentric, squared_distances = np.empty(k, np.int64), np.empty((k, 3)), np.empty(k)
+        for first in range(0, k, _BLOCK):
             part = slice(first, first + _BLOCK)
             penalty = None
             if normals is not None and normal_weight:
                 chunk = np.ascontiguousarray(normals[part].T)
                 penalty = _NormalPenalty(chunk, self._triangle_normals, normal_weight, normal_gate)
-            walk = _Walk(self._fans, points[part], penalty)
+            walk = _Walk(self._coordinates, self._rings, np.ascontiguousarray(points[part].T), penalty)
             for start in starts[part].T:
                 walk.search(start, steps)
-            triangles[part] = walk.triangles()
-        return self._in_triangles(points, triangles)
+            triangles[part], barycentric[part], squared_distances[part] = walk.found()
+        return FoundPoints(triangles, barycentric, squared_distances)
 
 
 def facing(search: ClosestPoints, points: Floats, normals: Floats, size: float) -> FoundPoints:
@@ -433,31 +426,14 @@ class _NormalPenalty:
         return self.weight * np.maximum(self.gate - product, 0)
 
 
-class _Fans:
-    """The triangles around the vertices of a surface, by the scalar products of their sides at each place, (3 m,).
-
-    Vectors are rows, relative to the centre, as rounding grows with the distance from the origin.
-    """
-
-    def __init__(self, rings: _Rings, vertices: Floats) -> None:
-        self.rings = rings
-        self.centre = vertices.mean(axis=0)
-        self.vertices = np.ascontiguousarray(vertices - self.centre)
-        a, b, c = (self.vertices.take(corner, axis=0) for corner in rings.triangles.T)
-        sides = np.stack([_row_squares(side) for side in (b - a, c - b, a - c)], axis=1).ravel()
-        slot = rings.corners % 3
-        self.ab_ab = sides.take(rings.corners)
-        self.ac_ac = sides.take(rings.corners + np.where(slot == 0, 2, -1))
-        self.ab_ac = (self.ab_ab + self.ac_ac - sides.take(rings.corners + np.where(slot == 2, -2, 1))) / 2
-
-
 class _Walk:
-    """The search for some points (k, d) at once."""
+    """The search for some points at once; all arrays of vectors are (3, k)."""
 
-    def __init__(self, fans: _Fans, points: Floats, penalty: _NormalPenalty | None) -> None:
-        k = len(points)
-        self.fans, self.rings, self.points, self.penalty = fans, fans.rings, points - fans.centre, penalty
+    def __init__(self, coordinates: Floats, rings: _Rings, points: Floats, penalty: _NormalPenalty | None) -> None:
+        k = points.shape[1]
+        self.coordinates, self.rings, self.points, self.penalty = coordinates, rings, points, penalty
         self.cost = np.full(k, np.inf)
+        self.squared_distances = np.full(k, np.inf)
         self.places = np.zeros(k, np.int64)
         self.corners = np.full((3, k), -1)  # the vertex of the place, the next and the last
         self.barycentric = np.zeros((3, k))  # of these
@@ -485,11 +461,8 @@ class _Walk:
             active, vertices = active[left], corners[choice[left], left]
 
     def _try_around(self, points: Ints, vertices: Ints) -> None:
-        """Try the triangles around a vertex for each point, and keep the best where it is better than what is known.
-
-        Scalar products choose the triangle, but are too inexact for the place in one that is a needle.
-        """
-        fans, rings = self.fans, self.rings
+        """Try the triangles around a vertex for each point, and keep the best where it is better than what is known."""
+        rings = self.rings
         places, counts = rings.around(vertices)  # (p,) and (k,), p about 6 k
         following, last = rings.next.take(places), rings.last.take(places)
         before = self.visited[:2].take(points, axis=1)
@@ -503,42 +476,30 @@ class _Walk:
             points, vertices, counts = points[left], vertices[left], counts[left]
             if not len(points):
                 return
-        origin = fans.vertices.take(vertices, axis=0)
-        own = self.points.take(points, axis=0) - origin
-        away, along = np.repeat([_row_squares(own), _row_products(origin, own)], counts, axis=1)
-        own = np.repeat(own, counts, axis=0)
-        ab_ap, ac_ap = (_row_products(fans.vertices.take(end, axis=0), own) - along for end in (following, last))
-        ab_ab, ab_ac, ac_ac = (products.take(places) for products in (fans.ab_ab, fans.ab_ac, fans.ac_ac))
-        v, w = _closest_by_products(ab_ab, ab_ac, ac_ac, ab_ap, ac_ap)
-        cost = away + v * (v * ab_ab + 2 * (w * ab_ac - ab_ap)) + w * (w * ac_ac - 2 * ac_ap)
+        origin = self.coordinates.take(vertices, axis=1)
+        ap = np.repeat(self.points.take(points, axis=1) - origin, counts, axis=1)
+        origin = np.repeat(origin, counts, axis=1)
+        ab = self.coordinates.take(following, axis=1) - origin
+        ac = self.coordinates.take(last, axis=1) - origin
+        v, w, squared = _closest(ap, ab, ac)
+        cost = squared
         if self.penalty is not None:
-            cost += self.penalty.of(np.repeat(points, counts), rings.corners.take(places) // 3)
+            cost = squared + self.penalty.of(np.repeat(points, counts), rings.corners.take(places) // 3)
         least, where = _least(cost, counts)
         better = np.flatnonzero(least < self.cost[points])
         points, vertices, where = points[better], vertices[better], where[better]
         self.cost[points] = least[better]
+        self.squared_distances[points] = squared[where]
         self.places[points] = places[where]
         self.corners[:, points] = vertices, following[where], last[where]
         self.barycentric[:, points] = 1 - v[where] - w[where], v[where], w[where]
 
-    def triangles(self) -> Ints:
-        """Return the best triangles, (k,)."""
-        return self.rings.corners[self.places] // 3
-
-
-def _closest_by_products(
-    ab_ab: Floats, ab_ac: Floats, ac_ac: Floats, ab_ap: Floats, ac_ap: Floats
-) -> tuple[Floats, Floats]:
-    """Find v and w of the closest points a + v ab + w ac of triangles, from the scalar products (k,) of the vectors."""
-    determinant = ab_ab * ac_ac - ab_ac * ab_ac
-    flat = determinant <= _FLAT * ab_ab * ac_ac
-    determinant = np.where(flat, np.inf, determinant)
-    v, w = (ac_ac * ab_ap - ab_ac * ac_ap) / determinant, (ab_ab * ac_ap - ab_ac * ab_ap) / determinant
-    outside = np.flatnonzero(flat | (v < 0) | (w < 0) | (v + w > 1))
-    v[outside], w[outside] = _closest_on_sides(
-        *(product.take(outside) for product in (ab_ab, ab_ac, ac_ac, ab_ap, ac_ap))
-    )
-    return v, w
+    def found(self) -> tuple[Ints, Floats, Floats]:
+        """Triangles (k,), coordinates in the order of their corners (k, 3), and squared distances (k,)."""
+        triangles, slot = np.divmod(self.rings.corners[self.places], 3)
+        order = (np.arange(3) - slot[:, None]) % 3  # corner i of the triangle is corner i - slot from the place
+        barycentric = np.take_along_axis(self.barycentric.T, order, axis=1)
+        return triangles, barycentric.clip(min=0), self.squared_distances
 
 
 def _closest(ap: Floats, ab: Floats, ac: Floats) -> tuple[Floats, Floats, Floats]:
@@ -584,16 +545,6 @@ def _closest_on_sides(
 def _dot(x: Floats, y: Floats) -> Floats:
     """Scalar products of vectors (3, k)."""
     return np.einsum("dk,dk->k", x, y)
-
-
-def _row_products(x: Floats, y: Floats) -> Floats:
-    """Scalar products of vectors (k, d)."""
-    return np.einsum("kd,kd->k", x, y)
-
-
-def _row_squares(x: Floats) -> Floats:
-    """Squared lengths of vectors (k, d)."""
-    return _row_products(x, x)
 
 
 def _least(values: Floats, counts: Ints) -> tuple[Floats, Ints]:
