@@ -26,6 +26,7 @@ import numpy as np
 from mathutils import Euler, Matrix
 
 from engine import ClosestPoints, TriangleMesh
+from tests.benchmarks.action_strip import shown_surface
 from tests.benchmarks.maker_rigs import limb
 from tools.source_extension import registered_extension
 
@@ -102,25 +103,6 @@ def taken_out(obj, materials):
     return part
 
 
-def surface(objects):
-    """All of some objects as they are shown."""
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    vertices, triangles, count = [], [], 0
-    for obj in objects:
-        made = obj.evaluated_get(depsgraph)
-        mesh = made.to_mesh()
-        mesh.calc_loop_triangles()
-        points, corners = np.empty(3 * len(mesh.vertices)), np.empty(3 * len(mesh.loop_triangles), np.int64)
-        mesh.vertices.foreach_get("co", points)
-        mesh.loop_triangles.foreach_get("vertices", corners)
-        matrix = np.array(made.matrix_world)
-        vertices.append(points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3])
-        triangles.append(corners.reshape(-1, 3) + count)
-        count += len(vertices[-1])
-        made.to_mesh_clear()
-    return TriangleMesh(np.concatenate(vertices), np.concatenate(triangles))
-
-
 def through(body, items):
     """Which of the skin's triangles have an item near, and which of these are above it, with no other above, (m,)."""
     unit = np.sqrt(body.area)
@@ -128,7 +110,7 @@ def through(body, items):
 
     def near(points):
         found = search.nearest(points)
-        away = np.einsum("kc,kci->ki", found.barycentric, items.vertices[items.triangles[found.triangles]]) - middles
+        away = found.interpolate(items.triangles, items.vertices) - middles
         heights = np.einsum("ki,ki->k", away, normals)
         return heights, np.linalg.norm(away - heights[:, None] * normals, axis=1)
 
@@ -153,8 +135,8 @@ def shown(rig, bodies, items):
                 bone.rotation_mode = "QUATERNION"
                 bone.rotation_quaternion = (axes.inverted() @ Euler(turn).to_matrix() @ axes).to_quaternion()
         bpy.context.view_layer.update()
-        body = surface(bodies)
-        near, shows = through(body, surface(items))
+        body = TriangleMesh(*shown_surface(bodies))
+        near, shows = through(body, TriangleMesh(*shown_surface(items)))
         if below is None:
             below = body.triangle_areas * near
         parts.append(below[shows].sum() / below.sum())
