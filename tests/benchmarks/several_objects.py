@@ -163,7 +163,7 @@ def row(folder, names, *, joined):
         posed = [np.einsum("nb,nbi->ni", weights, points) for weights in (got, true)]
         errors.append(areas @ np.linalg.norm(posed[0] - posed[1], axis=1))
         for widths, each in zip(cracks, posed, strict=True):
-            widths.append(widest(each, seam))
+            widths.append(gaps(each, seam).max())
     numbers = [np.mean(apart), np.max(apart), np.mean(errors), np.max(cracks[0]), np.max(cracks[1])]
     titles = " -> ".join(Path(name).stem for name in names)
     said = "  ".join(f"{100 * number / height:6.3f}" for number in numbers)
@@ -182,12 +182,12 @@ def normalized(meshes, bones):
     return weights / np.where(sums > 0, sums, 1)
 
 
-def widest(places, seam):
-    """Find how far vertices (n, 3) are apart at most that have the same number (n,)."""
+def gaps(places, seam):
+    """How far vertices (n, 3) of the same number (n,) are apart at most, for each number."""
     ends = [np.full((seam.max() + 1, 3), sign * np.inf) for sign in (1, -1)]
     np.minimum.at(ends[0], seam, places)
     np.maximum.at(ends[1], seam, places)
-    return np.linalg.norm(ends[1] - ends[0], axis=1).max()
+    return np.linalg.norm(ends[1] - ends[0], axis=1)
 
 
 def main():

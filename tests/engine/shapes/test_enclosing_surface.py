@@ -146,6 +146,19 @@ def test_small_parts_of_a_finger_belong_to_the_body_but_an_eye_of_their_size_doe
     assert surface.mesh.vertices[:, 0].max() == pytest.approx(mesh.vertices[:, 0].max(), abs=0.03)
 
 
+def test_thin_parts_of_a_finger_and_the_balls_between_them_are_all_joined(body):
+    ball, faces = icosphere(4)
+    tip = body.mesh.vertices[body.mesh.vertices[:, 0].argmax()]
+    places = tip + np.arange(8)[:, None] * [0.03, 0, 0]
+    sizes = [(0.016, 0.012, 0.012), (0.02, 0.008, 0.008)]
+    finger = [(ball * sizes[number % 2] + place, faces) for number, place in enumerate(places)]
+    mesh = TriangleMesh(*together((body.mesh.vertices, body.mesh.triangles), *finger))
+    surface = joined(mesh)
+    assert surface.mesh.component_count == 1
+    assert surface.mesh.vertices[:, 0].max() == pytest.approx(places[-1, 0], abs=0.03)
+    assert (surface.cleaned.vertex_parts == 0).all()
+
+
 def test_a_mesh_in_one_piece_has_no_limbs():
     shape = Shape(whole())
     assert not shape.surface.cleaned.limbs.any()
