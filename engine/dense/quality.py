@@ -31,8 +31,8 @@ _NEARLY_WHOLE = 0.95
 _FEW = 0.02
 """Part of a mesh in pieces without a counterpart up to which nothing is said: eyes, teeth and buttons."""
 
-_ROUNDED = 0.98
-"""Parts from which on tenths of a percent are said."""
+_SMALL_PART = 0.98
+"""Part of a surface from which on what has no partner is small: less than a hand."""
 
 
 @dataclass(frozen=True)
@@ -257,7 +257,7 @@ def _difference(quality: MatchQuality) -> str:
     if min(quality.coverage, quality.source_coverage) < _WHOLE:
         return _missing(quality.source_coverage, quality.coverage)
     if quality.pieces_alone > _FEW:
-        share = _percentage(quality.pieces_alone)
+        share = f"{quality.pieces_alone:.0%}"
         return f"Separate pieces, {share} of a mesh, have no counterpart on the other: check where they went."
     if disagreement > 0.02 or distortion > 0.5:
         return "The shapes differ much: the map is a good guess that keeps left and right, but details may slide."
@@ -268,10 +268,14 @@ def _difference(quality: MatchQuality) -> str:
 
 def _missing(source: float, target: float) -> str:
     """Say what part of the source has a partner, or of the target: of the one that has more that the other lacks."""
+    if _SMALL_PART <= target <= source:
+        return f"The shapes correspond, but for a small part of the target ({1 - target:.1%}) that the other lacks."
+    if _SMALL_PART <= source < target:
+        return f"The shapes correspond, but for a small part of the source ({1 - source:.1%}) that the other lacks."
     missing = "parts of one shape seem to be missing on the other."
     if target <= source:
-        return f"Only {_percentage(target)} of the target is reached: {missing}"
-    return f"Only {_percentage(source)} of the source has a partner: {missing}"
+        return f"Only {target:.0%} of the target is reached: {missing}"
+    return f"Only {source:.0%} of the source has a partner: {missing}"
 
 
 def overlap_sentence(shares: tuple[float, float], *, credible: bool) -> str:
@@ -280,13 +284,7 @@ def overlap_sentence(shares: tuple[float, float], *, credible: bool) -> str:
         return "It is not clear what the shapes share: do not trust the map; add landmarks, or cut them alike."
     if max(shares) >= _NEARLY_WHOLE:
         return _missing(*shares)
-    source, target = (_percentage(share) for share in shares)
-    return f"The shapes overlap: {source} of the source and {target} of the target have a partner."
-
-
-def _percentage(part: float) -> str:
-    """Write a part of a whole so that what is left does not vanish."""
-    return f"{part:.0%}" if part < _ROUNDED else f"{part:.1%}"
+    return f"The shapes overlap: {shares[0]:.0%} of the source and {shares[1]:.0%} of the target have a partner."
 
 
 def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> Floats:

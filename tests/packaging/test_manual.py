@@ -37,6 +37,13 @@ def links(page):
     return [(name, anchor) for name, anchor in found if "://" not in name]
 
 
+def test_the_way_out_for_another_python_is_where_it_is_looked_for():
+    row = next(line for line in text(DOCS / "troubleshooting.md").splitlines() if "incompatible" in line)
+    made = re.search(r"`make ([\w-]+)`", row).group(1)
+    assert re.search(rf"^{made}:", text(ROOT / "Makefile"), re.MULTILINE)
+    assert f"make {made}" in text(DOCS / "install.md")
+
+
 def python_blocks():
     return [
         pytest.param(block, id=f"{page.stem}-{number}")

@@ -1844,6 +1844,12 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     'Click on a place of "{0}" or "{1}"': "「{0}」か「{1}」の場所をクリック",
     'Click on the corresponding place of "{0}"': "「{0}」の対応する場所をクリック",
+    "The shapes correspond, but for a small part of the target ({0}) that the other lacks.": (
+        "形状は対応していますが、ターゲットの小さな一部（{0}）がソースにありません。"
+    ),
+    "The shapes correspond, but for a small part of the source ({0}) that the other lacks.": (
+        "形状は対応していますが、ソースの小さな一部（{0}）がターゲットにありません。"
+    ),
     "Only {0} of the target is reached: {1}": "ターゲットの{0}にしか届いていません。{1}",
     "The shapes overlap: {0} of the source and {1} of the target have a partner.": (
         "形状は一部で重なっています。ソースの{0}とターゲットの{1}に対応する場所があります。"

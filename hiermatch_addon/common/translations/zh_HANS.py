@@ -1534,6 +1534,12 @@ MESSAGES: Final[dict[str, str]] = {
     "{0}    Landmarks added: {1}    Enter: done    Esc: back": "{0}    已添加地标：{1}    Enter：完成    Esc：返回",
     'Click on a place of "{0}" or "{1}"': "点击“{0}”或“{1}”上的一处",
     'Click on the corresponding place of "{0}"': "点击“{0}”上的对应位置",
+    "The shapes correspond, but for a small part of the target ({0}) that the other lacks.": (
+        "两个形状相对应，只有目标的一小部分（{0}）在源上不存在。"
+    ),
+    "The shapes correspond, but for a small part of the source ({0}) that the other lacks.": (
+        "两个形状相对应，只有源的一小部分（{0}）在目标上不存在。"
+    ),
     "Only {0} of the target is reached: {1}": "只覆盖了目标的 {0}：{1}",
     "The shapes overlap: {0} of the source and {1} of the target have a partner.": (
         "两个形状部分重叠：源的 {0} 和目标的 {1} 有对应位置。"

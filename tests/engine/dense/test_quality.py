@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import TriangleMesh
 from engine.dense.missing_parts import with_partner
-from engine.dense.quality import assess_maps, map_confidence, with_pieces
+from engine.dense.quality import assess_maps, map_confidence, overlap_sentence, with_pieces
 from tests.bodies import mirrored_body
 from tests.engine.dense.test_missing_parts import at, cut_square, nearest_on, without_cap
 from tests.shapes import creature, icosphere, permuted, plane, rotation
@@ -108,6 +108,13 @@ def test_a_half_that_is_not_reached_is_told(square):
     assert quality.coverage == pytest.approx(reach, abs=0.06)
     assert f"Only {quality.coverage:.0%} of the target is reached" in quality.sentence
     assert quality.disagreement == pytest.approx(0, abs=1e-9)
+
+
+def test_a_small_part_that_the_other_lacks_does_not_sound_like_a_failure():
+    sentence = overlap_sentence((1.0, 0.989), credible=True)
+    assert sentence == "The shapes correspond, but for a small part of the target (1.1%) that the other lacks."
+    assert "of the source (1.5%)" in overlap_sentence((0.985, 0.99), credible=True)
+    assert overlap_sentence((0.97, 1.0), credible=True).startswith("Only 97% of the source has a partner")
 
 
 def test_a_map_to_one_point_has_no_orientation_and_hardly_any_coverage(ball):
@@ -231,7 +238,7 @@ def test_so_is_a_small_part():
     there, back = nearest_on(rest, ball.vertices), nearest_on(ball, rest.vertices)
     quality = assess_maps(ball, rest, there, back, None)
     assert 0.98 < quality.source_coverage < 0.995
-    assert f"Only {quality.source_coverage:.1%} of the source has a partner" in quality.sentence
+    assert f"a small part of the source ({1 - quality.source_coverage:.1%})" in quality.sentence
     assert map_confidence(ball, rest, there, back)[depth.argmax()] == 0
 
 
