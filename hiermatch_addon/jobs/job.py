@@ -193,8 +193,8 @@ class MatchJob(SteppedJob):
         The objects, or characters of several.
     options : JobOptions
         What to match and to write.
-    writes : bool
-        Whether it is to be written at all: if not, the source may be another file's.
+    writes : pair of bool
+        Whether source and target are to be written to: if not, they may be another file's.
 
     Attributes
     ----------
@@ -208,13 +208,19 @@ class MatchJob(SteppedJob):
     """
 
     def __init__(
-        self, context: bpy.types.Context, source: Side, target: Side, options: JobOptions, *, writes: bool = True
+        self,
+        context: bpy.types.Context,
+        source: Side,
+        target: Side,
+        options: JobOptions,
+        *,
+        writes: tuple[bool, bool] = (True, True),
     ) -> None:
         self._start = time.perf_counter()
         self._options = options
         depsgraph = context.evaluated_depsgraph_get()  # brings world matrices up to date, too
         self._writes = writes
-        check_pair(view_layer_of(context), source, target, writes_source=writes)
+        check_pair(view_layer_of(context), source, target, writes=writes)
         for obj in (source, target):
             _check_points(obj, options.settings)
         self._references = (SideReference.of(source), SideReference.of(target))
@@ -378,7 +384,7 @@ class MatchJob(SteppedJob):
                 raise ObjectError(f'"{reference.name}" was deleted while it was being matched. Nothing was written.')
             objects.append(found)
         try:
-            check_pair(view_layer, *objects, writes_source=self._writes)
+            check_pair(view_layer, *objects, writes=self._writes)
         except ObjectError as error:
             raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
         for obj, mesh in zip(objects, self._meshes, strict=True):

@@ -98,7 +98,9 @@ class Carried:
 class _Leg:
     """The way to one target."""
 
-    def __init__(self, context: bpy.types.Context, source: Side, target: Side, options: TransferOptions) -> None:
+    def __init__(
+        self, context: bpy.types.Context, source: Side, target: Side, options: TransferOptions, *, writes: bool
+    ) -> None:
         self.reference, self.name = SideReference.of(target), target.name
         self.stored: StoredMaps | None = None
         self.refined = False
@@ -115,7 +117,8 @@ class _Leg:
             self.kept = kept.stored
         self.match: MatchJob | None = None
         if self.stored is None:
-            self.match = MatchJob(context, source, target, _with_maps(options.match), writes=is_own(source))
+            written = is_own(source), writes
+            self.match = MatchJob(context, source, target, _with_maps(options.match), writes=written)
             self.prefix = options.match.prefix
         self.mesh = read_surface(target, context.evaluated_depsgraph_get(), use_modifiers=False)
         self.state = _state(target)
@@ -184,6 +187,9 @@ class TransferJob(SteppedJob):
         Makes the transfers for one target.
     options : TransferOptions
         How the way is found.
+    writes : bool
+        Whether the meshes of the targets are written to.  If not, they may be another file's, with which no match is
+        kept.
 
     Attributes
     ----------
@@ -203,19 +209,21 @@ class TransferJob(SteppedJob):
         targets: Sequence[Side],
         make: Callable[[], list[Transfer]],
         options: TransferOptions,
+        *,
+        writes: bool = True,
     ) -> None:
         self._start = time.perf_counter()
-        self._options, self._accepted = options, options.accept_doubtful
+        self._options, self._accepted, self._writes = options, options.accept_doubtful, writes
         depsgraph = context.evaluated_depsgraph_get()
         view_layer = view_layer_of(context)
         check_side(view_layer, source, writable=False)
         for target in targets:
-            check_pair(view_layer, source, target, writes_source=False)
+            check_pair(view_layer, source, target, writes=(False, writes))
         self._source, self._source_name, self._source_state = SideReference.of(source), source.name, _state(source)
         self._mesh: TriangleMesh = read_surface(source, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []
         for target in targets:
-            leg = _Leg(context, source, target, options)
+            leg = _Leg(context, source, target, options, writes=writes)
             leg.read(context, source, target, make())
             self._legs.append(leg)
         wanted = any(transfer.uses_rig for leg in self._legs for transfer in leg.transfers)
@@ -257,9 +265,11 @@ class TransferJob(SteppedJob):
         """Write the match if it is new, and the better maps.
 
         A source carries one match of a prefix only: with several targets, the new matches are used but not kept.  Those
-        of a source that is another file's are kept on the target alone.
+        of a source that is another file's are kept on the target alone, those with such a target nowhere.
         """
         outcome = None
+        if not is_own(target):
+            return None
         if not is_own(source):
             self._keep_linked(context, leg, source, target)
             return None
@@ -369,6 +379,6 @@ class TransferJob(SteppedJob):
             side = reference.find()
             if side is None:
                 raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
-            check_side(view_layer, side, writable=bool(found))  # the source comes first, and is only read
+            check_side(view_layer, side, writable=bool(found) and self._writes)  # the source comes first
             found.append(side)
         return found[0], found[1:]

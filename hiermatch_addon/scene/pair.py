@@ -233,8 +233,10 @@ def _only(candidates: Sequence[Side], role: str) -> Side:
     return candidates[0]
 
 
-def check_pair(view_layer: bpy.types.ViewLayer, source: Side, target: Side, *, writes_source: bool = True) -> None:
-    """Make sure that two sides can be matched and written to; the source only if it `writes_source`.
+def check_pair(
+    view_layer: bpy.types.ViewLayer, source: Side, target: Side, *, writes: tuple[bool, bool] = (True, True)
+) -> None:
+    """Make sure that two sides can be matched, and those written to that it `writes`.
 
     Raises
     ------
@@ -243,8 +245,8 @@ def check_pair(view_layer: bpy.types.ViewLayer, source: Side, target: Side, *, w
     """
     if source == target:
         raise ObjectError(f'Source and Target are both "{source.name}". Choose two different objects.')
-    check_side(view_layer, source, writable=writes_source)
-    check_side(view_layer, target)
+    for side, writable in zip((source, target), writes, strict=True):
+        check_side(view_layer, side, writable=writable)
     for mine in parts_of(source):
         for other in parts_of(target):
             if mine == other:

@@ -1235,15 +1235,15 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"にアーマチュアがありません。アーマチュアか、アーマチュアモディファイアーを持つメッシュを選んでください。'
     ),
     'The armature "{0}" has no bones.': 'アーマチュア"{0}"にボーンがありません。',
-    'The armature "{0}" is linked from another file and cannot be animated here. Make it local first '
-    "(Object > Relations > Make Local).": (
-        'アーマチュア"{0}"は他のファイルからリンクされているため、ここではアニメーションできません。先にローカル'
-        "化してください(オブジェクト > 関係 > ローカル化)。"
+    'The armature "{0}" is linked from another file and cannot be animated here. Make a library override of its '
+    "character first (Object > Library Override > Make).": (
+        'アーマチュア"{0}"は他のファイルからリンクされているため、ここではアニメーションできません。先にキャラクター'
+        "のライブラリオーバーライドを作成してください(オブジェクト > ライブラリオーバーライド > 作成)。"
     ),
-    'The armature "{0}" is a library override and cannot be written to. Make it local first (Object > '
-    "Relations > Make Local).": (
-        'アーマチュア"{0}"はライブラリオーバーライドのため書き込めません。先にローカル化してください(オブジェクト'
-        " > 関係 > ローカル化)。"
+    'The armature "{0}" is a library override that cannot be edited. Make it editable first '
+    "(Object > Library Override > Make).": (
+        'アーマチュア"{0}"は編集できないライブラリオーバーライドです。先に編集可能にしてください(オブジェクト > '
+        "ライブラリオーバーライド > 作成)。"
     ),
     '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
         '"{0}"にはアーマチュアのボーンのウェイトがありません。リグを持つソースを選んでください。'

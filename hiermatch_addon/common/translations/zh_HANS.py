@@ -1021,12 +1021,12 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" 没有骨架。请选择骨架，或带有骨架修改器的网格。'
     ),
     'The armature "{0}" has no bones.': '骨架 "{0}" 没有骨骼。',
-    'The armature "{0}" is linked from another file and cannot be animated here. Make it local first '
-    "(Object > Relations > Make Local).": (
-        '骨架 "{0}" 链接自其他文件，无法在此制作动画。请先将其设为本地（物体 > 关系 > 设为本地）。'
+    'The armature "{0}" is linked from another file and cannot be animated here. Make a library override of its '
+    "character first (Object > Library Override > Make).": (
+        '骨架 "{0}" 链接自其他文件，无法在此制作动画。请先为其角色创建库重写（物体 > 库重写 > 创建）。'
     ),
-    'The armature "{0}" is a library override and cannot be written to. Make it local first (Object > '
-    "Relations > Make Local).": ('骨架 "{0}" 是库重写，无法写入。请先将其设为本地（物体 > 关系 > 设为本地）。'),
+    'The armature "{0}" is a library override that cannot be edited. Make it editable first '
+    "(Object > Library Override > Make).": ('骨架 "{0}" 是无法编辑的库重写。请先使其可编辑（物体 > 库重写 > 创建）。'),
     '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
         '"{0}" 没有骨架骨骼的权重。请选择已绑定的源。'
     ),

@@ -70,13 +70,13 @@ def check_armature(armature: bpy.types.Object, *, written: bool) -> None:
         raise ObjectError(f'The armature "{armature.name}" has a scale of zero. Set its scale first.')
     if written and armature.library is not None:
         raise ObjectError(
-            f'The armature "{armature.name}" is linked from another file and cannot be animated here. Make it local '
-            "first (Object > Relations > Make Local)."
+            f'The armature "{armature.name}" is linked from another file and cannot be animated here. Make a library '
+            "override of its character first (Object > Library Override > Make)."
         )
-    if written and armature.override_library is not None:
+    if written and armature.override_library is not None and armature.override_library.is_system_override:
         raise ObjectError(
-            f'The armature "{armature.name}" is a library override and cannot be written to. Make it local first '
-            "(Object > Relations > Make Local)."
+            f'The armature "{armature.name}" is a library override that cannot be edited. Make it editable first '
+            "(Object > Library Override > Make)."
         )
 
 

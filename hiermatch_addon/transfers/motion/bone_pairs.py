@@ -67,7 +67,7 @@ def pairing_job(
         source, *targets = _matched_sides(source, targets[0], options.prefix)
     made = [BonePairTransfer() for _ in targets]
     waiting = iter(made)
-    return TransferJob(context, source, targets, lambda: [next(waiting)], options), made
+    return TransferJob(context, source, targets, lambda: [next(waiting)], options, writes=False), made
 
 
 def _matched_sides(source: Side, target: Side, prefix: str) -> tuple[Side, Side]:

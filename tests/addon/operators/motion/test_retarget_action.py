@@ -10,6 +10,7 @@ from hiermatch.hiermatch_addon.transfers.motion import motion_job
 from mathutils import Matrix
 
 from tests.addon.characters import add_action, add_person, match_at_once, posed_vertices
+from tests.addon.scenes import mesh_snapshot
 
 carry, pose = bpy.ops.hiermatch.retarget_action, bpy.ops.hiermatch.retarget_pose
 
@@ -306,19 +307,46 @@ def test_an_armature_in_edit_mode_and_an_action_of_others_are_refused():
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-@pytest.mark.parametrize(
-    ("override", "said"), [(False, "is linked from another file"), (True, "is a library override")]
-)
 @pytest.mark.parametrize("operator", ["retarget_action", "retarget_pose"])
-def test_rigs_of_other_files_are_refused_and_stay_as_they_are(tmp_path, override, said, operator):
-    target = add_linked_person(tmp_path, "B", override=override)
+def test_linked_rigs_are_refused_and_stay_as_they_are(tmp_path, operator):
+    target = add_linked_person(tmp_path, "B")
     source, _ = add_person("A")
     add_action(source)
     before = snapshot(target)
-    with pytest.raises(RuntimeError, match=f'"B" {said}'):
+    with pytest.raises(RuntimeError, match='"B" is linked from another file'):
         getattr(bpy.ops.hiermatch, operator)(source="A", target="B")
     assert snapshot(target) == before
     assert rename_refused("B", "are linked from another file")
+
+
+def test_a_library_override_is_animated_and_keeps_that_in_the_file(tmp_path):
+    """Characters of productions are linked and overridden: their meshes stay the other file's."""
+    target = add_overridden_person(tmp_path, "B")
+    source, _ = add_person("A")
+    add_action(source)
+    before = {obj.name: mesh_snapshot(obj) for obj in bpy.data.objects if obj.type == "MESH" and obj.override_library}
+    assert len(before) > 1
+    assert bpy.ops.hiermatch.retarget_pose(source="A", target="B") == {"FINISHED"}
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert target.animation_data.action.name == "Wave B"
+    assert {name: mesh_snapshot(bpy.data.objects[name]) for name in before} == before
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+    (target,) = (obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj.override_library)
+    assert target.animation_data.action.name == "Wave B"
+    poses = []
+    for frame in target.animation_data.action.frame_range:
+        bpy.context.scene.frame_set(int(frame))
+        poses.append(np.array([bone.matrix for bone in target.pose.bones]))
+    assert np.abs(poses[0] - poses[1]).max() > 0.01
+
+
+def test_an_override_that_cannot_be_edited_is_refused(tmp_path):
+    add_overridden_person(tmp_path, "B", editable=False)
+    source, _ = add_person("A")
+    add_action(source)
+    with pytest.raises(RuntimeError, match="is a library override that cannot be edited"):
+        carry(source="A", target="B")
 
 
 def test_a_linked_rig_may_be_the_source(tmp_path):
@@ -347,21 +375,41 @@ def test_one_that_is_being_edited_is_named(which):
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def add_linked_person(folder, name, *, override=False, action=""):
-    """Put a person of another file into the scene, as a link or an override, and return its armature."""
-    armature, _ = add_person(name, "renamed" if name == "B" else "plain")
-    if action:
-        add_action(armature, action)
-    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "library.blend"))
-    bpy.ops.wm.read_homefile(use_empty=True)
-    with bpy.data.libraries.load(str(folder / "library.blend"), link=True) as (there, here):
+def add_linked_person(folder, name, *, action=""):
+    """Link a person of another file into the scene, and return its armature."""
+    library = library_of(folder, name, action)
+    with bpy.data.libraries.load(library, link=True) as (there, here):
         here.objects = list(there.objects)
     for obj in here.objects:
         bpy.context.scene.collection.objects.link(obj)
-    linked = next(obj for obj in here.objects if obj.type == "ARMATURE")
-    found = linked.override_create(remap_local_usages=True) if override else linked
     bpy.context.view_layer.update()
-    return found
+    return next(obj for obj in here.objects if obj.type == "ARMATURE")
+
+
+def add_overridden_person(folder, name, *, editable=True):
+    """Link a person of another file, make a library override of it, and return its armature."""
+    library = library_of(folder, name)
+    with bpy.data.libraries.load(library, link=True) as (_, here):
+        here.collections = ["Character"]
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    here.collections[0].override_hierarchy_create(scene, layer, do_fully_editable=editable)
+    layer.update()
+    return next(obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj.override_library)
+
+
+def library_of(folder, name, action=""):
+    """Save a person in a collection in a file, and begin a new one."""
+    armature, _ = add_person(name, "renamed" if name == "B" else "plain")
+    if action:
+        add_action(armature, action)
+    character = bpy.data.collections.new("Character")
+    bpy.context.scene.collection.children.link(character)
+    for obj in list(bpy.context.scene.objects):
+        character.objects.link(obj)
+    path = str(folder / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    return path
 
 
 def rename_refused(name, said):
