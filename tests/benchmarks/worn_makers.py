@@ -68,6 +68,17 @@ NEAR = 0.03
 """How far from an item, in the same unit, skin is below it."""
 
 
+PLACES = np.array(
+    [
+        np.array([i, j, sides - i - j]) / 4 + (4 - sides) / 12
+        for sides in (3, 2)
+        for i in range(sides + 1)
+        for j in range(sides + 1 - i)
+    ]
+)
+"""Where on a triangle of the skin is looked: the middles of 16 equal parts, in barycentric coordinates."""
+
+
 def added(path, name):
     """Import a character: its armature, and its meshes by name."""
     before = set(bpy.data.objects)
@@ -106,18 +117,21 @@ def taken_out(obj, materials):
 
 
 def through(body, items):
-    """Which of the skin's triangles have an item near, and which of these are above it, with no other above, (m,)."""
+    """Which places of the skin (m, 16) have an item near, and which of these are above it, with no other above."""
     unit = np.sqrt(body.area)
-    middles, normals = body.vertices[body.triangles].mean(axis=1), body.triangle_normals
-    found = ClosestPoints(items).nearest(middles)
-    away = found.interpolate(items.triangles, items.vertices) - middles
+    places = np.einsum("pc,mci->mpi", PLACES, body.vertices[body.triangles])
+    shape, places = places.shape[:2], places.reshape(-1, 3)
+    normals = body.triangle_normals.repeat(len(PLACES), axis=0)
+    found = ClosestPoints(items).nearest(places)
+    away = found.interpolate(items.triangles, items.vertices) - places
     heights = np.einsum("ki,ki->k", away, normals)
     aside = np.linalg.norm(away - heights[:, None] * normals, axis=1)
     close = (np.abs(heights) < NEAR * unit) & (aside < np.abs(heights) + SHOWS[0] * unit)
     tree = BVHTree.FromPolygons(items.vertices.tolist(), items.triangles.tolist())
-    hits = (tree.ray_cast(*ray, NEAR * unit)[0] for ray in zip(middles.tolist(), normals.tolist(), strict=True))
+    hits = (tree.ray_cast(*ray, NEAR * unit)[0] for ray in zip(places.tolist(), normals.tolist(), strict=True))
     above = np.array([hit is not None for hit in hits])
-    return close | above, close & (heights < -SHOWS[0] * unit) & (heights > -SHOWS[1] * unit) & ~above
+    showing = close & (heights < -SHOWS[0] * unit) & (heights > -SHOWS[1] * unit) & ~above
+    return (close | above).reshape(shape), showing.reshape(shape)
 
 
 def shown(rig, bodies, items):
@@ -135,7 +149,7 @@ def shown(rig, bodies, items):
         body = TriangleMesh(*shown_surface(bodies))
         near, shows = through(body, TriangleMesh(*shown_surface(items)))
         if below is None:
-            below = body.triangle_areas * near
+            below = body.triangle_areas[:, None] * near
         parts.append(below[shows].sum() / below.sum())
     return parts
 
