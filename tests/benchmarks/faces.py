@@ -14,6 +14,7 @@ is known from the model.  A row holds, for one head:
     eye open        how much of the eye's height both lids leave open in a blink at the widest, in %: on the source, on
                     the target by the model's offsets, by those that were carried, and with closings kept, as Retarget
                     does (`closings_kept_steps`); the other columns hold errors with closings kept
+    eye seen        the same of how much of the eyeball is seen from the front, also where it comes through a lid
     seconds         of the processor: match, and keys
 """
 
@@ -41,6 +42,7 @@ from engine import (
     run,
     surface_frames,
 )
+from engine.mesh.closest_points import facing
 from tests.shapes import rotation
 
 PARTS = np.array(
@@ -99,13 +101,15 @@ class Model:
         """Mesh, parts and keys of another head, decimated."""
         whole = self.neutral + np.tensordot(weights, self._identities[: len(weights)], 1)
         vertices, triangles, parts = self._decimated(whole, ratio)
-        keys = np.zeros((len(self.keys), len(vertices), 3))
+        keys, head = np.zeros((len(self.keys), len(vertices), 3)), TriangleMesh(vertices, triangles)
         for part in np.unique(parts):
             own = self.mesh.triangles[(self.parts[self.mesh.triangles] == part).all(axis=1)]
-            chosen = np.flatnonzero(parts == part)
-            found = ClosestPoints(TriangleMesh(whole, own)).nearest(vertices[chosen])
+            chosen, size = np.flatnonzero(parts == part), float(np.sqrt(head.area))
+            # By where they look as well, for the place not to be on the other lip, or on the other side of a lid.
+            search = ClosestPoints(TriangleMesh(whole, own))
+            found = facing(search, vertices[chosen], head.vertex_normals[chosen], size)
             keys[:, chosen] = np.einsum("pc,kpcd->kpd", found.barycentric, self.keys[:, own[found.triangles]])
-        return TriangleMesh(vertices, triangles), parts, keys
+        return head, parts, keys
 
 
 def errors(carried, known, chosen):
@@ -116,27 +120,33 @@ def errors(carried, known, chosen):
 
 
 def opening(vertices, triangles, parts, eye):
-    """Height of the widest opening between the lids before an eye, seen from the front (along -z)."""
-    skin = triangles[np.isin(parts[triangles], SKIN).all(axis=1)]
-    tree = BVHTree.FromPolygons(vertices.tolist(), skin.tolist())
+    """Seen from the front (along -z): the widest opening between the lids before an eye, and what is seen of its ball.
+
+    The first in steps of the height, the second in rays.
+    """
+    trees = []
+    for shown in (SKIN, (eye,)):
+        chosen = triangles[np.isin(parts[triangles], shown).all(axis=1)]
+        trees.append(BVHTree.FromPolygons(vertices.tolist(), chosen.tolist()))
     ball = vertices[parts == eye]
     centre, radius = ball.mean(axis=0), np.linalg.norm(ball - ball.mean(axis=0), axis=1).mean()
-    heights, step = [], 0.007 * radius
+    heights, seen, step = [], 0, 0.007 * radius
     for x in np.linspace(-radius, radius, 41):
         column = 0
         for y in np.arange(-0.8 * radius, 0.8 * radius, step):
-            hit = tree.ray_cast(centre + np.array([x, y, 5 * radius]), (0, 0, -1))[0]
-            column += hit is None or hit[2] < centre[2]
-        heights.append(column * step)
-    return max(heights)
+            skin, eyeball = (tree.ray_cast(centre + np.array([x, y, 5 * radius]), (0, 0, -1)) for tree in trees)
+            column += skin[0] is None or skin[0][2] < centre[2]
+            seen += eyeball[0] is not None and (skin[0] is None or eyeball[3] < skin[3])
+        heights.append(column)
+    return np.array([max(heights), seen])
 
 
 def still_open(vertices, triangles, parts, keys):
-    """Part of the eyes' height that blinks leave open, on the mean."""
+    """What blinks leave open of the eyes' height, and to be seen of the balls, in %, on the mean."""
     found = []
     for eye, key in zip(EYES, BLINKS, strict=True):
         found.append(opening(vertices + keys[key], triangles, parts, eye) / opening(vertices, triangles, parts, eye))
-    return 100 * np.mean(found)
+    return 100 * np.mean(found, axis=0)
 
 
 def measure(model, number):
@@ -161,7 +171,7 @@ def measure(model, number):
     seconds = np.diff(times)
     print(
         f"{number:4d} " + " ".join(f"{value:8.3f}" for value in values),
-        " ".join(f"{gap:6.1f}" for gap in gaps),
+        " | ".join(" ".join(f"{gap:6.1f}" for gap in one) for one in np.transpose(gaps)),
         f"{seconds[0]:8.1f} {seconds[1]:5.1f}",
         flush=True,
     )
@@ -174,7 +184,7 @@ def main():
     options = parser.parse_args()
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     model = Model(options.faces)
-    print("head     skin  sockets     thin    teeth    blink  eye open: source, model, carried, kept  seconds")
+    print("head     skin  sockets     thin    teeth    blink  eye open: source, model, carried, kept | seen  seconds")
     for number in map(int, options.heads.split(",")):
         measure(model, number)
 

@@ -161,32 +161,36 @@ class _Sewn:
         return replace(found, vertices=self.parts.first[found.vertices])
 
 
-def surface_samples(mesh: TriangleMesh, spacing: float) -> csr_array:
+def surface_samples(mesh: TriangleMesh, spacing: float) -> tuple[csr_array, Ints]:
     """Spread points over a surface: all its vertices, and grids in triangles whose sides are longer than a spacing.
 
     Returns
     -------
-    (s, n) csr_array of float
+    shares : (s, n) csr_array of float
         For each point the shares of the vertices.  The vertices come first.
+    triangles : (s - n,) array of int
+        The triangle that each of the others lies in.
     """
     n = mesh.vertex_count
     a, b, c = (mesh.vertices[corner] for corner in mesh.triangles.T)
     longest = np.sqrt(np.max([np.square(side).sum(axis=1) for side in (b - a, c - b, a - c)], axis=0))
     parts = np.clip(np.ceil(longest / spacing), 2, _MOST_PARTS).astype(np.int64)
     corners, shares = [np.arange(n)[:, None].repeat(3, axis=1)], [np.tile([1.0, 0.0, 0.0], (n, 1))]
+    owners: list[Ints] = []
     for count in np.unique(parts):
         i, j = (grid.ravel() for grid in np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij"))
         grid = np.stack([i, j, count - i - j], axis=1)
         grid = grid[(grid >= 0).all(axis=1) & (grid < count).all(axis=1)]
         if count == 2:
             grid = np.array([[2 / 3, 2 / 3, 2 / 3]])
-        chosen = mesh.triangles[parts == count]
-        corners.append(chosen.repeat(len(grid), axis=0))
+        chosen = np.flatnonzero(parts == count)
+        owners.append(chosen.repeat(len(grid)))
+        corners.append(mesh.triangles[owners[-1]])
         shares.append(np.tile(grid / count, (len(chosen), 1)))
     columns, values = np.concatenate(corners), np.concatenate(shares)
     samples = csr_array((values.ravel(), columns.ravel(), np.arange(0, values.size + 1, 3)), shape=(len(values), n))
     samples.sum_duplicates()
-    return samples
+    return samples, np.concatenate(owners)
 
 
 def _angle_normals(mesh: TriangleMesh, wanted: Ints | None = None) -> Floats:

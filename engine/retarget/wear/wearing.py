@@ -311,7 +311,7 @@ def _push(
         layer_of(
             *skins,
             samples,
-            mesh,
+            (mesh, now),
             places=places,
             buried=buried,
             scales=scales,
@@ -330,7 +330,7 @@ def _push(
             layer_of(
                 *surfaces,
                 samples,
-                mesh,
+                (mesh, now),
                 places=None,
                 buried=None,
                 scales=scales,
@@ -342,7 +342,7 @@ def _push(
     rigid = work.pieces >= 0
     fixed = rigid if item.left is None else rigid | item.left
     laplace = laplace_beltrami(now)
-    pushed = pushed_out(mesh, start, laplace, samples, layers=layers, fixed=fixed, unit=new_unit)
+    pushed = pushed_out(mesh, start, laplace, samples[0], layers=layers, fixed=fixed, unit=new_unit)
     positions = pushed.positions
     if rigid.any():
         positions = _with_pieces(work, positions, layers)

@@ -281,3 +281,41 @@ def test_trousers_that_come_out_of_a_closed_jacket_are_not_pushed_over_it():
     fitted = run(wear_steps(body, body, SurfaceMap.identity(body), images, [WornItem(jacket), WornItem(item)]))
     around = np.linalg.norm(fitted[1].positions[:, :2], axis=1)
     assert around.max() < 0.49
+
+
+def prism(low, high, radius, sides=12, rings=6):
+    """A closed cylinder whose ends are fans of large triangles."""
+    angles = 2 * np.pi * np.arange(sides) / sides
+    around = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    walls = [np.column_stack([around, np.full(sides, z)]) for z in np.linspace(low, high, rings)]
+    ends = np.array([[0.0, 0.0, low], [0.0, 0.0, high]])
+    corners, following = np.arange(sides), (np.arange(sides) + 1) % sides
+    triangles = []
+    for ring in range(rings - 1):
+        a, b = ring * sides + corners, ring * sides + following
+        triangles += [np.stack([a, b, b + sides], axis=1), np.stack([a, b + sides, a + sides], axis=1)]
+    last, centre = (rings - 1) * sides, rings * sides
+    triangles.append(np.stack([following, corners, np.full(sides, centre)], axis=1))
+    triangles.append(np.stack([last + corners, last + following, np.full(sides, centre + 1)], axis=1))
+    return TriangleMesh(np.concatenate([*walls, ends]), np.concatenate(triangles))
+
+
+def test_a_hem_is_not_pushed_away_by_the_large_triangles_that_close_it():
+    jacket, trousers = prism(0.0, 2.0, 0.5), prism(-2.0, 0.0, 0.5)
+    body = TriangleMesh(
+        np.concatenate([jacket.vertices, trousers.vertices]),
+        np.concatenate([jacket.triangles, trousers.triangles + jacket.vertex_count]),
+    )
+    target = solid(-2.0, 2.0, 0.5)
+    images = body.vertices * [0.95, 0.95, 1.0]
+    places = ClosestPoints(target).nearest(images)
+    there = SurfaceMap.from_barycentric(target, places.triangles, places.barycentric)
+    for item, one in zip(
+        (jacket, trousers),
+        run(wear_steps(body, target, there, images, [WornItem(jacket), WornItem(trousers)])),
+        strict=True,
+    ):
+        hem = (np.abs(item.vertices[:, 2]) < 0.1) & (np.linalg.norm(item.vertices[:, :2], axis=1) > 0.4)
+        around = np.linalg.norm(one.positions[hem, :2], axis=1)
+        assert around.min() > 0.49
+        assert around.max() < 0.53, around.max()
