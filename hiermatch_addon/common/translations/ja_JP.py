@@ -1267,10 +1267,10 @@ MESSAGES: Final[dict[str, str]] = {
     'The pairs of bones were saved to "{0}"': 'ボーンのペアを"{0}"に保存しました',
     "{0} pairs were loaded": "{0}組のペアを読み込みました",
     "{0} pairs were loaded. These bones are missing: {1}": "{0}組のペアを読み込みました。次のボーンがありません: {1}",
-    'By their names, left bones of "{0}" are paired with right ones of "{1}". If that is wrong, the '
-    "match is mirrored: flip it, and pair the bones again.": (
-        '名前によると、"{0}"の左のボーンが"{1}"の右のボーンとペアになっています。それが誤りなら、マッチングが左右'
-        "反転しています。反転して、もう一度ボーンをペアにしてください。"
+    'By their names, left bones of "{0}" are paired with right ones of "{1}". If that is wrong, one of '
+    "them looks the other way, or the match is mirrored: use another answer of the match, and pair the bones again.": (
+        '名前によると、"{0}"の左のボーンが"{1}"の右のボーンとペアになっています。それが誤りなら、一方が逆を向いて'
+        "いるか、マッチングが左右反転しています。マッチングの別の解を使い、もう一度ボーンをペアにしてください。"
     ),
     "Symmetrise": "対称化",
     "Test Poses": "ポーズのテスト",

@@ -1044,9 +1044,10 @@ MESSAGES: Final[dict[str, str]] = {
     'The pairs of bones were saved to "{0}"': '骨骼配对已保存到 "{0}"',
     "{0} pairs were loaded": "已加载 {0} 对",
     "{0} pairs were loaded. These bones are missing: {1}": "已加载 {0} 对。缺少这些骨骼：{1}",
-    'By their names, left bones of "{0}" are paired with right ones of "{1}". If that is wrong, the '
-    "match is mirrored: flip it, and pair the bones again.": (
-        '按名称看，"{0}" 的左侧骨骼与 "{1}" 的右侧骨骼配对。若有误，说明匹配是镜像的：请翻转匹配，再重新配对骨骼。'
+    'By their names, left bones of "{0}" are paired with right ones of "{1}". If that is wrong, one of '
+    "them looks the other way, or the match is mirrored: use another answer of the match, and pair the bones again.": (
+        '按名称看，"{0}" 的左侧骨骼与 "{1}" 的右侧骨骼配对。若有误，说明其中一个朝向相反，或匹配是镜像的：请使用匹配的'
+        "另一个解，再重新配对骨骼。"
     ),
     "Symmetrise": "对称化",
     "Test Poses": "测试姿势",

@@ -156,7 +156,8 @@ class BonePairTransfer:
             return ()
         said = (
             f'By their names, left bones of "{task.rigs[0]}" are paired with right ones of "{task.rigs[1]}". '
-            "If that is wrong, the match is mirrored: flip it, and pair the bones again."
+            "If that is wrong, one of them looks the other way, or the match is mirrored: use another answer of the "
+            "match, and pair the bones again."
         )
         return (said,)
 
