@@ -18,7 +18,7 @@ from ..runtime.errors import MatchError
 from ..runtime.progress import Preview, Progress, Steps, part_of, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
-from .credibility import is_clear_choice, may_become_likely, place_credit
+from .credibility import is_clear_choice, may_become_likely
 from .dense_hypotheses import USUAL, LandmarkStart, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
 from .initial_maps import RoughSearch
 from .landmark_selection import steered_hypotheses_steps
@@ -181,6 +181,7 @@ def registered_pair_steps(
     follow = Follower(x, y, source, target, ties, ties_back)
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
+    follow, candidates = _credited(follow, candidates)
     yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
     alike = np.inf if landmarks is not None else max(candidate.likeness for candidate in candidates)
     if alike < selection.least:
@@ -191,6 +192,8 @@ def registered_pair_steps(
     contest = Contest(follow, landmarks, selection)
     for number, propose in enumerate(proposers):
         candidates = yield from within(propose(contest, candidates), *part_of(number, len(proposers), 0.6, 0.7))
+        follow, candidates = _credited(contest.follow, candidates)
+        contest = replace(contest, follow=follow)
     fits = yield from within(_contest_steps(contest, candidates if hopeful else candidates[:1]), 0.7, 0.9)
     follow = follow if hopeful else replace(follow, settling=Settling(disagree=()))
     closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
@@ -221,6 +224,15 @@ def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[
     """Register the candidates that may be chosen closely; the most credible first."""
     fits = yield from contest.follow.all_close_steps(contenders(contest, candidates))
     return sorted(fits, key=lambda fit: fit.score)
+
+
+def _credited(follow: Follower, candidates: list[Candidate]) -> tuple[Follower, list[Candidate]]:
+    """Judge candidates anew, the best first, if one of them leaves more in place than any before."""
+    standing = max(candidate.in_place for candidate in candidates)
+    if standing <= follow.standing:
+        return follow, candidates
+    follow = replace(follow, standing=standing)
+    return follow, sorted(map(follow.credited, candidates), key=lambda candidate: candidate.score)
 
 
 def _rivals(
@@ -270,7 +282,7 @@ def alternatives_steps(
             images = yield from within(rival.images_steps(), 1.0, 1.0)
             positions, points = follow.start(images), at_vertices(follow.target, images.on_y)
             back = at_vertices(follow.source, images.on_x)
-            behind += max(chosen.credit - place_credit(follow.in_place(positions)), 0.0)
+            behind += max(chosen.credit - follow.credit(positions), 0.0)
         else:
             positions, points, back = rival.positions, rival.on_target, rival.on_source
         areas = follow.source.mass * (partnered | follow.partnered(points, back))

@@ -35,7 +35,14 @@ from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, part_of, within
 from ..shapes.borders import has_border
 from ..shapes.shape import Shape
-from .credibility import is_placed, likeness, place_credit, probability_in_place, registered_score
+from .credibility import (
+    is_placed,
+    likeness,
+    place_credit,
+    probability_in_place,
+    probability_turned,
+    registered_score,
+)
 from .dense_hypotheses import MapHypothesis, assessed_everywhere, refined_hypothesis_steps
 from .functional_maps import PointMaps
 from .missing_parts import with_partner
@@ -103,6 +110,8 @@ class Candidate:
         From 0, bodies of unlike build, to 1, one body in two poses, by wave kernel signatures where it was registered.
     in_place : float
         How probably the map is right because it leaves everything where it stands, see `Follower.in_place`.
+    credit : float
+        By how much its score is smaller because of what it leaves in place, see `Follower.credit`.
     """
 
     hypothesis: MapHypothesis
@@ -111,14 +120,10 @@ class Candidate:
     likeness: float
     isometry: float
     in_place: float = 0.0
-
-    @property
-    def credit(self) -> float:
-        """By how much its score is smaller because of what it leaves in place."""
-        return place_credit(self.in_place)
+    credit: float = 0.0
 
 
-_Judged = tuple[Registration, float, float, float, float]
+_Judged = tuple[Registration, float, float, float, float, float]
 """All of a candidate but its hypothesis."""
 
 
@@ -162,6 +167,8 @@ class Follower:
         Where the source is held on the target, and the target on the source.
     settling : Settling
         How both are registered in turn.
+    standing : float
+        How probably, at most, a map of these surfaces that is known already is right by what it leaves in place.
     """
 
     x: Shape
@@ -171,6 +178,7 @@ class Follower:
     ties: Ties | None = None
     ties_back: Ties | None = None
     settling: Settling = Settling()
+    standing: float = 0.0
     is_sent_once: ClassVar[bool] = True
 
     @cached_property
@@ -265,11 +273,18 @@ class Follower:
 
     def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
         """Say how credible a hypothesis is by the soft registration that it led to."""
-        score, terms, in_place = self._assessed(hypothesis, registration)
+        score, terms, credit = self._assessed(hypothesis, registration)
         # The rough map that it began with may be no isometry though the bodies are alike.
         isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))
         alike = likeness(hypothesis.score, registration.cost)
-        return Candidate(hypothesis, registration, score, alike, isometry, in_place)
+        return Candidate(
+            hypothesis, registration, score, alike, isometry, self.in_place(registration.positions), credit
+        )
+
+    def credited(self, candidate: Candidate) -> Candidate:
+        """Judge a candidate anew by what is known to be left in place by now."""
+        credit = self.credit(candidate.registration.positions)
+        return replace(candidate, score=candidate.score + candidate.credit - credit, credit=credit)
 
     def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
         """Register several candidates closely; see `close_steps`."""
@@ -292,9 +307,8 @@ class Follower:
         else:  # what landmarks hold stays the way round it is
             (first,) = yield from within(register_all_steps([positions]), 0.0, 0.2)
         reverse, final = yield from within(self.again_steps(candidate, first), 0.2, 1.0)
-        score, _, in_place = self._assessed(candidate.hypothesis, final)
-        credit = (candidate.credit + place_credit(in_place)) / 2
-        return CloseFit(candidate, final, reverse, (candidate.score + score) / 2, credit)
+        score, _, credit = self._assessed(candidate.hypothesis, final)
+        return CloseFit(candidate, final, reverse, (candidate.score + score) / 2, (candidate.credit + credit) / 2)
 
     def settled_steps(self, fit: CloseFit) -> Steps[tuple[CloseFit, Trips]]:
         """Go on from either side in turn, while the two disagree and come nearer to each other by that.
@@ -360,10 +374,10 @@ class Follower:
     def _assessed(
         self, hypothesis: MapHypothesis, registration: Registration
     ) -> tuple[float, Mapping[str, float], float]:
-        """Score what a hypothesis has led to; the terms of the score without the gaps; how probably it is in place."""
+        """Score what a hypothesis has led to; the terms of the score without the gaps; its credit, see `credit`."""
         lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
-        in_place = self.in_place(registration.positions)
-        return registered_score(lead.score, registration.gaps, in_place), lead.terms, in_place
+        credit = self.credit(registration.positions)
+        return registered_score(lead.score, registration.gaps, credit), lead.terms, credit
 
     def in_place(self, positions: Floats) -> float:
         """Estimate how probably it is right where the source lies because it is left as it stands, 0 to 1.
@@ -374,6 +388,13 @@ class Follower:
             return 0.0
         points = self.source.mesh.vertices
         return probability_in_place(agreement_in_place(points, positions, self.source.mass))
+
+    def credit(self, positions: Floats) -> float:
+        """By how much a score is smaller because of what is in place, be it after a half turn, see `place_credit`."""
+        if not self._are_closed:
+            return 0.0
+        agreement = agreement_in_place(self.source.mesh.vertices, positions, self.source.mass, half_turn=True)
+        return place_credit(max(self.in_place(positions), probability_turned(agreement, self.standing)))
 
     def start(self, images: PointMaps) -> Floats:
         """Place the source where a map between all vertices puts it, smoothly."""
@@ -427,7 +448,7 @@ def _lying_steps(follow: Follower, item: tuple[Candidate, Floats]) -> Steps[_Jud
 
 def _judged(found: Candidate) -> _Judged:
     """Take what is sent of a candidate, the hypothesis of which is known."""
-    return found.registration, found.score, found.likeness, found.isometry, found.in_place
+    return found.registration, found.score, found.likeness, found.isometry, found.in_place, found.credit
 
 
 def _closely_followed_steps(

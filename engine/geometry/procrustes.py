@@ -34,7 +34,7 @@ _FLAT = 1e-4
 """Part of the largest variance that points have along every axis at least: rounding decides below."""
 
 
-def agreement_in_place(points: Floats, images: Floats, weights: Floats) -> float:
+def agreement_in_place(points: Floats, images: Floats, weights: Floats, *, half_turn: bool = False) -> float:
     """Say how well images lie in space as the points do, -1 to 1, if both are stretched to the same extent every way.
 
     Parameters
@@ -43,6 +43,8 @@ def agreement_in_place(points: Floats, images: Floats, weights: Floats) -> float
         The points, and where a map takes them.
     weights : (n,) array of float
         How much each counts.
+    half_turn : bool
+        Whether the points are turned halfway around before, about the axis that brings them nearest to the images.
 
     Returns
     -------
@@ -55,6 +57,8 @@ def agreement_in_place(points: Floats, images: Floats, weights: Floats) -> float
     crossed = (
         _unit_root(here.T @ (shares * here)) @ (here.T @ (shares * there)) @ _unit_root(there.T @ (shares * there))
     )
+    if half_turn:  # about an axis a it leaves twice a.T C a less the trace
+        return float(2 * np.linalg.eigvalsh((crossed + crossed.T) / 2)[-1] - np.trace(crossed)) / 3
     return float(np.trace(crossed) / 3)
 
 

@@ -21,6 +21,7 @@ from engine.dense.credibility import (
     probability_chosen,
     probability_in_place,
     probability_right,
+    probability_turned,
     registered_score,
     vertex_credibility,
 )
@@ -112,9 +113,14 @@ def test_the_credit_of_a_place_divides_the_chances_of_other_maps():
     for in_place in (0.1, 0.5, 0.9):
         rest = np.exp(-place_credit(in_place))
         assert rest == pytest.approx(1 - in_place)
-        assert registered_score(-9.0, (0.1, 0.1), in_place) == registered_score(-9.0, (0.1, 0.1)) - place_credit(
-            in_place
-        )
+        credit = place_credit(in_place)
+        assert registered_score(-9.0, (0.1, 0.1), credit) == registered_score(-9.0, (0.1, 0.1)) - credit
+
+
+def test_a_half_turn_takes_away_from_what_stands_but_says_nothing_by_itself():
+    assert probability_turned(0.95, 0.0) == 0
+    assert probability_turned(0.95, 0.99) == pytest.approx(0.9 * probability_in_place(0.95))
+    assert place_credit(probability_turned(1.0, 1.0)) == pytest.approx(np.log(10), rel=0.1)
 
 
 def test_hope_ends_where_neither_can_become_likely():

@@ -10,7 +10,7 @@ import pytest
 from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
 from engine.dense import dense_registration as dense_map
 from engine.dense import proposers
-from engine.dense.credibility import probability_in_place
+from engine.dense.credibility import probability_in_place, probability_turned
 from engine.dense.dense_hypotheses import LandmarkStart, Selection, assessed_everywhere, map_hypotheses_steps
 from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from engine.dense.densify import dense_match_steps
@@ -550,10 +550,13 @@ def test_a_turned_body_is_another_map_than_one_left_in_place(bodies, both_starts
     x, y = bodies[:2]
     pair = run(registered_pair_steps(x, y, both_starts, selection=BOTH))
     areas, points = pair.source.mass, x.mesh.vertices
+    standing = max(candidate.in_place for candidate in pair.candidates)
     for candidate in pair.candidates:
         agreement = agreement_in_place(points, candidate.registration.positions, areas)
         assert candidate.in_place == pytest.approx(probability_in_place(agreement))
-        assert candidate.credit == pytest.approx(-np.log1p(-candidate.in_place))
+        turned = agreement_in_place(points, candidate.registration.positions, areas, half_turn=True)
+        best = max(candidate.in_place, probability_turned(turned, standing))
+        assert candidate.credit == pytest.approx(-np.log1p(-best))
     assert pair.in_place == pytest.approx(
         probability_in_place(agreement_in_place(points, pair.registration.positions, areas))
     )

@@ -127,6 +127,18 @@ def cloud(rng):
     return rng.standard_normal((200, 3)) * [1, 3, 0.5], rng.random(200)
 
 
+def test_after_the_half_turn_that_fits_best_all_is_in_place(cloud, rng):
+    points, weights = cloud
+    axes = rng.standard_normal((500, 3))
+    turns = Rotation.from_rotvec(np.pi * axes / np.linalg.norm(axes, axis=1)[:, None]).as_matrix()
+    assert agreement_in_place(points, points @ turns[0].T + 3, weights, half_turn=True) == pytest.approx(1)
+    assert agreement_in_place(points, points, weights, half_turn=True) == pytest.approx(-1 / 3)
+    images = points @ Rotation.from_rotvec([0.3, 1, 2]).as_matrix().T
+    best = agreement_in_place(points, images, weights, half_turn=True)
+    turned = max(agreement_in_place(points @ turn.T, images, weights) for turn in turns)
+    assert best - 0.05 < turned < best + SMALL
+
+
 def test_what_is_stretched_and_moved_is_in_place(cloud):
     points, weights = cloud
     assert agreement_in_place(points, points * 7 + [1, 2, 3], weights) == pytest.approx(1)
