@@ -40,6 +40,7 @@ def lift_steps(
     proxy_map: Ints | None = None,
     search: ClosestPoints | None = None,
     untangled: bool = True,
+    shown: Bools | None = None,
 ) -> Steps[SurfacePoints]:
     """Map every vertex of a dense mesh to another, given how its proxy lies on it.
 
@@ -63,6 +64,8 @@ def lift_steps(
         The search on the target, if there is one already.
     untangled : bool
         Whether triangles that are turned over are put right at last.
+    shown : (n,) array of bool, optional
+        Vertices whose images count: other triangles than theirs stay as they are turned.
 
     Yields
     ------
@@ -129,7 +132,7 @@ def lift_steps(
         )
     yield Progress(0.9, _LABEL)
     if untangled:
-        untangling = untangle_steps(source, target, triangles, barycentric, search=lift.search)
+        untangling = untangle_steps(source, target, triangles, barycentric, search=lift.search, shown=shown)
         yield from within(untangling, 0.9, 1.0)
     return SurfacePoints.from_barycentric(target, triangles, barycentric)
 

@@ -159,7 +159,13 @@ def heaviest_corners(mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -
 
 
 def untangle_steps(
-    source: TriangleMesh, target: TriangleMesh, triangles: Ints, barycentric: Floats, *, search: ClosestPoints
+    source: TriangleMesh,
+    target: TriangleMesh,
+    triangles: Ints,
+    barycentric: Floats,
+    *,
+    search: ClosestPoints,
+    shown: Bools | None = None,
 ) -> Steps[None]:
     r"""Turn flipped triangles of a map back, in place.
 
@@ -181,6 +187,8 @@ def untangle_steps(
         The point of the target that each vertex of the source is mapped to.
     search : ClosestPoints
         The search on the target.
+    shown : (n,) array of bool, optional
+        Vertices of the source that count: triangles with others may stay flipped.
 
     Yields
     ------
@@ -196,7 +204,8 @@ def untangle_steps(
     .. [1] P. Knupp, "Hexahedral and tetrahedral mesh untangling", Engineering with Computers 17, 2001.
     """
     edges = source.edges
-    flipped = flipped_triangles(source, target, triangles, barycentric)
+    counted = np.ones(source.triangle_count, bool) if shown is None else shown[source.triangles].all(axis=1)
+    flipped = flipped_triangles(source, target, triangles, barycentric, np.flatnonzero(counted))
     for number in range(_ROUNDS):
         if not len(flipped):
             break
@@ -213,7 +222,7 @@ def untangle_steps(
             _opened(image, rest, free), heaviest_corners(target, image.triangles[free], image.barycentric[free])
         )
         triangles[members], barycentric[members] = found.triangles, found.barycentric
-        flipped = flipped_triangles(source, target, triangles, barycentric, around)
+        flipped = flipped_triangles(source, target, triangles, barycentric, around[counted[around]])
         yield Progress((number + 1) / _ROUNDS, "Mapping every vertex")
 
 

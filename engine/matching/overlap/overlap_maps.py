@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import diags_array
 from scipy.spatial import cKDTree
 
+from ...geometry.best_distinct import best_distinct
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
@@ -217,24 +218,21 @@ def _mutual_steps(pair: CoarsePair, ways: tuple[list[ScoredFit], list[ScoredFit]
         The most credible first; no two of them say the same.
     """
     alone = sorted(((each, back) for back, way in enumerate(ways) for each in way), key=lambda either: -either[0].score)
-    taken: list[_Side] = []
+
+    def differ(one: tuple[ScoredFit, int], other: tuple[ScoredFit, int]) -> bool:
+        """Say whether two fits lead to different places."""
+        return _differ(pair.coarse, _side(*one), _side(*other))
+
+    taken = best_distinct(alone, differ, _FOLLOWED)
+    turned = yield from shared_steps(_turned_fit_steps, pair, [(each.fit, back) for each, back in taken])
     found: list[_MutualFit] = []
-    for each, back in alone:
-        own = _side(each, back)
-        if any(not _differ(pair.coarse, own, other) for other in taken):
-            continue
-        taken.append(own)
-        turned = pair.turned() if back else pair
-        others = [other for other in ways[1 - back] if not _differ(pair.coarse, own, _side(other, 1 - back))]
-        followed = _turned_fit(turned, each.fit)
+    for (each, back), followed in zip(taken, turned, strict=True):
+        others = [other for other in ways[1 - back] if not differ((each, back), (other, 1 - back))]
         others += [] if followed is None else [followed]
         if others:
             other = max(others, key=lambda scored: scored.score)
             fits = (other.fit, each.fit) if back else (each.fit, other.fit)
             found.append(_MutualFit(fits, (each.score + other.score) / 2))
-        yield Progress(len(taken) / _FOLLOWED, _LABEL)
-        if len(taken) == _FOLLOWED:
-            break
     return sorted(found, key=lambda mutual: -mutual.score)
 
 
@@ -257,9 +255,14 @@ def _differ(coarse: tuple[PartSurface, PartSurface], first: _Side, second: _Side
     return bool(len(apart) and np.median(apart) > _OTHER)
 
 
-def _turned_fit(pair: CoarsePair, fit: Fit) -> ScoredFit | None:
-    """Register the second coarse surface onto the first, by a registration of the first onto the second."""
-    coarse, other = pair.coarse
+def _turned_fit_steps(pair: CoarsePair, registered: tuple[Fit, int]) -> Steps[ScoredFit | None]:
+    """Register the second coarse surface onto the first, by a registration of the first onto the second.
+
+    If the number with that is 1, it was the second that was registered.
+    """
+    yield Progress(0.0, _LABEL)
+    fit, back = registered
+    coarse, other = pair.coarse[::-1] if back else pair.coarse
     known = np.flatnonzero(fit.members_back)
     if len(known) < _LEAST_MEMBERS:
         return None
@@ -271,16 +274,17 @@ def _turned_fit(pair: CoarsePair, fit: Fit) -> ScoredFit | None:
 
 def _fine_fits_steps(pair: CoarsePair, best: _MutualFit) -> Steps[tuple[Fit, Fit]]:
     """Follow registrations of coarse surfaces in full resolution."""
-    (source, target), (coarse, other) = pair.surfaces, pair.coarse
-    there = _fine_fit(source, target, coarse, best.fits[0].positions)
-    yield Progress(0.5, _LABEL)
-    back = _fine_fit(target, source, other, best.fits[1].positions)
-    yield Progress(1.0, _LABEL)
+    items = [(fit.positions, back) for back, fit in enumerate(best.fits)]
+    there, back = yield from shared_steps(_fine_fit_steps, pair, items)
     return there, back
 
 
-def _fine_fit(source: PartSurface, target: PartSurface, coarse: PartSurface, positions: Floats) -> Fit:
-    """Register a surface from where the coarse one that stands for it is."""
+def _fine_fit_steps(pair: CoarsePair, placed: tuple[Floats, int]) -> Steps[Fit]:
+    """Register the first surface (0) or the second (1) from where the coarse one that stands for it is."""
+    yield Progress(0.0, _LABEL)
+    positions, back = placed
+    source, target = pair.surfaces[::-1] if back else pair.surfaces
+    coarse = pair.coarse[back]
     weights = np.zeros(source.count)
     weights[coarse.ids] = _HOLD * np.sqrt(1000 * source.area / source.count)
     right = np.zeros((source.count, 3))

@@ -11,6 +11,7 @@ from scipy.special import expit
 from ...dense.components.component_maps import follow_steps
 from ...dense.missing_parts import round_trips
 from ...dense.quality import DenseMatch, MatchQuality, overlap_sentence, trip_confidence
+from ...geometry.geodesics import GeodesicSolver
 from ...geometry.sampling import FarthestPointSampler
 from ...hierarchical.sparse_result import CoarseMatch, Level
 from ...mesh.connectivity.adjacency import neighbour_means
@@ -19,7 +20,9 @@ from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.prolongation import lift_steps
 from ...runtime.arrays import TINY, Bools, Floats, Ints, marked
+from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ...runtime.progress import Progress, Steps, part_of, within
+from ...shapes.prepared_surface import PreparedSurface
 from ...shapes.shape import Shape
 from ..result import MatchResult
 from ..shape_matching import MatchTask
@@ -112,19 +115,18 @@ def overlap_match_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[OverlapMat
     if overlap is None:
         return None
     likely = credibility(overlap)
-    lifted = []
-    for number, (own, other) in enumerate(((x, y), (y, x))):
-        lifting = _lifted_steps(own, other, overlap.positions[number], overlap.images[number])
-        lifted.append((yield from within(lifting, 0.8 + 0.06 * number, 0.86 + 0.06 * number)))
     main = x.surface.cleaned.mesh, y.surface.cleaned.mesh
     known = _on_main(x, overlap.members[0]), _on_main(y, overlap.members[1])
-    shared = _Shared(main, (lifted[0], lifted[1]), known, likely)
+    lift = _Lift((x.surface, y.surface), overlap.positions, overlap.images, known)
+    share = shared_steps if max(mesh.vertex_count for mesh in main) <= MOST_SENT else here_steps
+    there, back = yield from within(share(_lifted_steps, lift, (0, 1)), 0.8, 0.92)
+    shared = _Shared(main, (there, back), known, likely)
     forward = yield from within(_whole_map_steps((x, y), shared, 0), 0.92, 0.95)
     backward = yield from within(_whole_map_steps((y, x), shared, 1), 0.95, 0.98)
     quality = _quality(shared, overlap.margin)
     task.clock.lap("lift")
-    yield Progress(0.98, _LABEL)
-    result = _result((x, y), overlap, task, (forward, backward), quality)
+    showing = _result_steps((x, y), overlap, task, (forward, backward), quality)
+    result = yield from within(showing, 0.98, 1.0)
     return OverlapMatch(result, overlap.score > 0, likely, shared.shares, overlap.search)
 
 
@@ -182,11 +184,23 @@ class _Shared:
         return self.likely * self.known[here] * np.clip(confidence, 0, 1)
 
 
-def _lifted_steps(own: Shape, other: Shape, positions: Floats, images: Ints) -> Steps[SurfacePoints]:
+@dataclass(frozen=True, eq=False)
+class _Lift:
+    """Two surfaces, where what stands for either lies on the other, its matches there, and which vertices have one."""
+
+    surfaces: tuple[PreparedSurface, PreparedSurface]
+    positions: tuple[Floats, Floats]
+    images: tuple[Ints, Ints]
+    known: tuple[Bools, Bools]
+
+
+def _lifted_steps(lift: _Lift, here: int) -> Steps[SurfacePoints]:
     """Map every vertex of the main part of one surface to that of the other."""
-    surface, image = own.surface, other.surface
-    ends = surface.cleaned.mesh, surface.proxy, positions, image.cleaned.mesh
-    return (yield from lift_steps(*ends, target_proxy=image.proxy, proxy_map=images, search=image.dense_search))
+    surface, image = lift.surfaces[here], lift.surfaces[1 - here]
+    ends = surface.cleaned.mesh, surface.proxy, lift.positions[here], image.cleaned.mesh
+    images, search, shown = lift.images[here], image.dense_search, lift.known[here]
+    lifting = lift_steps(*ends, target_proxy=image.proxy, proxy_map=images, search=search, shown=shown)
+    return (yield from lifting)
 
 
 def _on_main(shape: Shape, members: Bools) -> Bools:
@@ -232,13 +246,13 @@ def _quality(shared: _Shared, margin: float) -> MatchQuality:
     return MatchQuality(*numbers, sentence, source_coverage=shares[0])
 
 
-def _result(
+def _result_steps(
     pair: tuple[Shape, Shape],
     overlap: Overlap,
     task: MatchTask,
     maps: tuple[SurfaceMap, SurfaceMap],
     quality: MatchQuality,
-) -> MatchResult:
+) -> Steps[MatchResult]:
     """Show the map by points that are spread over what is shared."""
     (x, y), (forward, backward) = pair, maps
     settings = task.settings
@@ -249,7 +263,8 @@ def _result(
     on_main = (y.surface.cleaned.vertex_parts[images.nearest_vertices] == 0).all()
     ends = y.surface.mesh_vertices(images.nearest_vertices) if on_main else overlap.images[0][vertices]
     unit = max(x.scale, y.scale)
-    differences = (x.solver.distances(vertices)[:, vertices] - y.solver.distances(ends)[:, ends]) / unit
+    distances = yield from shared_steps(_distances_steps, None, ((x.solver, vertices), (y.solver, ends)))
+    differences = (distances[0] - distances[1]) / unit
     squares = np.where(np.isfinite(differences), np.square(differences), 0.0)
     distortion = settings.quadratic_weight * float(squares.sum())
     first = min(settings.coarse_points, len(vertices))
@@ -272,6 +287,13 @@ def _result(
         target_to_source=backward,
         quality=quality,
     )
+
+
+def _distances_steps(_: None, ends: tuple[GeodesicSolver, Ints]) -> Steps[Floats]:
+    """Measure the distances between some vertices (k,), (k, k)."""
+    solver, vertices = ends
+    yield Progress(0.0, _LABEL)
+    return solver.distances(vertices)[:, vertices]
 
 
 def _spread(shape: Shape, members: Ints, count: int) -> Ints:

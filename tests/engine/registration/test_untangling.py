@@ -75,6 +75,26 @@ def test_a_knot_is_untied_and_the_rest_left_alone():
     assert np.linalg.norm(located(target, triangles, barycentric) - source.vertices, axis=1).max() < 0.3
 
 
+def test_only_triangles_that_count_are_untied():
+    source = TriangleMesh(*icosphere(16))
+    target = TriangleMesh(*permuted(*icosphere(13))[:2])
+    search = ClosestPoints(target)
+    found = search.nearest(source.vertices)
+    random = np.random.default_rng(0)
+    triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
+    for end in (1, -1):  # two knots, of which one counts
+        near = np.flatnonzero(np.linalg.norm(source.vertices - end * source.vertices[700], axis=1) < 0.3)
+        moved = random.permutation(near)
+        triangles[near], barycentric[near] = triangles[moved], barycentric[moved]
+    before = flipped_triangles(source, target, triangles, barycentric)
+    shown = source.vertices @ source.vertices[700] > 0
+    run(untangle_steps(source, target, triangles, barycentric, search=search, shown=shown))
+    after = flipped_triangles(source, target, triangles, barycentric)
+    counted = shown[source.triangles].any(axis=1)
+    assert min(counted[before].sum(), (~counted[before]).sum()) > 20
+    np.testing.assert_array_equal(after, before[~counted[before]])
+
+
 def test_a_map_in_order_is_not_touched():
     source, target = TriangleMesh(*icosphere(9)), TriangleMesh(*icosphere(12))
     search = ClosestPoints(target)
