@@ -53,9 +53,10 @@ def body_pieces(pieces: Sequence[TriangleMesh]) -> Bools:
         return of_body
     far = BESIDE * np.sqrt(areas.sum())
     places, normals = _seen(pieces[0], areas.sum() / SAMPLES)
+    tree = cKDTree(places)
     for number in range(1, len(pieces)):
         own, its = _seen(pieces[number], min(areas.sum() / SAMPLES, areas[number] / _LEAST_SAMPLES))
-        distances, nearest = cKDTree(places).query(own)
+        distances, nearest = tree.query(own)
         size = _BEYOND * np.sqrt(areas[number])
         beside = distances > min(far, size)
         if size < far:  # an eye is as far from the skin as a part of a finger from the next one, but within
@@ -64,6 +65,7 @@ def body_pieces(pieces: Sequence[TriangleMesh]) -> Bools:
         if beside.mean() > _MOSTLY:
             of_body[number] = True
             places, normals = np.concatenate([places, own]), np.concatenate([normals, its])
+            tree = cKDTree(places)
     of_body[1:] &= areas[1:][of_body[1:]].sum() > least
     return of_body
 

@@ -96,11 +96,13 @@ def solid_indicator(mesh: TriangleMesh, spacing: float) -> SolidIndicator:
 def _spreading(places: Floats, shape: tuple[int, ...]) -> csc_array:
     """Make the matrix (number of places of a grid, s) that spreads values at points, in its units, (s, 3)."""
     cells = np.floor(places).astype(np.int64)
-    inside = places - cells
-    corners = np.stack(np.meshgrid((0, 1), (0, 1), (0, 1), indexing="ij"), axis=-1).reshape(8, 3)
+    upper = places - cells
+    ends = np.stack([1 - upper, upper])  # weights of the places before and after, along each axis
+    steps = np.array([shape[1] * shape[2], shape[2], 1])
+    first = cells @ steps
     rows, weights = np.empty((len(places), 8), np.int64), np.empty((len(places), 8))
-    for number, corner in enumerate(corners):
-        rows[:, number] = np.ravel_multi_index(tuple((cells + corner).T), shape)
-        weights[:, number] = np.abs(1 - corner - inside).prod(axis=1)
+    for number, (i, j, k) in enumerate(np.ndindex(2, 2, 2)):
+        rows[:, number] = first + steps @ (i, j, k)
+        weights[:, number] = ends[i, :, 0] * ends[j, :, 1] * ends[k, :, 2]
     starts = np.arange(0, rows.size + 1, 8)
     return csc_array((weights.ravel(), rows.ravel(), starts), shape=(int(np.prod(shape)), len(places)))

@@ -246,10 +246,11 @@ def _between(pieces: tuple[SurfacePart, ...], reached: Bools, lost: Bools) -> Bo
     """Tell which pieces (p,) touch two of the body, one of them not reached, or if no larger than those, any two."""
     touching, areas = np.zeros((2, len(pieces)), np.int64), np.array([piece.mesh.area for piece in pieces])
     samples = [even_samples(piece.mesh, areas.sum() / SAMPLES).positions for piece in pieces]
+    near = BESIDE * np.sqrt(areas.sum())
     for counts, side in zip(touching, (reached, lost), strict=True):
         for number in np.flatnonzero(side):
             tree = cKDTree(samples[number])
-            counts += [tree.query(own)[0].min() < BESIDE * np.sqrt(areas.sum()) for own in samples]
+            counts += [np.isfinite(tree.query(own, distance_upper_bound=near)[0]).any() for own in samples]
     found: Bools = ((touching[1] > 0) | (areas <= areas[lost].max())) & (touching.sum(axis=0) > 1)
     return found
 
