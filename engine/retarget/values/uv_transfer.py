@@ -35,6 +35,10 @@ _ROUNDS = 3
 _LEAST_CONFIDENCE = 0.1
 """Below it, a place on the target has no trustworthy counterpart."""
 
+_FEW = 4.0
+"""Faces of the target, of mean size, that an island is larger than if it is missing there: smaller ones, such as single
+faces with a color each, may lie between the faces of a target that has larger ones.  As many as meet at a corner."""
+
 
 @dataclass(frozen=True, eq=False)
 class CarriedUVs:
@@ -49,7 +53,7 @@ class CarriedUVs:
     island_count : int
         How many islands the source has.
     lost : int
-        How many of them no face of the target lies on.
+        How many of them no face of the target lies on, though they are larger than some of its faces.
     untrusted : int
         How many of the others lie mostly where the map has no confidence.
     """
@@ -120,7 +124,8 @@ def carry_uvs_steps(uvs: ArrayLike, source: Polygons, places: FacePlaces, areas:
             break
         seats = places.seated_beside(sheets, seats, stray, beside)
     islands = sheets.labels[seats.triangles]
-    lost, untrusted = _misplaced(islands, sheets.count, places.confidence, areas)
+    own = np.bincount(sheets.labels, places.image.triangle_areas, sheets.count) / places.image.area
+    lost, untrusted = _misplaced(islands, own, places.confidence, areas)
     return CarriedUVs(carried, seams, sheets.count, lost, untrusted)
 
 
@@ -159,9 +164,14 @@ def _strays(
     return np.append(stray, tooth[fresh]), np.append(beside, next_to[fresh])
 
 
-def _misplaced(islands: Ints, count: int, confidence: Floats, areas: Floats) -> tuple[int, int]:
-    """Count the islands that no face lies on, and of the others those without confidence, by the area of faces."""
+def _misplaced(islands: Ints, shares: Floats, confidence: Floats, areas: Floats) -> tuple[int, int]:
+    """Count the islands (i,) that no face lies on, and of the others those without confidence, by the area of faces.
+
+    Of the former the shares of the source's surface tell which are too small to count.
+    """
+    count = len(shares)
     covered = np.bincount(islands, areas, count)
     doubtful = np.bincount(islands, areas * (confidence < _LEAST_CONFIDENCE), count)
     used = np.bincount(islands, minlength=count) > 0
-    return int((~used).sum()), int((used & (2 * doubtful > covered)).sum())
+    lost = ~used & (shares * len(areas) > _FEW)
+    return int(lost.sum()), int((used & (2 * doubtful > covered)).sum())

@@ -137,6 +137,15 @@ def test_loose_parts_of_the_target():
     np.testing.assert_allclose(carried.uvs, scattered[0][:, :2], atol=1e-12)
 
 
+def test_islands_smaller_than_the_faces_are_not_called_lost():
+    # Each face is an island of its own, with a place in a palette; the target has a ninth of the faces.
+    (vertices, faces, _), target = grid(24, 24), grid(8, 8)
+    palette = np.repeat(np.random.default_rng(0).random((faces.face_count, 2)), np.diff(faces.starts), axis=0)
+    carried = carry((vertices, faces, palette), target)
+    assert carried.island_count == faces.face_count
+    assert carried.lost == 0
+
+
 def test_islands_that_are_lost_or_not_to_be_trusted_are_counted():
     vertices, faces, uvs = grid(8, 4)
     column = np.arange(faces.face_count) % 8 // 2  # four islands
