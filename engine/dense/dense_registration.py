@@ -187,9 +187,9 @@ def registered_pair_steps(
         contest, candidates = yield from within(proposed_steps(contest, candidates), 0.6, 0.7)
     # Where none can be right, the best one is followed as it is.
     hopeful = contest.may_reach(EVEN, candidates, LITTLE_RISE if search else RISE)
-    contest.check(candidates)
+    contest.check_last(candidates)
     fits = yield from within(_contest_steps(contest, candidates if hopeful else candidates[:1]), 0.7, 0.9)
-    contest.check([fits[0].candidate])
+    contest.check_last([fits[0].candidate])
     follow = contest.follow if hopeful else replace(contest.follow, settling=Settling(disagree=()))
     closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
     best = closest.candidate

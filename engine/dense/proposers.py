@@ -63,10 +63,15 @@ class Contest:
         """Say whether any of the candidates may still lead to a map of so much likeness; with landmarks, all may."""
         return self.landmarks is not None or any(may_reach(least, c.likeness, c.in_place, rise) for c in candidates)
 
-    def check(self, candidates: list[Candidate], rise: float = LITTLE_RISE) -> None:
+    def check(self, candidates: list[Candidate], rise: float) -> None:
         """Raise a `MatchError` if none of the candidates may be of use any more."""
         if not self.may_reach(self.selection.least, candidates, rise):
             raise MatchError("The surfaces are not enough alike to be matched.")
+
+    def check_last(self, candidates: list[Candidate]) -> None:
+        """Do so where nothing more is proposed: then only the likeness of rough ones changes, once they are refined."""
+        if not self.may_reach(self.selection.least, candidates, 0.0):
+            self.check([candidate for candidate in candidates if candidate.hypothesis.is_rough], LITTLE_RISE)
 
     def credited(self, candidates: list[Candidate]) -> tuple[Contest, list[Candidate]]:
         """Judge candidates anew, the best first, if one of them leaves more in place than any before."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which candidates are compared; what each proposer proposes is tested where all are asked, with the registration."""
 
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import numpy as np
@@ -70,6 +71,16 @@ def test_what_cannot_be_of_use_any_more_is_given_up(monkeypatch):
     with pytest.raises(MatchError, match="not enough alike"):
         run(proposed_steps(contest_of(30.0), [candidate_of(27.0)]))
     assert done == ["much"]
+
+
+@pytest.mark.parametrize(
+    ("likeness", "is_rough", "given_up"), [(30.0, False, False), (29.5, False, True), (29.5, True, False)]
+)
+def test_at_last_only_rough_maps_may_gain(likeness, is_rough, given_up):
+    candidate = candidate_of(likeness)
+    candidate.hypothesis = SimpleNamespace(is_rough=is_rough)
+    with pytest.raises(MatchError, match="not enough alike") if given_up else nullcontext():
+        contest_of(30.0).check_last([candidate])
 
 
 def contest_of(least):
