@@ -56,7 +56,9 @@ class Selection:
     most : int
         How many are registered, and how many closely, at most.
     least : float
-        Likeness of the best that has been registered softly up to which no other is looked for: all are of no use.
+        Likeness below which no map is of use: all is given up as soon as it cannot be reached any more.
+    least_softly : float
+        Likeness of the best that has been registered softly below which no other is looked for.
     """
 
     apart: float = 0.07
@@ -67,6 +69,7 @@ class Selection:
     contested: float = 3.0
     most: int = 3
     least: float = -np.inf
+    least_softly: float = -np.inf
 
 
 USUAL = Selection()

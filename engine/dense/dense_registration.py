@@ -7,22 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-import numpy as np
-
 from ..mesh.closest_points import FoundPoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..registration.registration import Registration
 from ..runtime.arrays import Floats
 from ..runtime.errors import MatchError
-from ..runtime.progress import Preview, Progress, Steps, part_of, within
+from ..runtime.progress import Preview, Progress, Steps, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
-from .credibility import is_clear_choice, may_become_likely
+from .credibility import EVEN, LITTLE_RISE, RISE, is_clear_choice
 from .dense_hypotheses import USUAL, LandmarkStart, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
 from .initial_maps import RoughSearch
 from .landmark_selection import steered_hypotheses_steps
-from .proposers import PROPOSERS, Contest, are_distinct, contenders
+from .proposers import Contest, are_distinct, contenders, proposed_steps
 from .registered_hypotheses import Candidate, CloseFit, Follower, Settling, at_vertices
 
 EIGENPAIRS = 120
@@ -181,21 +179,18 @@ def registered_pair_steps(
     follow = Follower(x, y, source, target, ties, ties_back)
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
-    follow, candidates = _credited(follow, candidates)
+    contest, candidates = Contest(follow, landmarks, selection).credited(candidates)
     yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
-    alike = np.inf if landmarks is not None else max(candidate.likeness for candidate in candidates)
-    if alike < selection.least:
+    if landmarks is None and max(candidate.likeness for candidate in candidates) < selection.least_softly:
         raise MatchError("The surfaces are not enough alike to be matched.")
-    # Where no map is looked for, the one that is given is followed as it is; and where none can be right, the best one.
-    hopeful = landmarks is not None or any(may_become_likely(c.likeness, c.in_place) for c in candidates)
-    proposers = PROPOSERS if search and hopeful else ()
-    contest = Contest(follow, landmarks, selection)
-    for number, propose in enumerate(proposers):
-        candidates = yield from within(propose(contest, candidates), *part_of(number, len(proposers), 0.6, 0.7))
-        follow, candidates = _credited(contest.follow, candidates)
-        contest = replace(contest, follow=follow)
+    if search:
+        contest, candidates = yield from within(proposed_steps(contest, candidates), 0.6, 0.7)
+    # Where none can be right, the best one is followed as it is.
+    hopeful = contest.may_reach(EVEN, candidates, LITTLE_RISE if search else RISE)
+    contest.check_last(candidates)
     fits = yield from within(_contest_steps(contest, candidates if hopeful else candidates[:1]), 0.7, 0.9)
-    follow = follow if hopeful else replace(follow, settling=Settling(disagree=()))
+    contest.check_last([fits[0].candidate])
+    follow = contest.follow if hopeful else replace(contest.follow, settling=Settling(disagree=()))
     closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
     best = closest.candidate
     others = [candidate for candidate in candidates if candidate is not best]
@@ -224,15 +219,6 @@ def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[
     """Register the candidates that may be chosen closely; the most credible first."""
     fits = yield from contest.follow.all_close_steps(contenders(contest, candidates))
     return sorted(fits, key=lambda fit: fit.score)
-
-
-def _credited(follow: Follower, candidates: list[Candidate]) -> tuple[Follower, list[Candidate]]:
-    """Judge candidates anew, the best first, if one of them leaves more in place than any before."""
-    standing = max(candidate.in_place for candidate in candidates)
-    if standing <= follow.standing:
-        return follow, candidates
-    follow = replace(follow, standing=standing)
-    return follow, sorted(map(follow.credited, candidates), key=lambda candidate: candidate.score)
 
 
 def _rivals(

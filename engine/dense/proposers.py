@@ -3,22 +3,25 @@
 
 A proposer gets what is known of a pair of surfaces and the candidates so far, the best first, and returns them with
 what it proposes beside them or instead of them, the best first again.  All are compared by one score.  Another kind of
-repair is another function in `PROPOSERS`.
+repair is another one in `PROPOSERS`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, compress
-from operator import is_
+from operator import attrgetter, is_
+from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
 from ..runtime.arrays import Floats
-from ..runtime.progress import Steps, within
+from ..runtime.errors import MatchError
+from ..runtime.progress import Steps, part_of, within
 from ..shapes.landmarks import Landmarks
+from .credibility import EVEN, LITTLE_RISE, RISE, may_reach
 from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
 from .limb_sides import exchanged_limbs, repaired_start_steps
@@ -56,8 +59,42 @@ class Contest:
     landmarks: Landmarks | None = None
     selection: Selection = USUAL
 
+    def may_reach(self, least: float, candidates: list[Candidate], rise: float) -> bool:
+        """Say whether any of the candidates may still lead to a map of so much likeness; with landmarks, all may."""
+        return self.landmarks is not None or any(may_reach(least, c.likeness, c.in_place, rise) for c in candidates)
 
-Proposer = Callable[[Contest, list[Candidate]], Steps[list[Candidate]]]
+    def check(self, candidates: list[Candidate], rise: float) -> None:
+        """Raise a `MatchError` if none of the candidates may be of use any more."""
+        if not self.may_reach(self.selection.least, candidates, rise):
+            raise MatchError("The surfaces are not enough alike to be matched.")
+
+    def check_last(self, candidates: list[Candidate]) -> None:
+        """Do so where nothing more is proposed: then only the likeness of rough ones changes, once they are refined."""
+        if not self.may_reach(self.selection.least, candidates, 0.0):
+            self.check([candidate for candidate in candidates if candidate.hypothesis.is_rough], LITTLE_RISE)
+
+    def credited(self, candidates: list[Candidate]) -> tuple[Contest, list[Candidate]]:
+        """Judge candidates anew, the best first, if one of them leaves more in place than any before."""
+        standing = max(candidate.in_place for candidate in candidates)
+        if standing <= self.follow.standing:
+            return self, candidates
+        follow = replace(self.follow, standing=standing)
+        return replace(self, follow=follow), sorted(map(follow.credited, candidates), key=attrgetter("score"))
+
+
+class Proposer(NamedTuple):
+    """What proposes other registered maps.
+
+    Attributes
+    ----------
+    steps : callable
+        Proposes them.
+    rise : float
+        By how much the likeness may rise by that.
+    """
+
+    steps: Callable[[Contest, list[Candidate]], Steps[list[Candidate]]]
+    rise: float
 
 
 def are_distinct(first: Floats, second: Floats, areas: Floats) -> bool:
@@ -135,5 +172,46 @@ def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
     return sorted([*ways, *others], key=lambda candidate: candidate.score)
 
 
-PROPOSERS: tuple[Proposer, ...] = (_matchings_steps, _limbs_steps, _rolls_steps)
+PROPOSERS = (
+    Proposer(_matchings_steps, LITTLE_RISE),
+    Proposer(_limbs_steps, LITTLE_RISE),
+    Proposer(_rolls_steps, RISE),
+)
 """In the order in which they are asked: each may mend what those before it have proposed."""
+
+
+def proposed_steps(contest: Contest, candidates: list[Candidate]) -> Steps[tuple[Contest, list[Candidate]]]:
+    """Ask in turn all proposers by which the map may become right rather than not, and of use.
+
+    Those by which it may not are put off: it may once others have been asked.
+
+    Parameters
+    ----------
+    contest : Contest
+        What is compared.
+    candidates : list of Candidate
+        What has been registered softly, the best first.
+
+    Returns
+    -------
+    contest : Contest
+        What is compared, now that more is known of what the maps leave in place.
+    candidates : list of Candidate
+        All of them, the best first.
+
+    Raises
+    ------
+    MatchError
+        If the surfaces are less alike than the selection asks for, whatever may be proposed.
+    """
+    wanted = max(EVEN, contest.selection.least)
+    pending = list(PROPOSERS)
+    while True:
+        contest.check(candidates, max((proposer.rise for proposer in pending), default=LITTLE_RISE))
+        helpful = [proposer for proposer in pending if contest.may_reach(wanted, candidates, proposer.rise)]
+        if not helpful:
+            return contest, candidates
+        done = part_of(len(PROPOSERS) - len(pending), len(PROPOSERS))
+        candidates = yield from within(helpful[0].steps(contest, candidates), *done)
+        contest, candidates = contest.credited(candidates)
+        pending.remove(helpful[0])

@@ -64,6 +64,9 @@ _ROLLS = 3
 _TRIFLE = 0.006
 """Mean distance, in sqrt(area), up to which a body lies as before: but a tip is turned, or it is wound about itself."""
 
+_MOST_LYING = 3
+"""In how many other ways all of a body is laid down at most: as many as are registered of anything."""
+
 _WORTHWHILE = 3.0
 """Difference of scores up to which a body that was laid down otherwise is turned back as well."""
 
@@ -223,7 +226,8 @@ class Follower:
         """Turn a long body back where it is turned about its axis, and try how else it might lie as a whole.
 
         Returned are for each candidate all ways to lie, the most credible first, or the candidate alone.  What
-        landmarks hold stays the way round it is, and no other way is tried if the first one leaves all in place.
+        landmarks hold stays the way round it is, and no other way is tried if the first one leaves all in place.  Of
+        all other ways those of the most credible candidates are tried, a few at most.
         """
         if self.ties is not None:
             return [[candidate] for candidate in candidates]
@@ -231,17 +235,16 @@ class Follower:
         if is_placed(candidates[0].in_place):
             turned = [(judged, []) for judged, _ in turned]
         found = []
-        items: list[tuple[Candidate, Floats]] = []
-        for candidate, (judged, ways) in zip(candidates, turned, strict=True):
-            best = candidate if judged is None else Candidate(candidate.hypothesis, *judged)
-            found.append([best])
-            items += [(best, way) for way in ways]
-        lying = iter((yield from within(shared_steps(_lying_steps, self, items), 0.4, 1.0)))
-        for ways_to_lie, (_, ways) in zip(found, turned, strict=True):
-            hypothesis = ways_to_lie[0].hypothesis
-            ways_to_lie += [Candidate(hypothesis, *next(lying)) for _ in ways]
-            ways_to_lie.sort(key=lambda candidate: candidate.score)
-        return found
+        others: list[tuple[int, Floats]] = []
+        for number, (candidate, (judged, ways)) in enumerate(zip(candidates, turned, strict=True)):
+            found.append([candidate if judged is None else Candidate(candidate.hypothesis, *judged)])
+            others += [(number, way) for way in ways]
+        others = sorted(others, key=lambda other: found[other[0]][0].score)[:_MOST_LYING]
+        items = [(found[number][0], way) for number, way in others]
+        lying = yield from within(shared_steps(_lying_steps, self, items), 0.4, 1.0)
+        for (number, _), judged in zip(others, lying, strict=True):
+            found[number].append(Candidate(found[number][0].hypothesis, *judged))
+        return [sorted(ways, key=lambda candidate: candidate.score) for ways in found]
 
     def lying_steps(self, best: Candidate, way: Floats) -> Steps[Candidate]:
         """Register a long body as it might lie otherwise, and turn it back if that may be the better way."""

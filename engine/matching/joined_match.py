@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..dense.credibility import EVEN, MUCH_ALIKE, RISE, is_likely
+from ..dense.credibility import EVEN, MUCH_ALIKE, is_likely
 from ..runtime.arrays import Bools
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
@@ -81,7 +81,7 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     # Without its limbs, a trunk is open; what is closed may be all of a body, and the rest what it stands on.
     if alike or (max(main) >= _ALL_BUT_HANDS and not has_border(y if main[0] > main[1] else x)):
         # What is not right rather than not by its main parts is better joined first.
-        first = yield from within(_tried_steps(x, y, replace(task, least=max(task.least, EVEN))), 0.0, _FIRST)
+        first = yield from within(_tried_steps(x, y, replace(task, least_softly=EVEN)), 0.0, _FIRST)
         together = 0.0 if first is None else _together_but_for_extras(first, bodies)
         if first is not None and together >= _TOGETHER and (alike or _is_clear(first)):
             return first, x, y
@@ -94,7 +94,7 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
     end = 1.0 if first is not None else (1 + begin) / 2
     second = None
     if joined[0] is not x or joined[1] is not y:
-        least = -np.inf if first is None else min(_likeness(first), EVEN) - RISE
+        least = -np.inf if first is None else min(_likeness(first), EVEN)
         second = yield from within(
             _tried_steps(joined[0], joined[1], replace(task, least=max(task.least, least))), begin, end
         )
@@ -103,8 +103,8 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         return first or (yield from within(matched_steps(x, y, task), end, 1.0)), x, y
     if first is None and not (_is_plausible(second) and _covered(second) >= _TOGETHER):
         # What hangs on one body alone is better left alone, as clothes are here.
-        least = max(task.least, min(_likeness(second), EVEN))
-        first = yield from within(_tried_steps(x, y, replace(task, least=least)), end, 1.0)
+        task = replace(task, least_softly=min(_likeness(second), EVEN))
+        first = yield from within(_tried_steps(x, y, task), end, 1.0)
     if first is not None and not alike and (together < _TOGETHER or _likeness(first) < _likeness(second)):
         together = min(_together(first, bodies), _partnered(first))
     if first is None or _is_better(second, first, together):

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, RISE
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE
 from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools
@@ -178,7 +178,7 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
         return result
     # All of both wins if that is more credible, so it is given up as soon as it cannot be.
     if is_clear:
-        task = replace(begun, least=part_credibility(result, of_source=of_source) - RISE)
+        task = replace(begun, least=part_credibility(result, of_source=of_source))
     try:
         other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
     except MatchError:

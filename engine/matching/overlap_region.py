@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from ..dense.credibility import may_reach
 from ..dense.dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
 from ..dense.dense_registration import EIGENPAIRS
 from ..dense.missing_parts import with_partner
@@ -107,8 +108,8 @@ class _Fit:
 
     Attributes
     ----------
-    score : float
-        Smaller is more credible.
+    score, likeness : float
+        How credible it is, smaller is more, and how much alike the piece and the part are.
     places : (m, 3) array of float
         Where the vertices of the part lie on the whole.
     overhanging : (m,) array of bool
@@ -118,12 +119,15 @@ class _Fit:
     """
 
     score: float
+    likeness: float
     places: Floats
     overhanging: Bools
     unit: float
 
 
-def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, SurfaceMap]) -> Steps[list[CoveredPart]]:
+def covered_parts_steps(
+    whole: Shape, part: Shape, first: tuple[SurfaceMap, SurfaceMap], least: float = -np.inf
+) -> Steps[list[CoveredPart]]:
     """Find what of a surface another one shows.
 
     Surfaces are compared in units of their area, so a part is seen too large beside the whole, and what it lacks has to
@@ -138,12 +142,14 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
         The surfaces.
     first : pair of SurfaceMap
         What came of them as they are: a map of the whole to the part, and the other way round.
+    least : float
+        Likeness of the part and a piece below which that is of no use.
 
     Returns
     -------
     list of CoveredPart
         The most credible piece, and others that are nearly as credible; empty if there is none that fits better than
-        all of the whole.
+        all of the whole, or that may be of use.
     """
     coarse = yield from within(Shape.steps(whole.mesh, proxy_vertices=_VERTICES), 0.0, 0.05)
     other = yield from within(Shape.steps(part.mesh, proxy_vertices=_VERTICES), 0.05, 0.1)
@@ -160,6 +166,8 @@ def covered_parts_steps(whole: Shape, part: Shape, first: tuple[SurfaceMap, Surf
     placements = yield from within(searching, 0.2, 0.25)
     starts += [(fitter.roughly_covered(images), images) for images in placements]
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
+    if not any(may_reach(least, fit.likeness, 0.0) for fit in fits):
+        return []
     scores, taken = np.array([fit.score for fit in fits]), np.array([fit.places for fit in fits]) / whole.scale
     best = best_and_rivals(scores, taken, _REFINED, _HOPEFUL[1])
     starting = [(*fitter.start(fits[way]), _ROUNDS) for way in best]
@@ -347,4 +355,4 @@ class _Fitter:
         )
         overhanging = ~with_partner(self.part.mesh, piece.mesh, there, back)
         score = candidate.score + _OVERHANGING * float(self._surface.mass @ overhanging)
-        return _Fit(score, places, overhanging, piece.scale / self.part.scale)
+        return _Fit(score, candidate.likeness, places, overhanging, piece.scale / self.part.scale)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import share_of, with_piece_only
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, RISE, has_failed, is_less_alike
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, has_failed, is_less_alike
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, part_of, within
@@ -73,7 +73,8 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
     least = CREDIBLE if any(parts) else MUCH_ALIKE
     found = []
     for number, (whole, part, known) in enumerate(ways):
-        steps = covered_parts_steps(whole, part, known)
+        needed = _needed(result, least, of_source=whole is x)
+        steps = covered_parts_steps(whole, part, known, needed)
         pieces = yield from within(steps, *part_of(number, len(ways), end=_FOUND), "Looking for missing parts")
         found += [(piece, whole is x) for piece in pieces]
     found.sort(key=lambda pair: pair[0].score)
@@ -111,8 +112,8 @@ def piece_matched_steps(
     MatchResult
         The most credible match, the given one among them.
     """
-    way = _Way(x, y, of_source, replace(task, least=least - RISE))
     for again in range(_ROUNDS):
+        way = _Way(x, y, of_source, replace(task, least=_needed(result, least, of_source=of_source)))
         other = yield from within(way.matched_steps(piece), *part_of(again, _ROUNDS))
         if other is None or not is_better_part(other, result, least, of_source=of_source):
             break
@@ -176,6 +177,13 @@ def _cut_steps(shape: Shape, covered: Bools, name: str) -> Steps[Shape]:
     if shape.surface.cleaned.stand_in is None:
         return cut
     return (yield from within(with_limbs_steps(cut, name, np.arange(mesh.vertex_count)), 0.7, 1.0))
+
+
+def _needed(result: MatchResult, least: float, *, of_source: bool) -> float:
+    """Tell the likeness below which no match with a piece is better than a result, see `is_better_part`."""
+    if result.dense.quality.likeness is None:
+        return least
+    return max(least, part_credibility(result, of_source=of_source))
 
 
 def is_better_part(other: MatchResult, result: MatchResult, least: float, *, of_source: bool) -> bool:

@@ -70,6 +70,8 @@ class MatchTask:
         Takes the time of each stage.
     least : float
         Likeness of the surfaces below which a dense match is of no use.
+    least_softly : float
+        The same of what has been registered softly, though it may rise.
     begun : SurfaceMap, optional
         A map of the source to the target that a dense match begins with; then no other is looked for.
     """
@@ -78,6 +80,7 @@ class MatchTask:
     landmarks: ArrayLike | None
     clock: Clock = field(default_factory=Clock)
     least: float = -np.inf
+    least_softly: float = -np.inf
     begun: SurfaceMap | None = None
 
 
@@ -170,7 +173,7 @@ def _dense_steps(
         starts.append(LandmarkStart(*rows, "hierarchy"))
     if task.begun is not None:
         starts = [_begun_start(x, y, finer, task.begun)]
-    selection, clock = replace(USUAL, least=task.least), task.clock
+    selection, clock = replace(USUAL, least=task.least, least_softly=task.least_softly), task.clock
     registering = registered_pair_steps(
         *finer, starts, search=task.begun is None, landmarks=landmarks, searched=searched, selection=selection
     )

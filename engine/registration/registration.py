@@ -51,8 +51,8 @@ class Stage:
         Over what distance the rotations are averaged, in sqrt(area), if not more because bodies are unlike.
     matched : str
         What points are matched with in each round: "vertices", the most similar one; the triangles "around" it; or
-        points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place, unless
-        it has few vertices: then "anywhere" is meant always.  At the end of the registration, the next better is used.
+        points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place.  Where
+        it has few vertices, and at the end of the registration, the next better is used.
     lead : float
         By what part of its way each round goes on in the same direction.  Closest points hold the surface where it is,
         so it would only creep to where it is less distorted.
@@ -228,8 +228,8 @@ class _Matcher:
         A helper matches the target, which takes longer.
         """
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
-        coarse = _are_coarse(self.source, self.target)
-        find = _anywhere if coarse else searches[min(_MATCHED.index(self.stage.matched) + last, 2)]
+        better = last + _are_coarse(self.source, self.target)
+        find = searches[min(_MATCHED.index(self.stage.matched) + better, 2)]
 
         def own_steps() -> Steps[tuple[FoundPoints, Floats]]:
             """Match the source, and find the rotations."""

@@ -7,7 +7,9 @@ from engine.dense.credibility import (
     CREDIBLE,
     EVEN,
     FAILED,
+    LITTLE_RISE,
     MUCH_ALIKE,
+    RISE,
     closeness,
     has_failed,
     is_clear_choice,
@@ -16,7 +18,7 @@ from engine.dense.credibility import (
     is_placed,
     likeness,
     map_score,
-    may_become_likely,
+    may_reach,
     place_credit,
     probability_chosen,
     probability_in_place,
@@ -124,6 +126,9 @@ def test_a_half_turn_takes_away_from_what_stands_but_says_nothing_by_itself():
 
 
 def test_hope_ends_where_neither_can_become_likely():
-    assert may_become_likely(EVEN, 0.0)
-    assert may_become_likely(-20.0, probability_in_place(0.66))
-    assert not may_become_likely(FAILED - 5, probability_in_place(0.5))
+    assert may_reach(EVEN, EVEN, 0.0)
+    assert may_reach(EVEN, -20.0, probability_in_place(0.66))
+    assert not may_reach(CREDIBLE, -20.0, 1.0)
+    assert not may_reach(EVEN, FAILED - 5, probability_in_place(0.5))
+    assert may_reach(EVEN, EVEN - RISE, 0.0)
+    assert not may_reach(EVEN, EVEN - RISE, 0.0, LITTLE_RISE)

@@ -421,6 +421,18 @@ def test_long_bodies_stay_where_turning_them_back_is_less_credible_or_landmarks_
     assert run(replace(follow, ties=ties).rolled_back_steps([candidate])) == [[candidate]]
 
 
+def test_of_all_other_ways_to_lie_those_of_the_best_are_tried_and_three_at_most(upset, monkeypatch):
+    follow, candidate = upset[0], replace(upset[1], in_place=0.0)
+    second = replace(candidate, score=candidate.score - 1)
+    way = candidate.registration.positions + 0.5
+    tried = []
+    monkeypatch.setattr(Follower, "turned_back_steps", lambda _self, own: returned((own, [way, way])))
+    monkeypatch.setattr(Follower, "lying_steps", lambda _self, own, _way: tried.append(own.score) or returned(own))
+    ways = run(follow.rolled_back_steps([candidate, second]))
+    assert tried == [second.score, second.score, candidate.score]
+    assert [len(found) for found in ways] == [2, 3]
+
+
 def test_where_a_map_is_looked_for_long_bodies_are_turned_back(long_bodies, upset, monkeypatch):
     x, y = long_bodies
     monkeypatch.setattr(Follower, "steps", lambda _self, hypothesis: returned(replace(upset[1], hypothesis=hypothesis)))
@@ -483,8 +495,8 @@ def test_where_no_map_can_be_right_the_best_alone_is_followed(bodies, both_start
     """With the true map made to seem worse at first, the wrong one is kept: no close registration decides."""
     x, y = bodies[:2]
     asked = []
-    monkeypatch.setattr(dense_map, "PROPOSERS", (lambda *_: asked.append(1),))
-    monkeypatch.setattr(dense_map, "may_become_likely", lambda *_: False)
+    monkeypatch.setattr(proposers, "PROPOSERS", (proposers.Proposer(lambda *_: asked.append(1), 4.0),))
+    monkeypatch.setattr(proposers, "may_reach", lambda least, *_: least == -np.inf)
     with_soft_score(monkeypatch, "true", 100.0)
     selection = replace(BOTH, contested=1000.0)
     pair = run(registered_pair_steps(x, y, both_starts, selection=selection))
@@ -499,9 +511,28 @@ def test_surfaces_that_are_less_alike_than_asked_for_are_given_up_before_close_r
     x, y = bodies[:2]
     closely = []
     monkeypatch.setattr(dense_map, "_contest_steps", lambda *_: closely.append(1))
-    with pytest.raises(MatchError, match="not enough alike"):
-        run(registered_pair_steps(x, y, both_starts, selection=replace(BOTH, least=np.inf)))
+    for least in ({"least": np.inf}, {"least_softly": np.inf}):
+        with pytest.raises(MatchError, match="not enough alike"):
+            run(registered_pair_steps(x, y, both_starts, search=False, selection=replace(BOTH, **least)))
     assert not closely
+
+
+def test_a_chosen_map_by_which_the_surfaces_are_less_alike_than_asked_for_is_not_followed(
+    bodies, both_starts, monkeypatch
+):
+    x, y = bodies[:2]
+    own = Follower.all_close_steps
+
+    def unlike_steps(*given):
+        fits = yield from own(*given)
+        return [replace(fit, candidate=replace(fit.candidate, likeness=0.0, in_place=0.0)) for fit in fits]
+
+    settled = []
+    monkeypatch.setattr(Follower, "all_close_steps", unlike_steps)
+    monkeypatch.setattr(Follower, "settled_steps", lambda *_: settled.append(1))
+    with pytest.raises(MatchError, match="not enough alike"):
+        run(registered_pair_steps(x, y, both_starts, search=False, selection=replace(BOTH, least=10.0)))
+    assert not settled
 
 
 @pytest.mark.parametrize(

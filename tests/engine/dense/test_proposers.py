@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which candidates are compared; what each proposer proposes is tested where all are asked, with the registration."""
 
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from engine.dense.proposers import Contest, are_distinct, contenders
+from engine import MatchError, run
+from engine.dense import proposers
+from engine.dense.credibility import EVEN
+from engine.dense.dense_hypotheses import Selection
+from engine.dense.proposers import Contest, Proposer, are_distinct, contenders, proposed_steps
 
 
 def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_little_everywhere_are_not():
@@ -39,3 +44,64 @@ def test_other_maps_that_are_nearly_as_credible_as_the_first_are_contenders(scor
         for score, place in zip(scores, places, strict=True)
     ]
     assert contenders(contest, candidates) == [candidates[number] for number in chosen]
+
+
+@pytest.mark.parametrize(
+    ("likeness", "rises", "asked"),
+    [
+        (EVEN, 0.0, ["little", "much"]),
+        (EVEN - 3, 0.0, ["much"]),  # little would not do
+        (EVEN - 3, 3.0, ["much", "little"]),  # now it may
+        (EVEN - 5, 0.0, []),
+    ],
+    ids=["likely", "unlikely", "risen", "hopeless"],
+)
+def test_only_what_may_make_the_map_likely_is_tried(likeness, rises, asked, monkeypatch):
+    done = propose(monkeypatch, {"little": (1.0, 0.0), "much": (4.0, rises)})
+    _, candidates = run(proposed_steps(contest_of(-np.inf), [candidate_of(likeness)]))
+    assert done == asked
+    assert candidates[0].likeness == likeness + rises * ("much" in asked)
+
+
+def test_what_cannot_be_of_use_any_more_is_given_up(monkeypatch):
+    done = propose(monkeypatch, {"little": (1.0, 0.0), "much": (4.0, 1.0)})
+    with pytest.raises(MatchError, match="not enough alike"):
+        run(proposed_steps(contest_of(30.0), [candidate_of(25.0)]))
+    assert done == []
+    with pytest.raises(MatchError, match="not enough alike"):
+        run(proposed_steps(contest_of(30.0), [candidate_of(27.0)]))
+    assert done == ["much"]
+
+
+@pytest.mark.parametrize(
+    ("likeness", "is_rough", "given_up"), [(30.0, False, False), (29.5, False, True), (29.5, True, False)]
+)
+def test_at_last_only_rough_maps_may_gain(likeness, is_rough, given_up):
+    candidate = candidate_of(likeness)
+    candidate.hypothesis = SimpleNamespace(is_rough=is_rough)
+    with pytest.raises(MatchError, match="not enough alike") if given_up else nullcontext():
+        contest_of(30.0).check_last([candidate])
+
+
+def contest_of(least):
+    return Contest(SimpleNamespace(standing=0.0), selection=Selection(least=least))
+
+
+def candidate_of(likeness):
+    return SimpleNamespace(likeness=likeness, in_place=0.0)
+
+
+def propose(monkeypatch, named):
+    """Put others in the place of all proposers, by name how far they say likeness may rise, and how far it does."""
+    done = []
+
+    def proposer(name, rise, rises):
+        def steps(_contest, candidates):
+            done.append(name)
+            return [candidate_of(candidate.likeness + rises) for candidate in candidates]
+            yield
+
+        return Proposer(steps, rise)
+
+    monkeypatch.setattr(proposers, "PROPOSERS", tuple(proposer(name, *each) for name, each in named.items()))
+    return done

@@ -55,6 +55,13 @@ def test_where_nothing_is_missing_no_piece_fits_better(bodies):
     assert run(covered_parts_steps(whole, same, maps)) == []
 
 
+def test_where_no_piece_may_be_as_alike_as_it_has_to_be_none_is_followed(bodies):
+    (whole, rest), (part, part_rest) = bodies
+    maps = true_map(rest, part, part_rest), true_map(part_rest, whole, rest)
+    assert run(covered_parts_steps(whole, part, maps))
+    assert run(covered_parts_steps(whole, part, maps, 1000.0)) == []
+
+
 def test_on_a_surface_too_small_to_tell_nothing_is_found():
     whole, part = (Shape(TriangleMesh(*cylinder(12, along, 0.2, 1.0))) for along in (12, 6))
     assert run(covered_parts_steps(whole, part, (to_anywhere(whole, part), to_anywhere(part, whole)))) == []
