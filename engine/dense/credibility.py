@@ -167,6 +167,11 @@ def probability_right(known: float | None, in_place: float = 0.0) -> float:
     return 1 - (1 - in_place) * (1 - float(expit((known - _RIGHT) / _RIGHT_SPREAD)))
 
 
+def least_likeness(confidence: float) -> float:
+    """Likeness below which no map can have more than a confidence, from 0 to 1, by that alone."""
+    return _alike(confidence)
+
+
 def is_likely(known: float | None, in_place: float = 0.0) -> bool:
     """Say whether a map is right rather than not, see `probability_right`."""
     return probability_right(known, in_place) >= 0.5

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, least_likeness
 from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools
@@ -147,6 +147,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     try:
         if all(cut):
             # Neither shows all of the other: no piece of one is to be looked for.
+            task = task if overlap is None else replace(task, least=least_likeness(_worth(overlap)))
             result, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _OVERLAP, 1.0)
         else:
             result = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _OVERLAP, 1.0)
@@ -193,10 +194,12 @@ def _begun(task: MatchTask, overlap: OverlapMatch) -> MatchTask:
 
 def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:
     """Choose between surfaces as they are and what they share: the more credible, or what claims least."""
-    if overlap is None:
-        return result
-    least = max(overlap.result.dense.quality.confidence, _HOPELESS)
-    return result if result.dense.quality.confidence > least else overlap.result
+    return result if overlap is None or result.dense.quality.confidence > _worth(overlap) else overlap.result
+
+
+def _worth(overlap: OverlapMatch) -> float:
+    """Confidence that a match of all of two surfaces needs to be taken instead of one of what they share."""
+    return max(overlap.result.dense.quality.confidence, _HOPELESS)
 
 
 def _shapes_steps(

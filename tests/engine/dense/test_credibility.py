@@ -16,6 +16,7 @@ from engine.dense.credibility import (
     is_less_alike,
     is_likely,
     is_placed,
+    least_likeness,
     likeness,
     map_score,
     may_reach,
@@ -62,6 +63,13 @@ def test_the_levels_of_decisions_are_probabilities():
     assert [probability_right(level) for level in (FAILED, EVEN, CREDIBLE)] == pytest.approx([0.16, 0.5, 0.965])
     assert [closeness(level) for level in (MUCH_ALIKE, ALL_ALIKE)] == pytest.approx([0.981, 0.99945])
     assert FAILED < EVEN < CREDIBLE < MUCH_ALIKE < ALL_ALIKE
+
+
+@pytest.mark.parametrize("confidence", [0.1, 0.3, 0.9])
+def test_no_map_of_less_than_the_least_likeness_is_trusted_so_far(confidence):
+    least = least_likeness(confidence)
+    assert vertex_credibility(1.0, None, least - 0.01) < max(confidence, 0.1 + 1e-9)
+    assert probability_right(least) == pytest.approx(confidence)
 
 
 def test_with_landmarks_nothing_is_doubted():
