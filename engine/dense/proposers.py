@@ -60,7 +60,11 @@ class Contest:
     selection: Selection = USUAL
 
     def may_reach(self, least: float, candidates: list[Candidate], rise: float) -> bool:
-        """Say whether any of the candidates may still lead to a map of so much likeness; with landmarks, all may."""
+        """Say whether any of the candidates may still lead to a map of so much likeness; with landmarks, all may.
+
+        Of surfaces that end somewhere, parts are looked for from where the map leads, be it likely or not.
+        """
+        rise = rise if self.follow.are_closed else max(rise, RISE)
         return self.landmarks is not None or any(may_reach(least, c.likeness, c.in_place, rise) for c in candidates)
 
     def check(self, candidates: list[Candidate], rise: float) -> None:

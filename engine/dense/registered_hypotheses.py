@@ -195,7 +195,7 @@ class Follower:
         return self.x.unit_functions()
 
     @cached_property
-    def _are_closed(self) -> bool:
+    def are_closed(self) -> bool:
         """Whether nothing can have been cut off."""
         return not (has_border(self.x) or has_border(self.y))
 
@@ -387,14 +387,14 @@ class Follower:
 
         It is 0 where something may have been cut off: of a part, another map may leave more in place than the true one.
         """
-        if not self._are_closed:
+        if not self.are_closed:
             return 0.0
         points = self.source.mesh.vertices
         return probability_in_place(agreement_in_place(points, positions, self.source.mass))
 
     def credit(self, positions: Floats) -> float:
         """By how much a score is smaller because of what is in place, be it after a half turn, see `place_credit`."""
-        if not self._are_closed:
+        if not self.are_closed:
             return 0.0
         agreement = agreement_in_place(self.source.mesh.vertices, positions, self.source.mass, half_turn=True)
         return place_credit(max(self.in_place(positions), probability_turned(agreement, self.standing)))

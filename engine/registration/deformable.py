@@ -82,6 +82,11 @@ class DeformableSurface:
         border[self.mesh.boundary_edges] = 1
         return border
 
+    @property
+    def ends(self) -> bool:
+        """Whether the surface has a border."""
+        return len(self.mesh.boundary_edges) > 0
+
     @cached_property
     def elastic(self) -> ElasticSurface:
         """Its resistance to deformation."""

@@ -52,7 +52,8 @@ class Stage:
     matched : str
         What points are matched with in each round: "vertices", the most similar one; the triangles "around" it; or
         points "anywhere" on the surface.  While the surface is stiff the cheap matches lead to the same place.  Where
-        it has few vertices, and at the end of the registration, the next better is used.
+        it has few vertices, and at the end of the registration, the next better is used; where it also ends somewhere,
+        the best: what lies next to a border may lie beyond it.
     lead : float
         By what part of its way each round goes on in the same direction.  Closest points hold the surface where it is,
         so it would only creep to where it is less distorted.
@@ -228,7 +229,7 @@ class _Matcher:
         A helper matches the target, which takes longer.
         """
         searches = _nearest_vertices, _around_nearest_vertices, _anywhere
-        better = last + _are_coarse(self.source, self.target)
+        better = last + _are_coarse(self.source, self.target) * (2 if self.source.ends or self.target.ends else 1)
         find = searches[min(_MATCHED.index(self.stage.matched) + better, 2)]
 
         def own_steps() -> Steps[tuple[FoundPoints, Floats]]:

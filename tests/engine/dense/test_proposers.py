@@ -63,6 +63,12 @@ def test_only_what_may_make_the_map_likely_is_tried(likeness, rises, asked, monk
     assert candidates[0].likeness == likeness + rises * ("much" in asked)
 
 
+def test_of_surfaces_that_end_somewhere_all_is_tried_as_parts_are_looked_for_from_there(monkeypatch):
+    done = propose(monkeypatch, {"little": (1.0, 0.0), "much": (4.0, 0.0)})
+    run(proposed_steps(contest_of(-np.inf, are_closed=False), [candidate_of(EVEN - 3)]))
+    assert done == ["little", "much"]
+
+
 def test_what_cannot_be_of_use_any_more_is_given_up(monkeypatch):
     done = propose(monkeypatch, {"little": (1.0, 0.0), "much": (4.0, 1.0)})
     with pytest.raises(MatchError, match="not enough alike"):
@@ -83,8 +89,8 @@ def test_at_last_only_rough_maps_may_gain(likeness, is_rough, given_up):
         contest_of(30.0).check_last([candidate])
 
 
-def contest_of(least):
-    return Contest(SimpleNamespace(standing=0.0), selection=Selection(least=least))
+def contest_of(least, *, are_closed=True):
+    return Contest(SimpleNamespace(standing=0.0, are_closed=are_closed), selection=Selection(least=least))
 
 
 def candidate_of(likeness):
