@@ -22,7 +22,7 @@ from ..shapes.known_shapes import KnownShapes
 from ..shapes.prepared_surface import PreparedSurface, prepared_steps
 from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
-from .overlap.overlap_match import CLEAR, OverlapMatch, overlap_match_steps
+from .overlap.overlap_match import OverlapMatch, overlap_match_steps
 from .partial_match import (
     is_as_alike,
     is_better_part,
@@ -54,6 +54,10 @@ _OVERLAP, _FIRST_AFTER = 0.35, 0.6
 
 _CLOSER = 0.5
 """Part of the work with a part and the piece that it shares after which that is matched closely."""
+
+_SURE = 0.9
+"""Credibility of what surfaces share from which on no other map is looked for: in `partial_pairs` a person turned back to
+front has 0.65, and most that are right have 0.95 or more."""
 
 _HOPELESS = 0.1
 """Confidence up to which a match of surfaces as they are is not worth more than one of what they might share."""
@@ -173,7 +177,7 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     begun = _begun(task, overlap)
     steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source)
     result = yield from within(steps, 0.0, _CLOSER)
-    enough = MUCH_ALIKE if overlap.credibility >= CLEAR else ALL_ALIKE
+    enough = MUCH_ALIKE if overlap.credibility >= _SURE else ALL_ALIKE
     is_clear = shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
     if is_clear and min(overlap.shares) < _SMALL_PART:
         return result
@@ -189,7 +193,7 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
 
 def _begun(task: MatchTask, overlap: OverlapMatch) -> MatchTask:
     """Begin with the map of an overlap if that is clear: then no other is looked for."""
-    return replace(task, begun=overlap.result.source_to_target) if overlap.credibility >= CLEAR else task
+    return replace(task, begun=overlap.result.source_to_target) if overlap.credibility >= _SURE else task
 
 
 def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:
