@@ -56,8 +56,8 @@ _CLOSER = 0.5
 """Part of the work with a part and the piece that it shares after which that is matched closely."""
 
 _SURE = 0.9
-"""Credibility of what surfaces share from which on no other map is looked for: in `partial_pairs` a person turned back to
-front has 0.65, and most that are right have 0.95 or more."""
+"""Credibility of what surfaces share from which on no other map is looked for: in `partial_pairs` a person turned back
+to front has 0.65, and most that are right have 0.95 or more."""
 
 _HOPELESS = 0.1
 """Confidence up to which a match of surfaces as they are is not worth more than one of what they might share."""
