@@ -73,8 +73,8 @@ _LEAST_CREDIBILITY = 0.1
 """What vertices of a map that is surely wrong are still trusted: none at all are those without a partner."""
 
 
-def _alike(probability: float) -> float:
-    """Likeness at which maps are right with a probability."""
+def least_likeness(probability: float) -> float:
+    """Likeness at which maps are right with a probability: below, none has more confidence than that."""
     return float(_RIGHT + _RIGHT_SPREAD * logit(probability))
 
 
@@ -83,13 +83,13 @@ def _alike_closely(part: float) -> float:
     return float(_CLOSE + _CLOSE_SPREAD * logit((part - _LEAST_CLOSENESS) / (1 - _LEAST_CLOSENESS)))
 
 
-FAILED = _alike(0.16)
+FAILED = least_likeness(0.16)
 """Likeness below which surfaces without a border are not matched rightly as they are: one in six is right."""
 
-EVEN = _alike(0.5)
+EVEN = least_likeness(0.5)
 """Likeness from which on a map is right rather than not."""
 
-CREDIBLE = _alike(0.965)
+CREDIBLE = least_likeness(0.965)
 """Likeness below which a map is doubtful: from here on, one in thirty is wrong."""
 
 MUCH_ALIKE = _alike_closely(0.981)
@@ -165,11 +165,6 @@ def probability_right(known: float | None, in_place: float = 0.0) -> float:
     if known is None:
         return 1.0
     return 1 - (1 - in_place) * (1 - float(expit((known - _RIGHT) / _RIGHT_SPREAD)))
-
-
-def least_likeness(confidence: float) -> float:
-    """Likeness below which no map can have more than a confidence, from 0 to 1, by that alone."""
-    return _alike(confidence)
 
 
 def is_likely(known: float | None, in_place: float = 0.0) -> bool:

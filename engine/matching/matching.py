@@ -166,10 +166,10 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
 def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
-    That begins with the map of the overlap if that is clear; else a map is looked for anew.  If some of the part has no
-    partner then, or the piece is less like it than one body is like itself in another pose, or like another whole body
-    if the overlap is clear, all of the whole surface is tried as well.  So it is if most of that is shared: a body
-    whose faces are missing here and there is no part.
+    That begins with the map of the overlap if that is nearly certain; else a map is looked for anew.  If some of the
+    part has no partner then, or the piece is less like it than one body is like itself in another pose, or like another
+    whole body if the overlap is nearly certain, all of the whole surface is tried as well.  So it is if most of that is
+    shared: a body whose faces are missing here and there is no part.
     """
     known = overlap.result
     whole, shown = (x, known.dense.source_to_target) if of_source else (y, known.dense.target_to_source)
@@ -192,7 +192,7 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
 
 
 def _begun(task: MatchTask, overlap: OverlapMatch) -> MatchTask:
-    """Begin with the map of an overlap if that is clear: then no other is looked for."""
+    """Begin with the map of an overlap if that is nearly certain: then no other is looked for."""
     return replace(task, begun=overlap.result.source_to_target) if overlap.credibility >= _SURE else task
 
 

@@ -54,11 +54,16 @@ def test_flipped_triangles_are_those_turned_over():
     )
 
 
-def test_a_knot_is_untied_and_the_rest_left_alone():
+def mapped_sphere():
+    """A sphere in two meshes, the search on the second, and where it has the vertices of the first."""
     source = TriangleMesh(*icosphere(16))
     target = TriangleMesh(*permuted(*icosphere(13))[:2])
     search = ClosestPoints(target)
-    found = search.nearest(source.vertices)
+    return source, target, search, search.nearest(source.vertices)
+
+
+def test_a_knot_is_untied_and_the_rest_left_alone():
+    source, target, search, found = mapped_sphere()
     random = np.random.default_rng(0)
     # A few vertices exchanged with others near by.
     near = np.flatnonzero(np.linalg.norm(source.vertices - source.vertices[700], axis=1) < 0.3)
@@ -76,10 +81,7 @@ def test_a_knot_is_untied_and_the_rest_left_alone():
 
 
 def test_only_triangles_that_count_are_untied():
-    source = TriangleMesh(*icosphere(16))
-    target = TriangleMesh(*permuted(*icosphere(13))[:2])
-    search = ClosestPoints(target)
-    found = search.nearest(source.vertices)
+    source, target, search, found = mapped_sphere()
     random = np.random.default_rng(0)
     triangles, barycentric = found.triangles.copy(), found.barycentric.copy()
     for end in (1, -1):  # two knots, of which one counts
