@@ -44,6 +44,7 @@ from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
 from .retarget.wear.body_ends import continues_body, ends_at_joint
 from .retarget.wear.handed_weights import handed_weights
+from .retarget.wear.hanging_cloth import hanging_triangles
 from .retarget.wear.item_bones import bones_of_items, moved_with_items
 from .retarget.wear.key_following import follow_keys_steps
 from .retarget.wear.pose_mending import MendedWeights, WeightedItem, mend_weights_steps
@@ -145,6 +146,7 @@ __all__ = [
     "fit_rig_steps",
     "follow_keys_steps",
     "handed_weights",
+    "hanging_triangles",
     "humanoid_bones",
     "in_between",
     "is_posed",

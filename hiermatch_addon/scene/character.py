@@ -8,7 +8,7 @@ object is the only part of itself.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
@@ -49,6 +49,7 @@ __all__ = [
     "topology_of",
     "vertex_count",
     "vertex_ranges",
+    "whole",
 ]
 
 FITTED_TO: Final = "hiermatch_body"
@@ -68,10 +69,13 @@ class Character:
         What it is called: as its armature or collection, or else as its first part.
     parts : tuple of bpy.types.Object
         The mesh objects, in the order in which their vertices are numbered.
+    left_out : frozenset of int
+        Triangles, numbered through, that do not count as its surface: what hangs over it.
     """
 
     name: str
     parts: tuple[bpy.types.Object, ...]
+    left_out: frozenset[int] = frozenset()
 
 
 Side: TypeAlias = "bpy.types.Object | Character"
@@ -218,8 +222,19 @@ def edge_ranges(side: Side) -> list[slice]:
 
 
 def read_surface(side: Side, depsgraph: bpy.types.Depsgraph, *, use_modifiers: bool) -> TriangleMesh:
-    """Read all parts of a side as one surface, as they stand in the world; see `read_mesh`."""
-    return joined_mesh([read_mesh(part, depsgraph, use_modifiers=use_modifiers) for part in parts_of(side)])
+    """Read all parts of a side as one surface, as they stand in the world; see `read_mesh`.
+
+    What is left out of a character is there only with modifiers, which may number triangles anew.
+    """
+    mesh = joined_mesh([read_mesh(part, depsgraph, use_modifiers=use_modifiers) for part in parts_of(side)])
+    if use_modifiers or not isinstance(side, Character) or not side.left_out:
+        return mesh
+    return TriangleMesh(mesh.vertices, np.delete(mesh.triangles, sorted(side.left_out), axis=0))
+
+
+def whole(side: Side) -> Side:
+    """Return a side with what is left out of it."""
+    return replace(side, left_out=frozenset()) if isinstance(side, Character) else side
 
 
 def joined_mesh(meshes: Sequence[TriangleMesh]) -> TriangleMesh:

@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 from scipy.sparse import csr_array, vstack
 
-from ...engine import continues_body, ends_at_joint
+from ...engine import continues_body, ends_at_joint, hanging_triangles
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from .armatures import find_armature, moving_armatures, read_rig
-from .character import FITTED_TO, joined, joined_mesh, parts_of, vertex_ranges
+from .character import FITTED_TO, Character, joined, joined_mesh, parts_of, vertex_ranges
 from .garment_shape_io import mirror_axes
 from .key_drivers import counterparts, point_key_drivers
 from .mesh_io import read_mesh
@@ -23,7 +25,6 @@ from .shape_key_io import keys_of
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from .character import Side
@@ -110,7 +111,8 @@ def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
 def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph) -> Side:
     """Leave items out of a character that they are parts of, as all that its armature moves is; not all of it.
 
-    Those stay in that it has no skin below, such as boots without feet: they are the surface of its body there.
+    Those stay in that it has no skin below, such as boots without feet: they are the surface of its body there.  What
+    of them hangs over limbs, as a skirt over legs, is left out of that.
     """
     parts = parts_of(body)
     worn = {part.name in items for part in parts}
@@ -134,7 +136,10 @@ def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph
         rest = [part for part in parts if part is not item]
         if item.name in items and not is_body(item, rest):
             parts = tuple(rest)
-    return joined(body.name, parts)
+    left = joined(body.name, parts)
+    cloth = [np.full(meshes[part].triangle_count, part.name in items) for part in parts_of(left)]
+    hanging = hanging_triangles(joined_mesh([meshes[part] for part in parts_of(left)]), np.concatenate(cloth))
+    return replace(left, left_out=frozenset(np.flatnonzero(hanging).tolist())) if isinstance(left, Character) else left
 
 
 def fitted_to(body: Side) -> list[bpy.types.Object]:

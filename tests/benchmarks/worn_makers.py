@@ -8,7 +8,8 @@ body, which has no skin below most of them.  Everything goes through import and 
 
 A row holds the confidence of the match in %; what part of the skin below the items shows through them, by area, in %:
 at rest, in the mean of three poses, and in the worst of them; how far what is worn on the trunk stands off the skin at
-rest, in % of the body's height (the 99th percentile of its vertices); and the seconds of one core that all of it took.
+rest, in % of the body's height (the 99th percentile of its vertices); how far what is worn on the legs is higher or
+lower than on the source, in % of either's height (the 95th percentile); and the seconds of one core that it took.
 --save keeps a .blend of each case, to look at.
 """
 
@@ -164,8 +165,19 @@ def stands_off(bodies, items):
     return np.quantile(above, 0.99) / np.ptp(body.vertices[:, 2])
 
 
+def shifted(skin, bodies, items):
+    """How far what is worn on the legs is shifted up or down, at the 95th percentile, as a part of either's height."""
+    originals = [bpy.data.objects[item["hiermatch_item"]] for item in items]
+    chosen = [number for number, item in enumerate(originals) if "Legs" in item.name]
+    top, ground = shown_surface(skin)[0][:, 2].max(), shown_surface([*skin, *originals])[0][:, 2].min()
+    before = (shown_surface([originals[number] for number in chosen])[0][:, 2] - ground) / (top - ground)
+    heights = shown_surface(bodies)[0][:, 2]
+    after = (shown_surface([items[number] for number in chosen])[0][:, 2] - heights.min()) / np.ptp(heights)
+    return np.quantile(np.abs(after - before), 0.95)
+
+
 def wear(case, data):
-    """Put the items of a case on the other body: its armature, its meshes and the fitted items."""
+    """Put the items of a case on the other body: its armature, its meshes, the fitted items, and the source's skin."""
     source, target, chosen = CASES[case]
     rig, parts = added(data / f"{source}.glb", "Source")
     other, bodies = added(data / f"{target}.glb", "Target")
@@ -173,7 +185,7 @@ def wear(case, data):
     bpy.context.view_layer.update()
     bpy.ops.hiermatch.wear(source=rig.name, target=other.name, items=[{"name": item.name} for item in items])
     fitted = [obj for obj in bpy.data.objects if obj.type == "MESH" and obj.get("hiermatch_body")]
-    return other, list(bodies.values()), fitted
+    return other, list(bodies.values()), fitted, [part for part in parts.values() if part not in items]
 
 
 def main():
@@ -183,16 +195,16 @@ def main():
     parser.add_argument("--save", type=Path, help="folder for the .blend files")
     options = parser.parse_args()
     registered_extension()
-    print(f"{'case':8s} confidence  shows at rest  in poses     worst stands off  seconds")
+    print(f"{'case':8s} confidence  shows at rest  in poses     worst stands off   shifted  seconds")
     for case in options.only.split(","):
         bpy.ops.wm.read_homefile(use_empty=True)
         start = time.process_time()
-        rig, bodies, items = wear(case, options.data)
+        rig, bodies, items, skin = wear(case, options.data)
         seconds = time.process_time() - start
-        off = stands_off(bodies, items)
+        off = stands_off(bodies, items), shifted(skin, bodies, items)
         rest, *poses = shown(rig, bodies, items)
         said = re.search(r"Confidence (\d+)", bpy.context.scene.hiermatch_retarget.report.verdict)
-        numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), off))
+        numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), *off))
         print(f"{case:8s} {said[1] if said else '-':>10s}{numbers}{seconds:9.1f}", flush=True)
         if options.save:
             options.save.mkdir(parents=True, exist_ok=True)

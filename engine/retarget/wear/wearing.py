@@ -105,6 +105,7 @@ def wear_steps(
     items: Sequence[WornItem],
     *,
     bones: csr_array | None = None,
+    whole: TriangleMesh | None = None,
 ) -> Steps[list[FittedItem]]:
     """Fit what one body wears to another body.
 
@@ -125,6 +126,8 @@ def wear_steps(
         What the source wears.
     bones : (n_x, b) csr_array of float, optional
         How much each bone moves each vertex of the source.
+    whole : TriangleMesh, optional
+        The source with triangles that hang over it, see `hanging_triangles`, if it is without them.
 
     Yields
     ------
@@ -144,12 +147,16 @@ def wear_steps(
     if images.shape != source.vertices.shape or len(source_to_target) != source.vertex_count:
         raise MeshError("The map belongs to other meshes than the bodies. Match them again.")
     call_helpers()
-    dressed = yield from within(dressed_steps(source, items, bones=bones), 0.0, 0.3)
+    dressed = yield from within(dressed_steps(source, items, bones=bones, whole=whole), 0.0, 0.3)
     return (yield from within(fitted_steps(dressed, target, source_to_target, images), 0.3, 1.0))
 
 
 def dressed_steps(
-    source: TriangleMesh, items: Sequence[WornItem], *, bones: csr_array | None = None
+    source: TriangleMesh,
+    items: Sequence[WornItem],
+    *,
+    bones: csr_array | None = None,
+    whole: TriangleMesh | None = None,
 ) -> Steps[DressedBody]:
     """Find how a body wears items, see `wear_steps`: all that does not depend on what it becomes."""
     skin = BodySkin(source, bones)
@@ -157,7 +164,7 @@ def dressed_steps(
     few = sum(mesh.vertex_count for mesh in (source, *(item.mesh for item in items))) <= MOST_SENT
     share = shared_steps if few else here_steps
     found = yield from share(_dressed_item_steps, (skin, surface), items)
-    return DressedBody(skin, surface, BuriedVertices.of(source), tuple(found))
+    return DressedBody(skin, surface, BuriedVertices.of(whole or source), tuple(found))
 
 
 def _dressed_item_steps(body: tuple[BodySkin, Surface], given: WornItem) -> Steps[DressedItem]:

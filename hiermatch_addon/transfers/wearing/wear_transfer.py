@@ -12,7 +12,7 @@ from ...common.errors import NothingToCarryError
 from ...common.phrases import counted
 from ...jobs.transfer import TransferReport
 from ...scene.armatures import armature_of, find_armature, read_rig
-from ...scene.character import parts_of, read_surface
+from ...scene.character import Character, parts_of, read_surface, whole
 from ...scene.deform_layer import check_weights_writable
 from ...scene.garments import bound_items, check_item, dressed_at_rest
 from ...scene.pair import check_writable, named_object
@@ -61,6 +61,7 @@ class WearTransfer:
         self._items: list[ReadItem] = []
         self._first: list[WeightTransfer | RigTransfer] = []
         self._posed: NDArray[np.float64] | None = None
+        self._every: NDArray[np.int64] | None = None
         self._rig: SourceRig | None = None
         self._moving: ItemMotion | None = None
         self._keys: BodyKeys | None = None
@@ -88,6 +89,8 @@ class WearTransfer:
         if any(not dressed_at_rest(item, source) for item in chosen):
             self._posed = read_surface(source, depsgraph, use_modifiers=True).vertices
         body, other = (read_surface(side, depsgraph, use_modifiers=False) for side in (source, target))
+        if isinstance(source, Character) and source.left_out:
+            self._every = read_surface(whole(source), depsgraph, use_modifiers=False).triangles
         if settings.keys and settings.result == "OBJECT":
             self._keys = read_body_keys(context, target)
             self._notes.extend(self._keys.notes)
@@ -155,7 +158,8 @@ class WearTransfer:
             if not at_rest and self._posed is not None:
                 body = TriangleMesh(self._posed, body.triangles)
             worn = [self._items[number].worn for number in numbers]
-            made = wear_steps(body, pair.target, there, registered, worn, bones=bones)
+            every = None if self._every is None else TriangleMesh(body.vertices, self._every)
+            made = wear_steps(body, pair.target, there, registered, worn, bones=bones, whole=every)
             found = yield from within(made, start, 0.9)
             for number, fitted in zip(numbers, found, strict=True):
                 self._fitted[number] = fitted

@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.scene.character import joined, parts_of, side_of
+from hiermatch.hiermatch_addon.scene.character import joined, parts_of, read_surface, side_of, whole
 from hiermatch.hiermatch_addon.scene.garments import undressed
 from mathutils import Vector
 
@@ -390,6 +390,46 @@ def test_of_layers_over_nothing_the_inner_one_stands_for_the_body(pair):
     worn = undressed(body, ["Vest", "Cloak"], depsgraph)
     assert [part.name for part in parts_of(worn)] == ["Head", "Legs", "Vest"]
     assert undressed(source, ["Shirt"], depsgraph) is source
+
+
+def test_a_skirt_is_no_skin_where_there_are_legs_in_it(pair):
+    del pair
+    bpy.ops.mesh.primitive_cone_add(
+        vertices=24, radius1=0.95, radius2=0.65, depth=1.9, end_fill_type="NOTHING", location=(9, 0, 1.25)
+    )
+    made = [bpy.context.object]
+    for name, x, low, high, size in (
+        ("Trunk", 0, 2.2, 5, 0.65),
+        ("Leg.L", 0.45, -2, 1.2, 0.33),
+        ("Leg.R", -0.45, -2, 1.2, 0.33),
+    ):
+        bpy.ops.mesh.primitive_cylinder_add(radius=size, depth=high - low, location=(9 + x, 0, (low + high) / 2))
+        made.append(bpy.context.object)
+        made[-1].name = name
+    made[0].name = "Skirt"
+    bpy.ops.object.select_all(action="DESELECT")
+    for obj in made:  # faces as small as those of clothes
+        obj.select_set(state=True)
+        build = bmesh.new()
+        build.from_mesh(obj.data)
+        bmesh.ops.subdivide_edges(build, edges=build.edges, cuts=6, use_grid_fill=True)
+        build.to_mesh(obj.data)
+        build.free()
+    bpy.context.view_layer.update()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    body = undressed(joined("Doll", made), ["Skirt"], depsgraph)
+    assert set(parts_of(body)) == set(made)
+    seen, every = (read_surface(side, depsgraph, use_modifiers=False) for side in (body, whole(body)))
+    assert seen.vertex_count == every.vertex_count
+    assert every.triangle_count == read_surface(joined("Doll", made), depsgraph, use_modifiers=False).triangle_count
+    left_out = np.array(sorted(body.left_out))
+    assert seen.triangle_count == every.triangle_count - len(left_out)
+    middles = every.vertices[every.triangles[left_out]].mean(axis=1)
+    assert np.linalg.norm(middles[:, :2] - [9, 0], axis=1).min() > 0.6  # none of the legs
+    assert middles[:, 2].min() < 0.5
+    assert middles[:, 2].max() < 2.0
+    bare = undressed(joined("Doll", made), [], depsgraph)
+    assert not bare.left_out
 
 
 def test_shoes_below_closed_legs_are_part_of_a_body_with_a_rig(pair):
