@@ -47,6 +47,11 @@ CASES = {
         {"Witch_Head": "Purple Gold Brown Hair_Black", "Witch_Body": "Purple Gold Brown2", "Witch_Legs": None}
         | {"Witch_Feet": None},
     ),
+    "Casual": (
+        f"{WOMEN}-Casual",
+        "m2m-human-female",
+        {"Casual_Head": "Hair_Blond Hair_Brown", "Casual_Body": "White", "Casual_Legs": None, "Casual_Feet": "Grey"},
+    ),
     "Formal": (
         f"{WOMEN}-Formal",
         "m2m-human-female",
@@ -68,6 +73,9 @@ SHOWS = 0.0005, 0.015
 NEAR = 0.03
 """How far from an item, in the same unit, skin is below it."""
 
+
+WAIST = 0.58
+"""How high what is worn on the legs is worn on the trunk, as a part of the height."""
 
 PLACES = np.array(
     [
@@ -158,7 +166,9 @@ def shown(rig, bodies, items):
 def stands_off(bodies, items):
     """How far above the skin what is worn on the trunk is at the 99th percentile, as a part of the height."""
     body = TriangleMesh(*shown_surface(bodies))
-    points = shown_surface([item for item in items if "Body" in item["hiermatch_item"]])[0]
+    upper, lower = ([item for item in items if name in item["hiermatch_item"]] for name in ("Body", "Legs"))
+    points, below = shown_surface(upper)[0], shown_surface(lower)[0]
+    points = np.concatenate([points, below[below[:, 2] > WAIST * body.vertices[:, 2].max()]])
     found = ClosestPoints(body).nearest(points)
     away = points - found.interpolate(body.triangles, body.vertices)
     above = np.einsum("ki,ki->k", away, body.triangle_normals[found.triangles])

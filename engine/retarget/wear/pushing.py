@@ -8,12 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
+from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import LaplaceBeltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.connectivity.components import joined_components, triangle_neighbours
+from ...mesh.connectivity.halfedges import twins_of
 from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints, marked, unit_vectors
+from .buried_places import Buried
 from .contact import Surface
 
 _ROUNDS = 8
@@ -122,7 +126,7 @@ def layer_of(
     items: tuple[TriangleMesh, TriangleMesh],
     *,
     places: Ints | None,
-    buried: Bools | None,
+    buried: Buried | None,
     scales: Floats,
     unit: float,
     least: float,
@@ -140,9 +144,9 @@ def layer_of(
         The item on the first body and as it is now, n vertices.
     places : (m,) array of int, optional
         For each vertex of the skin before, the vertex of the other that it came to be; none for an item below.
-    buried : (m,) array of bool, optional
-        Vertices of the skin before that lie deep within the body, as where parts of a character are closed: nothing
-        has to lie outside of them.
+    buried : Buried, optional
+        What of the skin before lies deep within the body, as where parts of a character are closed: nothing has to lie
+        outside of it.
     scales : (n,) array of float
         How many times as large it becomes.
     unit : float
@@ -167,8 +171,9 @@ def layer_of(
         outside &= ~near | (np.abs(along) > _ALONG) & (np.abs(found.distances) > _ONE * unit)
     closing = np.zeros(before.triangle_count, bool)
     if buried is not None:
-        outside &= ~buried[found.vertices]
-        closing = _crossing(surface, now, buried[found.vertices[:n]])
+        outside &= ~buried.vertices[found.vertices]
+        inner = buried.vertices[found.vertices[:n]][before.triangles].any(axis=1)
+        closing = _crossing(surface, now, inner | _lids(buried.middles, before, unit))
         outside[n:] &= ~closing[owners[asked[n:]]]
     wanted = np.minimum((asked_shares @ scales) * found.distances.clip(min=0), least)
     all_wanted, starts = np.full(len(points), -np.inf), np.zeros(len(points), np.int64)
@@ -177,9 +182,23 @@ def layer_of(
     return Layer(surface, all_wanted, starts, outside[:n], closing)
 
 
+def _lids(middles: Floats, item: TriangleMesh, unit: float) -> Bools:
+    """Tell which triangles of an item, (t,), have their middles at some of the body, (k, 3), or are flat with those."""
+    if not len(middles):
+        return np.zeros(item.triangle_count, bool)
+    own = item.vertices[item.triangles].mean(axis=1)
+    there = np.isfinite(cKDTree(middles).query(own, distance_upper_bound=_ONE * unit)[0])
+    neighbours = triangle_neighbours(twins_of(item.vertices, item.triangles))
+    one, side = np.nonzero(neighbours >= 0)
+    other, normals = neighbours[one, side], item.triangle_normals
+    flat = np.einsum("li,li->l", normals[one], normals[other]) > _CROSSING
+    labels = joined_components(item.triangle_count, one[flat], other[flat])
+    return np.isin(labels, labels[there])
+
+
 def _crossing(surface: Surface, item: TriangleMesh, within: Bools) -> Bools:
-    """Find the triangles at vertices within the body (n,) that cross its surface instead of lying along it, (t,)."""
-    near = np.flatnonzero(within[item.triangles].any(axis=1))
+    """Find which triangles of some within the body, (t,), cross its surface instead of lying along it, (t,)."""
+    near = np.flatnonzero(within)
     normals = surface.clearance(item.vertices[item.triangles[near]].mean(axis=1)).normals
     along = np.abs(np.einsum("ti,ti->t", item.triangle_normals[near], normals))
     return marked(near[along < _CROSSING], item.triangle_count)

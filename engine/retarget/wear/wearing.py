@@ -15,14 +15,14 @@ from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import TINY, Bools, Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
 from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ...runtime.progress import Progress, Steps, within
 from ...runtime.worker import call_helpers
 from .body_motion import BodyMotion, BodySkin, Carriers, Motion
-from .buried_vertices import BuriedVertices
+from .buried_places import Buried, BuriedPlaces
 from .contact import Clearance, Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
 from .rigid_pieces import placed_rigidly, rigid_pieces
@@ -79,7 +79,7 @@ class DressedBody:
 
     skin: BodySkin
     surface: Surface
-    buried: BuriedVertices
+    buried: BuriedPlaces
     items: tuple[DressedItem, ...]
 
 
@@ -164,7 +164,7 @@ def dressed_steps(
     few = sum(mesh.vertex_count for mesh in (source, *(item.mesh for item in items))) <= MOST_SENT
     share = shared_steps if few else here_steps
     found = yield from share(_dressed_item_steps, (skin, surface), items)
-    return DressedBody(skin, surface, BuriedVertices.of(whole or source), tuple(found))
+    return DressedBody(skin, surface, BuriedPlaces.of(whole or source), tuple(found))
 
 
 def _dressed_item_steps(body: tuple[BodySkin, Surface], given: WornItem) -> Steps[DressedItem]:
@@ -299,7 +299,7 @@ def _push(
     below: Sequence[_Work],
     skins: tuple[Surface, Surface],
     places: Ints,
-    buried: Bools,
+    buried: Buried,
     *,
     units: tuple[float, float],
     spacing: float,

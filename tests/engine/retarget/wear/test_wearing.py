@@ -283,8 +283,8 @@ def test_trousers_that_come_out_of_a_closed_jacket_are_not_pushed_over_it():
     assert around.max() < 0.49
 
 
-def prism(low, high, radius, sides=12, rings=6):
-    """A closed cylinder whose ends are fans of large triangles."""
+def prism(low, high, radius, sides=12, *, rings=6, middle=True):
+    """A closed cylinder whose ends are fans of large triangles, around their middles or a corner."""
     angles = 2 * np.pi * np.arange(sides) / sides
     around = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     walls = [np.column_stack([around, np.full(sides, z)]) for z in np.linspace(low, high, rings)]
@@ -295,13 +295,17 @@ def prism(low, high, radius, sides=12, rings=6):
         a, b = ring * sides + corners, ring * sides + following
         triangles += [np.stack([a, b, b + sides], axis=1), np.stack([a, b + sides, a + sides], axis=1)]
     last, centre = (rings - 1) * sides, rings * sides
+    if not middle:
+        fan = np.stack([np.zeros(sides - 2, int), corners[1:-1], corners[2:]], axis=1)
+        return TriangleMesh(np.concatenate(walls), np.concatenate([*triangles, fan[:, ::-1], last + fan]))
     triangles.append(np.stack([following, corners, np.full(sides, centre)], axis=1))
     triangles.append(np.stack([last + corners, last + following, np.full(sides, centre + 1)], axis=1))
     return TriangleMesh(np.concatenate([*walls, ends]), np.concatenate(triangles))
 
 
-def test_a_hem_is_not_pushed_away_by_the_large_triangles_that_close_it():
-    jacket, trousers = prism(0.0, 2.0, 0.5), prism(-2.0, 0.0, 0.5)
+@pytest.mark.parametrize("middle", [True, False])
+def test_a_hem_is_not_pushed_away_by_the_large_triangles_that_close_it(middle):
+    jacket, trousers = prism(0.0, 2.0, 0.5, middle=middle), prism(-2.0, 0.0, 0.5, middle=middle)
     body = TriangleMesh(
         np.concatenate([jacket.vertices, trousers.vertices]),
         np.concatenate([jacket.triangles, trousers.triangles + jacket.vertex_count]),

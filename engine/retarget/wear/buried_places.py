@@ -37,46 +37,76 @@ _CHUNK = 256
 
 
 @dataclass(frozen=True, eq=False)
-class BuriedVertices:
-    """Vertices that do not belong to the outside of a body.
+class Buried:
+    """What of a body is buried if it becomes another one.
 
     Attributes
     ----------
+    vertices : (n,) array of bool
+        Which of its vertices are.
+    middles : (k, 3) array of float
+        Middles of triangles that are, though no corner of them is, on the body before.
+    """
+
+    vertices: Bools
+    middles: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class BuriedPlaces:
+    """Vertices, and triangles between others, that do not belong to the outside of a body.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The body.
     hidden : (h,) array of int
-        Those that lie deep behind others from whatever side one looks, as also between thighs.
-    within : (h,) array of bool
+        Vertices that lie deep behind others from whatever side one looks, as also between thighs.
+    triangles : (t,) array of int
+        Triangles no corner of which does so, but their middle: large ones, as those that close a waist.
+    within : (h + t,) array of bool
         Which of them lie within: above them is no air but the inside.
     """
 
+    mesh: TriangleMesh
     hidden: Ints
+    triangles: Ints
     within: Bools
 
     @classmethod
-    def of(cls, mesh: TriangleMesh) -> BuriedVertices:
+    def of(cls, body: TriangleMesh) -> BuriedPlaces:
         """Look for them on a surface, which may be open, and made of many parts that cross."""
-        centre = mesh.vertices.mean(axis=0)  # away from which rounding grows
-        mesh = TriangleMesh(mesh.vertices - centre, mesh.triangles)
+        centre = body.vertices.mean(axis=0)  # away from which rounding grows
+        mesh = TriangleMesh(body.vertices - centre, body.triangles)
         samples = even_samples(mesh, mesh.area / _SAMPLES)
-        hidden = np.flatnonzero(_hidden(mesh, samples))
-        above = mesh.vertices[hidden] + _ABOVE * np.sqrt(mesh.area) * mesh.vertex_normals[hidden]
-        return cls(hidden, _winding_numbers(mesh, samples, above) > _WITHIN)
+        middles = mesh.vertices[mesh.triangles].mean(axis=1)
+        found = _hidden(mesh, np.concatenate([mesh.vertices, middles]), samples)
+        hidden, inner = found[: mesh.vertex_count], found[mesh.vertex_count :]
+        triangles = np.flatnonzero(inner & ~hidden[mesh.triangles].any(axis=1))
+        points = np.concatenate([mesh.vertices[hidden], middles[triangles]])
+        normals = np.concatenate([mesh.vertex_normals[hidden], mesh.triangle_normals[triangles]])
+        within = _winding_numbers(mesh, samples, points + _ABOVE * np.sqrt(mesh.area) * normals) > _WITHIN
+        return cls(body, np.flatnonzero(hidden), triangles, within)
 
-    def on(self, surface: Surface, images: Floats) -> Bools:
-        """Tell which vertices are buried, (n,), if they come to images (n, 3) at another body.
+    def on(self, surface: Surface, images: Floats) -> Buried:
+        """Tell what is buried if vertices come to images (n, 3) at another body.
 
         Where parts are closed by faces that are turned over it cannot be told by the one body alone what is within;
         but these have no place on the other one, and come to lie deep in it.
         """
-        found = surface.clearance(images[self.hidden])
-        deep = found.known & (found.distances < -_DEEP * np.sqrt(surface.mesh.area))
-        return marked(self.hidden[self.within | deep], len(images))
+        corners = self.mesh.triangles[self.triangles]
+        found = surface.clearance(np.concatenate([images[self.hidden], images[corners].mean(axis=1)]))
+        deep = self.within | found.known & (found.distances < -_DEEP * np.sqrt(surface.mesh.area))
+        count = len(self.hidden)
+        middles = self.mesh.vertices[corners[deep[count:]]].mean(axis=1)
+        return Buried(marked(self.hidden[deep[:count]], len(images)), middles)
 
 
-def _hidden(mesh: TriangleMesh, samples: AreaSamples) -> Bools:
-    """Tell which vertices no side shows, (n,)."""
-    points = np.concatenate([mesh.vertices, samples.positions])
+def _hidden(mesh: TriangleMesh, places: Floats, samples: AreaSamples) -> Bools:
+    """Tell which places (k, 3) no side shows, (k,)."""
+    points = np.concatenate([places, samples.positions])
     cell, deep = _CELL * np.sqrt(mesh.area / _SAMPLES), _DEEP * np.sqrt(mesh.area)
-    hidden = np.ones(mesh.vertex_count, bool)
+    hidden = np.ones(len(places), bool)
     for direction in spread_directions(_DIRECTIONS):
         across = np.linalg.svd(direction[None])[2][1:]
         cells = np.floor(points @ across.T / cell).astype(np.int64)
@@ -85,7 +115,7 @@ def _hidden(mesh: TriangleMesh, samples: AreaSamples) -> Bools:
         heights = points @ direction
         front = np.full(number.max() + 1, -np.inf)
         np.maximum.at(front, number, heights)
-        hidden &= (heights < front[number] - deep)[: mesh.vertex_count]
+        hidden &= (heights < front[number] - deep)[: len(places)]
     return hidden
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.retarget.wear.buried_vertices import BuriedVertices
+from engine.retarget.wear.buried_places import BuriedPlaces
 from engine.retarget.wear.contact import Surface
 from tests.shapes import icosphere, rotation
 
@@ -23,7 +23,7 @@ def ball(centre, size=(1.0, 1.0, 1.0)):
 
 def buried_vertices(mesh):
     """Vertices that are buried if the body stays as it is."""
-    return BuriedVertices.of(mesh).on(Surface(mesh), mesh.vertices)
+    return BuriedPlaces.of(mesh).on(Surface(mesh), mesh.vertices).vertices
 
 
 def thigh(x):
@@ -67,12 +67,35 @@ def test_what_is_hidden_and_comes_to_lie_deep_in_the_other_body_is_buried():
     outer, (vertices, triangles) = ball((0, 0, 0)), icosphere(8)
     disc = TriangleMesh(vertices * [0.8, 0.8, 1e-3], triangles)
     body = joined(TriangleMesh(outer.vertices, outer.triangles[:, ::-1]), disc)
-    assert not BuriedVertices.of(body).within.any()
-    buried = BuriedVertices.of(body).on(Surface(outer), body.vertices)
+    assert not BuriedPlaces.of(body).within.any()
+    buried = BuriedPlaces.of(body).on(Surface(outer), body.vertices).vertices
     inner = np.linalg.norm(body.vertices, axis=1) < 0.7
     assert buried[inner].all()
     assert not buried[: outer.vertex_count].any()
     # What is hidden between thighs comes to lie on the other's skin.
     between = joined(thigh(-0.32), thigh(0.32))
-    assert len(BuriedVertices.of(between).hidden)
-    assert not BuriedVertices.of(between).on(Surface(between), between.vertices).any()
+    assert len(BuriedPlaces.of(between).hidden)
+    assert not BuriedPlaces.of(between).on(Surface(between), between.vertices).vertices.any()
+
+
+def prism(low, high):
+    """A closed box of eight sides, whose ends are fans around a corner."""
+    angles = np.pi * np.arange(8) / 4
+    ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    walls = [np.column_stack([ring, np.full(8, z)]) for z in (low, high)]
+    corners, following = np.arange(8), (np.arange(8) + 1) % 8
+    sides = [(corners, following, following + 8), (corners, following + 8, corners + 8)]
+    fan = np.stack([np.zeros(6, int), corners[1:-1], corners[2:]], axis=1)
+    return TriangleMesh(
+        np.concatenate(walls), np.concatenate([*(np.stack(one, axis=1) for one in sides), fan[:, ::-1], fan + 8])
+    )
+
+
+def test_large_triangles_that_close_a_waist_are_buried_without_their_corners():
+    body = joined(prism(-2.0, 0.0), prism(-0.01, 2.0))
+    buried = BuriedPlaces.of(body).on(Surface(body), body.vertices)
+    assert not buried.vertices.any()
+    assert len(buried.middles)
+    assert (np.abs(buried.middles[:, 2]) < 0.02).all()
+    apart = joined(prism(-2.0, 0.0), prism(1.0, 3.0))
+    assert not len(BuriedPlaces.of(apart).on(Surface(apart), apart.vertices).middles)
