@@ -12,7 +12,7 @@ from ..common.access import view_layer_of
 from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError
 from ..properties.preferences import shape_memory
 from ..scene.armatures import read_rig
-from ..scene.character import SideReference, positions_of, read_surface, topology_of
+from ..scene.character import SideReference, positions_of, read_surface, topology_of, whole
 from ..scene.pair import check_pair, check_side, is_own
 from ..storage.halves import find_common
 from ..storage.linked_matches import keep_linked, kept_linked
@@ -102,6 +102,7 @@ class _Leg:
         self, context: bpy.types.Context, source: Side, target: Side, options: TransferOptions, *, writes: bool
     ) -> None:
         self.reference, self.name = SideReference.of(target), target.name
+        self.source: TriangleMesh  # as the match knows it, once there is one
         self.stored: StoredMaps | None = None
         self.refined = False
         self.prefix = options.prefix
@@ -221,6 +222,8 @@ class TransferJob(SteppedJob):
             check_pair(view_layer, source, target, writes=(False, writes))
         self._source, self._source_name, self._source_state = SideReference.of(source), source.name, _state(source)
         self._mesh: TriangleMesh = read_surface(source, depsgraph, use_modifiers=False)
+        every = whole(source)
+        self._whole = self._mesh if every == source else read_surface(every, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []
         for target in targets:
             leg = _Leg(context, source, target, options, writes=writes)
@@ -312,10 +315,11 @@ class TransferJob(SteppedJob):
             raise ObjectError(
                 f'The match of "{self._source_name}" and "{leg.name}" has no dense map. Match them with Dense Map on.'
             )
+        leg.source = self._whole if leg.stored.of_target.leads_beyond(self._mesh) else self._mesh
         self._judge(leg)
         while self.doubts:
             yield Progress(begin, "Waiting for an answer")
-        passage = Passage(leg.stored.between(self._mesh, leg.mesh))
+        passage = Passage(leg.stored.between(leg.source, leg.mesh))
         if self._rig is not None and any(transfer.uses_rig for transfer in leg.transfers):
             passage = yield from within(self._fitted_steps(leg, passage, self._rig), begin, _FITTED)
             begin = _FITTED
@@ -345,7 +349,7 @@ class TransferJob(SteppedJob):
         """
         if leg.quality is None:
             return
-        advice = advice_on(leg.quality, (self._source_name, leg.name), (self._mesh, leg.mesh))
+        advice = advice_on(leg.quality, (self._source_name, leg.name), (leg.source, leg.mesh))
         verdict = leg.verdict = Verdict.of(leg.quality, advice)
         if verdict.doubtful and not (self._accepted or self._options.asks):
             raise DoubtfulMatchError(
@@ -358,7 +362,7 @@ class TransferJob(SteppedJob):
         refine = self._options.refine and not leg.refined
         there, back = passage.pair.source_to_target, passage.pair.target_to_source
         fitted = yield from fit_rig_steps(
-            self._mesh,
+            leg.source,
             leg.mesh,
             there,
             back,
@@ -369,7 +373,7 @@ class TransferJob(SteppedJob):
         )
         if refine:
             leg.better = StoredMaps.of(fitted.source_to_target, fitted.target_to_source)
-        pair = MapPair(self._mesh, leg.mesh, fitted.source_to_target, fitted.target_to_source)
+        pair = MapPair(leg.source, leg.mesh, fitted.source_to_target, fitted.target_to_source)
         return Passage(pair, fitted, rig.names)
 
     def _objects(self, view_layer: bpy.types.ViewLayer) -> tuple[Side, list[Side]]:

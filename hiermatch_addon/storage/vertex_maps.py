@@ -109,6 +109,10 @@ class VertexMap:
             kept[_partner_name(name)] = self.has_partner.astype(np.int32)
         return kept
 
+    def leads_beyond(self, image: TriangleMesh) -> bool:
+        """Tell whether places are on vertices of the other mesh that no triangle of it has."""
+        return not np.isin(self.corners, image.triangles).all()
+
     def to(self, image: TriangleMesh) -> SurfaceMap:
         """Make the map again.
 

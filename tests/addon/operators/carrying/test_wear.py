@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.scene.character import joined, parts_of, read_surface, side_of, whole
+from hiermatch.hiermatch_addon.scene.character import Character, joined, parts_of, read_surface, side_of, whole
 from hiermatch.hiermatch_addon.scene.garments import undressed
 from mathutils import Vector
 
@@ -430,6 +430,17 @@ def test_a_skirt_is_no_skin_where_there_are_legs_in_it(pair):
     assert middles[:, 2].max() < 2.0
     bare = undressed(joined("Doll", made), [], depsgraph)
     assert not bare.left_out
+
+
+def test_a_match_that_knows_what_hangs_is_used_as_it_is(pair, monkeypatch):
+    """As one that was made by the button Match, before."""
+    source, target, _, _ = pair
+    hanging = frozenset(range(len(source.data.polygons) // 2))
+    worn = Character(source.name, (source,), hanging)
+    monkeypatch.setattr("hiermatch.hiermatch_addon.operators.carrying.wear.undressed", lambda *_: worn)
+    assert read_surface(worn, bpy.context.evaluated_depsgraph_get(), use_modifiers=False).triangle_count > 0
+    assert wear("Shirt") == {"FINISHED"}
+    assert depths(fitted("Shirt"), target).max() < 1e-4
 
 
 def test_shoes_below_closed_legs_are_part_of_a_body_with_a_rig(pair):

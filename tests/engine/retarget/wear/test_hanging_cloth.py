@@ -54,6 +54,19 @@ def test_a_skirt_hangs_where_there_are_legs_in_it_and_is_the_hips_above():
     assert not hanging_triangles(body, np.zeros_like(cloth)).any()
 
 
+def test_each_place_counts_alone():
+    """A hood that holds things together, on one piece with a skirt."""
+    skirt, hood = tube(0.3, 2.2, (0.95, 0.65)), tube(5.6, 6.6, (0.7, 0.7))
+    seam = [skirt.vertex_count - 1, skirt.vertex_count - 2, skirt.vertex_count]
+    robe = TriangleMesh.concatenated([skirt, hood])
+    robe = TriangleMesh(robe.vertices, np.vstack([robe.triangles, seam]))
+    horns = [tube(5.6, 6.6, (0.15, 0.15), aside) for aside in (-0.4, 0.4)]
+    body, cloth = dressed(robe, TRUNK, *LEGS, *horns)
+    hanging, high = hanging_triangles(body, cloth), heights(body, slice(None)) > 3
+    assert hanging[cloth & (heights(body, slice(None)) < 0.8)].all()
+    assert not hanging[high].any()
+
+
 @pytest.mark.parametrize(
     "bodies",
     [
