@@ -24,6 +24,7 @@ from ..shapes.shape import Shape
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import OverlapMatch, overlap_match_steps
 from .partial_match import (
+    agreed_part_steps,
     is_as_alike,
     is_better_part,
     part_credibility,
@@ -52,8 +53,9 @@ _SMALL_PART = 0.6
 _OVERLAP, _FIRST_AFTER = 0.35, 0.6
 """Parts of the work after which it is known what surfaces share, and then how they match as they are."""
 
-_CLOSER = 0.5
-"""Part of the work with a part and the piece that it shares after which that is matched closely."""
+_BEGUN, _AGREED, _CLOSER = 0.2, 0.6, 0.8
+"""Parts of the work with a part and the piece that it shares after which that is matched from the overlap, by another
+search, and anew."""
 
 _SURE = 0.9
 """Credibility of what surfaces share from which on no other map is looked for: in `partial_pairs` a person turned back
@@ -166,26 +168,39 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
 def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
-    That begins with the map of the overlap if that is nearly certain; else a map is looked for anew.  If some of the
-    part has no partner then, or the piece is less like it than one body is like itself in another pose, or like another
-    whole body if the overlap is nearly certain, all of the whole surface is tried as well.  So it is if most of that is
+    That begins with the map of the overlap.  Where that leads is trusted if it is nearly certain, or as much alike as
+    one body is in two poses.  Else another search looks for the piece; it is certain where both lead to the same, and
+    where they do not, the piece of the overlap is matched anew as well.  If some of the part has no partner then, or
+    the two are not even like two whole bodies, all of the whole surface is tried as well.  So it is if most of that is
     shared: a body whose faces are missing here and there is no part.
     """
-    known = overlap.result
+    known, is_sure = overlap.result, overlap.credibility >= _SURE
     whole, shown = (x, known.dense.source_to_target) if of_source else (y, known.dense.target_to_source)
     piece = shown.has_partner[whole.vertices]
-    begun = _begun(task, overlap)
-    steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source)
-    result = yield from within(steps, 0.0, _CLOSER)
-    enough = MUCH_ALIKE if overlap.credibility >= _SURE else ALL_ALIKE
-    is_clear = shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
-    if is_clear and min(overlap.shares) < _SMALL_PART:
+    least = CREDIBLE if is_sure else ALL_ALIKE
+    begun = replace(task, begun=known.source_to_target)
+    steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source, least=least)
+    result = yield from within(steps, 0.0, _BEGUN)
+
+    def is_clear() -> bool:
+        """Say whether all of the part is so much like a piece that nothing else is worth trying."""
+        enough = MUCH_ALIKE if is_sure else ALL_ALIKE
+        return result is not known and shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
+
+    if not is_clear():
+        agreed = agreed_part_steps(result, x, y, task, of_source=of_source)
+        result, agrees = yield from within(agreed, _BEGUN, _AGREED)
+        is_sure = is_sure or agrees
+    if not is_clear():
+        steps = piece_matched_steps(result, x, y, task, piece, of_source=of_source)
+        result = yield from within(steps, _AGREED, _CLOSER)
+    if is_clear() and min(result.dense.quality.coverage, result.dense.quality.source_coverage) < _SMALL_PART:
         return result
     # All of both wins if that is more credible, so it is given up as soon as it cannot be.
-    if is_clear:
-        task = replace(begun, least=part_credibility(result, of_source=of_source))
+    found = result.source_to_target if is_clear() else None
+    task = replace(task, begun=found, least=part_credibility(result, of_source=of_source))
     try:
-        other = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _CLOSER, 1.0)
+        other, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _CLOSER, 1.0)
     except MatchError:
         return result
     return other if is_better_part(other, result, CREDIBLE, of_source=of_source) else result

@@ -14,6 +14,7 @@ from ..dense.credibility import may_reach
 from ..dense.dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
 from ..dense.dense_registration import EIGENPAIRS
 from ..dense.missing_parts import with_partner
+from ..dense.proposers import are_distinct
 from ..dense.registered_hypotheses import Follower
 from ..dense.spectral_domain import MapDomain
 from ..geometry.best_distinct import best_distinct
@@ -87,10 +88,13 @@ class CoveredPart:
         Which vertices of the whole's mesh do.
     score : float
         Smaller is more credible; comparable between pieces, and between the two ways round.
+    is_new : bool
+        Whether this takes the part elsewhere than what came of the surfaces as they are.
     """
 
     covered: Bools
     score: float
+    is_new: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,9 +181,14 @@ def covered_parts_steps(
     least = min((fit.score for fit in unchanged), default=np.inf) - _BETTER
     ranked = sorted([*fits, *chain.from_iterable(refined)], key=lambda fit: fit.score)
     credible = [fit for fit in ranked if fit.score <= least and fit.score < ranked[0].score + _CONTESTED]
-    pieces = [(fitter.covered(fit) | fitter.grown(fit), fit.score) for fit in credible]
+    pieces = [(fitter.covered(fit) | fitter.grown(fit), fit) for fit in credible]
     found = best_distinct(pieces, lambda piece, other: fitter.common_part(piece[0], other[0]) < _SAME)
-    return [CoveredPart(coarse.surface.spread(c.astype(np.float64), 0.0) > 1 / 2, score) for c, score in found]
+    return [
+        CoveredPart(
+            coarse.surface.spread(covered.astype(np.float64), 0.0) > 1 / 2, fit.score, fitter.is_new(fit, places)
+        )
+        for covered, fit in found
+    ]
 
 
 def best_and_rivals(scores: Floats, places: Floats, count: int, worse: float) -> list[int]:
@@ -309,6 +318,11 @@ class _Fitter:
     def nearest_samples(self, places: Floats) -> Ints:
         """Find the samples of the whole that are nearest to places (k, 3)."""
         return cKDTree(self.whole.mesh.vertices[self.whole.samples.vertices]).query(places)[1]
+
+    def is_new(self, fit: _Fit, places: Floats) -> bool:
+        """Say whether a registration takes the part's first samples (s,) elsewhere than to these places (s, 3)."""
+        samples, scale = self.part.samples.vertices[: len(places)], self.whole.scale
+        return are_distinct(fit.places[samples] / scale, places / scale, self.part.mesh.vertex_areas[samples])
 
     def common_part(self, first: Bools, second: Bools) -> float:
         """Area that two pieces of the whole, (n,) each, have in common, as a part of that of both together."""

@@ -87,6 +87,46 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
     return result
 
 
+def agreed_part_steps(
+    known: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool
+) -> Steps[tuple[MatchResult, bool]]:
+    """Match with what of one surface the other shows, by a search that does not need what is known of that already.
+
+    Parameters
+    ----------
+    known : MatchResult
+        A match with a piece of one surface.
+    x, y : Shape
+        The source and the target.
+    task : MatchTask
+        What is wanted.
+    of_source : bool
+        Which surface the other one shows a part of: `x`, or else `y`.
+
+    Returns
+    -------
+    result : MatchResult
+        The most credible match, the given one among them.
+    agrees : bool
+        Whether the search leads to where the given one does: then that was followed, and nothing else.
+    """
+    dense = known.dense
+    maps = dense.source_to_target, dense.target_to_source
+    ends = (x, y, maps) if of_source else (y, x, maps[::-1])
+    searching = covered_parts_steps(*ends, _needed(known, CREDIBLE, of_source=of_source))
+    pieces = yield from within(searching, 0.0, _FOUND, "Looking for missing parts")
+    task.clock.lap("missing parts")
+    agrees = bool(pieces) and not pieces[0].is_new
+    task = replace(task, begun=known.source_to_target) if agrees else task
+    result = known
+    for number, piece in enumerate(pieces[: 1 if agrees else _MOST]):
+        matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source)
+        result = yield from within(matching, *part_of(number, _MOST, _FOUND))
+        if is_as_alike(result, ALL_ALIKE):
+            break
+    return result, agrees
+
+
 def piece_matched_steps(
     result: MatchResult, x: Shape, y: Shape, task: MatchTask, piece: Bools, *, of_source: bool, least: float = CREDIBLE
 ) -> Steps[MatchResult]:

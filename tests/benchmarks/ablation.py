@@ -114,7 +114,13 @@ MECHANISMS = {
         ("engine.matching.shape_matching.finer_shapes_steps", lambda _: lambda x, y, _count: returned((x, y)))
     ],
     "joined pieces": [("engine.matching.matching.matched_with_pieces_steps", lambda _: pieces_apart)],
-    "parts": [("engine.matching.matching.part_matched_steps", lambda _: lambda result, *_given: returned(result))],
+    "parts": [
+        ("engine.matching.matching.part_matched_steps", lambda _: lambda result, *_given: returned(result)),
+        (
+            "engine.matching.matching.agreed_part_steps",
+            lambda _: lambda known, *_given, **_options: returned((known, False)),
+        ),
+    ],
     "spikes pulled in": [("engine.repair.cleaning._pull_in_spikes", lambda _: nothing)],
     "pinched gaps": [
         ("engine.repair.cleaning.pinched_gaps", lambda _: lambda *_given: (np.empty((0, 3), np.int64),) * 2)

@@ -40,12 +40,19 @@ def test_what_the_part_shows_is_found_without_a_hint(bodies):
     areas, true = whole.mesh.vertex_areas, rest[:, 0] > FRONT
     covered = found[0].covered
     assert areas @ (covered & true) > 0.85 * (areas @ (covered | true))
+    assert found[0].is_new
 
 
 def true_map(rest, image, image_rest):
     """Map every vertex to the one that is nearest to it at rest."""
     points = SurfacePoints.at_vertices(image.mesh, cKDTree(image_rest).query(rest)[1])
     return SurfaceMap(points, np.ones(len(points)), image.mesh.vertex_count)
+
+
+def test_what_leads_to_where_the_known_map_does_is_not_new(bodies):
+    (whole, rest), (part, part_rest) = bodies
+    maps = true_map(rest, part, part_rest), true_map(part_rest, whole, rest)
+    assert not run(covered_parts_steps(whole, part, maps))[0].is_new
 
 
 def test_where_nothing_is_missing_no_piece_fits_better(bodies):

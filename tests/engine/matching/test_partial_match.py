@@ -1,12 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Matches of bodies with parts of others: busts, halves, and what a scanner did not see."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from engine import MatchSettings, Shape, TriangleMesh, densify, match, match_steps
+from engine import (
+    DenseMatch,
+    MatchSettings,
+    Shape,
+    SurfaceMap,
+    SurfacePoints,
+    TriangleMesh,
+    densify,
+    match,
+    match_steps,
+)
 from engine.matching.overlap_region import CoveredPart
-from engine.matching.partial_match import part_matched_steps
+from engine.matching.partial_match import agreed_part_steps, part_matched_steps
 from engine.matching.refinement import refine_map
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
@@ -46,6 +58,11 @@ def errors(found, rest, image_rest):
     """Distance at rest of each vertex from its image, over the length of the body."""
     images = np.einsum("kc,kcd->kd", found.barycentric, image_rest[found.corners])
     return np.linalg.norm(images - rest, axis=1) / 2.4
+
+
+def astray(image, count):
+    """Map everything to one place of an image."""
+    return SurfaceMap.from_points(image, SurfacePoints.at_vertices(image, np.zeros(count, np.int64)))
 
 
 def test_a_whole_body_is_matched_with_the_front_half_of_one(result, whole, half):
@@ -130,12 +147,27 @@ def test_with_a_piece_that_is_of_no_use_the_first_match_stays(useless, whole, ha
 
     def found_steps(*_):
         asked.append(covered)
-        return [CoveredPart(covered, -100.0)]
+        return [CoveredPart(covered, -100.0, is_new=True)]
         yield
 
     monkeypatch.setattr("engine.matching.partial_match.covered_parts_steps", found_steps)
     assert run(part_matched_steps(first, x, y, task)) is first
     assert asked
+
+
+@pytest.mark.parametrize("is_right", [True, False])
+def test_another_search_agrees_with_a_right_map_alone_and_finds_one_either_way(is_right, result, whole, half):
+    known, shapes = result.dense, (Shape(whole[0]), Shape(half[0]))
+    there, back = known.source_to_target, known.target_to_source
+    if not is_right:
+        there, back = astray(half[0], len(there)), astray(whole[0], len(back))
+    # As of an overlap: how much alike they are is not known.
+    quality = replace(known.quality, likeness=None, confidence=0.1)
+    given = result.with_dense(DenseMatch(there, back, quality))
+    steps = agreed_part_steps(given, *shapes, MatchTask(QUICK, None), of_source=True)
+    found, agrees = run(steps)
+    assert agrees == is_right
+    assert np.mean(errors(found.target_to_source, half[1], whole[1])) < 0.02
 
 
 def test_refining_keeps_to_what_the_half_shows(result, whole, half):
