@@ -88,6 +88,7 @@ def orient_consistently(triangles: Ints, areas: Floats, twins: Ints) -> Orientat
     if one_sided.any():
         still = turned[:, None] ^ turned[triangle_neighbours(twins)] ^ disagree.reshape(-1, 3)
         twins = np.where(still.ravel(), -1, twins)
+        components = triangle_components(twins)  # what was cut open may fall apart
     return Orientation(components, turned, twins)
 
 

@@ -46,6 +46,25 @@ def test_turning_makes_neighbours_agree(shape, part):
     assert np.array_equal(orientation.turned, wrong)
 
 
+def test_what_falls_apart_when_it_is_cut_open_is_several_components():
+    around, across = 3, 4
+    i = np.arange(around * across).reshape(around, across)
+    a, b, c, d = (part.ravel() for part in (i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]))
+    last, first = i[-1], i[0][::-1]  # glued with half a turn
+    a, b = np.append(a, last[:-1]), np.append(b, last[1:])
+    c, d = np.append(c, first[1:]), np.append(d, first[:-1])
+    strip = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    found = 0
+    for seed in range(120):
+        rng = np.random.default_rng(seed)
+        vertices, triangles = rng.standard_normal((around * across, 3)), strip[rng.random(len(strip)) < 0.9]
+        twins = paired(vertices, triangles)
+        orientation = orient_consistently(triangles, areas(vertices, triangles), twins)
+        np.testing.assert_array_equal(orientation.components, triangle_components(orientation.twins))
+        found += orientation.components.max() > triangle_components(twins).max()
+    assert found
+
+
 def test_volume_says_what_is_inside():
     outside = icosphere(3)
     inside = icosphere(3)[0] * 0.2 + 5, icosphere(3)[1][:, ::-1]
