@@ -1527,6 +1527,11 @@ MESSAGES: Final[dict[str, str]] = {
     "Moving items along": "アイテムを移動しています",
     "Moving the skin": "肌を移動しています",
     "Name of a collection whose meshes are fitted": "メッシュを合わせるコレクションの名前",
+    'No clothes of "{0}" were found: all of its meshes count as its body. Select only those of them that are worn, '
+    "with the other body, or name them.": (
+        '"{0}"の服が見つかりません。そのメッシュはすべてボディとみなされます。着ているものだけをもう一方のボディと'
+        "一緒に選択するか、名前を指定してください。"
+    ),
     'No clothes of "{0}" were found: no other mesh is bound to its armature. Select the items together with '
     "both bodies, or name them.": (
         '"{0}"の服が見つかりません。アーマチュアにバインドされたほかのメッシュがありません。両方のボディと一緒に'

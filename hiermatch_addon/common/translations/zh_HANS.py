@@ -1263,6 +1263,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Moving items along": "正在移动物品",
     "Moving the skin": "正在移动皮肤",
     "Name of a collection whose meshes are fitted": "要适配其中网格的集合名称",
+    'No clothes of "{0}" were found: all of its meshes count as its body. Select only those of them that are worn, '
+    "with the other body, or name them.": (
+        '未找到"{0}"的服装：它的所有网格都被视为身体。请只将其中穿着的网格与另一个身体一起选中，或指定其名称。'
+    ),
     'No clothes of "{0}" were found: no other mesh is bound to its armature. Select the items together with '
     "both bodies, or name them.": (
         '未找到"{0}"的服装：没有其他网格绑定到它的骨架。请将物品与两个身体一起选中，或指定其名称。'

@@ -128,6 +128,11 @@ class WearTransfer:
         chosen = [named_object(name) for name in dict.fromkeys(self._settings.items)]
         if not chosen:
             chosen = [obj for obj in bound_items(context, source) if obj not in parts_of(target)]
+        if not chosen and len(parts_of(source)) > 1:
+            raise NothingToCarryError(
+                f'No clothes of "{source.name}" were found: all of its meshes count as its body. Select only those of '
+                "them that are worn, with the other body, or name them."
+            )
         if not chosen:
             raise NothingToCarryError(
                 f'No clothes of "{source.name}" were found: no other mesh is bound to its armature. Select the items '

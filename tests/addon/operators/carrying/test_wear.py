@@ -346,6 +346,15 @@ def test_items_that_are_parts_of_the_source_are_worn_by_the_others(pair):
     assert fitted("Shirt")
 
 
+def test_where_all_meshes_of_a_character_are_selected_it_is_said_that_they_are_its_body(pair):
+    for obj in (pair[0], pair[2]):
+        obj.select_set(state=True)
+    before = snapshot()
+    with pytest.raises(RuntimeError, match="all of its meshes count as its body"):
+        wear(source="Source + Shirt")
+    assert snapshot() == before
+
+
 def cut_off(body, name):
     """Cut off all but the upper end of a body, as an object of its own."""
     half = body.copy()
