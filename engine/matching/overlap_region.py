@@ -89,7 +89,7 @@ class CoveredPart:
     score : float
         Smaller is more credible; comparable between pieces, and between the two ways round.
     is_new : bool
-        Whether this takes the part elsewhere than what came of the surfaces as they are.
+        Whether this takes the part elsewhere than the map that was known.
     """
 
     covered: Bools
@@ -145,7 +145,7 @@ def covered_parts_steps(
     whole, part : Shape
         The surfaces.
     first : pair of SurfaceMap
-        What came of them as they are: a map of the whole to the part, and the other way round.
+        What is known, of them as they are or of a piece: a map of the whole to the part, and the other way round.
     least : float
         Likeness of the part and a piece below which that is of no use.
 

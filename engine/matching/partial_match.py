@@ -16,7 +16,7 @@ from ..runtime.progress import Steps, part_of, within
 from ..shapes.borders import has_border
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.shape import Shape
-from .overlap_region import continued, covered_parts_steps
+from .overlap_region import CoveredPart, continued, covered_parts_steps
 from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
 
@@ -79,12 +79,7 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
         found += [(piece, whole is x) for piece in pieces]
     found.sort(key=lambda pair: pair[0].score)
     task.clock.lap("missing parts")
-    for number, (piece, of_source) in enumerate(found[:_MOST]):
-        matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
-        result = yield from within(matching, *part_of(number, _MOST, _FOUND))
-        if is_as_alike(result, ALL_ALIKE):
-            break
-    return result
+    return (yield from within(_best_piece_steps(result, x, y, task, found[:_MOST], least=least), _FOUND, 1.0))
 
 
 def agreed_part_steps(
@@ -118,13 +113,21 @@ def agreed_part_steps(
     task.clock.lap("missing parts")
     agrees = bool(pieces) and not pieces[0].is_new
     task = replace(task, begun=known.source_to_target) if agrees else task
-    result = known
-    for number, piece in enumerate(pieces[: 1 if agrees else _MOST]):
-        matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source)
-        result = yield from within(matching, *part_of(number, _MOST, _FOUND))
+    found = [(piece, of_source) for piece in pieces[: 1 if agrees else _MOST]]
+    result = yield from within(_best_piece_steps(known, x, y, task, found, least=CREDIBLE), _FOUND, 1.0)
+    return result, agrees
+
+
+def _best_piece_steps(
+    result: MatchResult, x: Shape, y: Shape, task: MatchTask, pieces: list[tuple[CoveredPart, bool]], *, least: float
+) -> Steps[MatchResult]:
+    """Match with pieces, each of the source or else of the target, until one fits like one body in two poses."""
+    for number, (piece, of_source) in enumerate(pieces):
+        matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
+        result = yield from within(matching, *part_of(number, len(pieces)))
         if is_as_alike(result, ALL_ALIKE):
             break
-    return result, agrees
+    return result
 
 
 def piece_matched_steps(

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.directions import spread_directions
 from ...mesh.area_samples import AreaSamples, even_samples
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints, marked
 from .contact import Surface
+from .sight_lines import depths_behind
 
 _DIRECTIONS = 40
 """From how many sides is looked at the surface, to find quickly what may lie within."""
@@ -104,18 +104,11 @@ class BuriedPlaces:
 
 def _hidden(mesh: TriangleMesh, places: Floats, samples: AreaSamples) -> Bools:
     """Tell which places (k, 3) no side shows, (k,)."""
-    points = np.concatenate([places, samples.positions])
-    cell, deep = _CELL * np.sqrt(mesh.area / _SAMPLES), _DEEP * np.sqrt(mesh.area)
+    unit = np.sqrt(mesh.area)
+    surface, cell = np.concatenate([places, samples.positions]), _CELL * unit / np.sqrt(_SAMPLES)
     hidden = np.ones(len(places), bool)
-    for direction in spread_directions(_DIRECTIONS):
-        across = np.linalg.svd(direction[None])[2][1:]
-        cells = np.floor(points @ across.T / cell).astype(np.int64)
-        cells -= cells.min(axis=0)
-        number = cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]
-        heights = points @ direction
-        front = np.full(number.max() + 1, -np.inf)
-        np.maximum.at(front, number, heights)
-        hidden &= (heights < front[number] - deep)[: len(places)]
+    for depths in depths_behind(surface, places, cell, _DIRECTIONS):
+        hidden &= depths > _DEEP * unit
     return hidden
 
 

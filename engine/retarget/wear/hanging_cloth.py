@@ -6,12 +6,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...geometry.directions import spread_directions
 from ...mesh.area_samples import AreaSamples, even_samples
 from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints
+from .sight_lines import depths_behind
 
 _BLOCKING, _SAMPLES = 20_000, 6_000
 """Points that stand for the surface where it is in the way of light, and where it covers or is covered."""
@@ -135,18 +135,12 @@ def _facing(body: TriangleMesh, samples: AreaSamples, worn: Ints) -> tuple[Ints,
 
 def _light(mesh: TriangleMesh, points: Floats) -> Floats:
     """Find from what part of all directions light falls on points (k, 3) past a surface, (k,)."""
-    samples = even_samples(mesh, mesh.area / _BLOCKING).positions
-    count, cell = len(samples), _CELL * np.sqrt(mesh.area / _BLOCKING)
-    every, lit = np.concatenate([samples, points]), np.zeros(len(points))
-    for direction in spread_directions(_DIRECTIONS):
-        across = np.linalg.svd(direction[None])[2][1:]
-        cells = np.floor(every @ across.T / cell).astype(np.int64)
-        cells -= cells.min(axis=0)
-        number = cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]
-        front = np.full(number.max() + 1, -np.inf)
-        np.maximum.at(front, number[:count], samples @ direction)
-        lit += points @ direction > front[number[count:]]
-    return lit / _DIRECTIONS
+    spacing = np.sqrt(mesh.area / _BLOCKING)
+    surface = even_samples(mesh, mesh.area / _BLOCKING).positions
+    lit = sum(
+        (depths < 0).astype(np.float64) for depths in depths_behind(surface, points, _CELL * spacing, _DIRECTIONS)
+    )
+    return np.asarray(lit) / _DIRECTIONS
 
 
 def _filled(places: Floats, chosen: Bools, unit: float) -> Bools:
