@@ -7,6 +7,7 @@ FOLDER holds shapes/NAME.npz, each with vertices V (n, 3) and triangles F (m, 3)
 for each vertex of A its vertex of B, or -1 if B does not show it (the collections PARTIALSMAL and PFARM in this
 layout).  A row holds
 
+    true overlap       share of the vertices of either that the other shows; further to the right, of the area
     there, back        mean error of source_to_target, and of target_to_source, on the true overlap
     IoU                what has a partner against what truly has one: their intersection over their union, mean of both
     conf., coverage    what the match says of itself: result.quality.confidence, .source_coverage and .coverage
@@ -45,6 +46,7 @@ class Row:
 
     names: tuple
     shares: tuple
+    areas: tuple
     errors: tuple = (np.inf, np.inf)
     iou: float = 0.0
     confidence: float = 0.0
@@ -58,8 +60,9 @@ class Row:
 
     def __str__(self):
         wrong = self.problem or ("" if self.is_right else "WRONG")
-        numbers = (*self.shares, *self.errors, self.iou, self.confidence, *self.coverage, self.seconds)
-        layout = "{:6.2f} {:5.2f} {:8.2f} {:7.2f} {:6.2f} {:6.2f} {:6.2f} {:5.2f} {:8.1f}"
+        numbers = (*self.shares, *self.errors, self.iou, self.confidence)
+        numbers += *self.areas, *self.coverage, self.seconds
+        layout = "{:6.2f} {:5.2f} {:8.2f} {:7.2f} {:6.2f} {:6.2f} {:6.2f} {:5.2f} {:6.2f} {:5.2f} {:8.1f}"
         return f"{' -> '.join(self.names):36s} {layout.format(*numbers)}  {wrong}"
 
 
@@ -72,7 +75,8 @@ def measure(folder, names):
     spacing = np.sqrt(meshes[1].area / meshes[1].triangle_count)
     images = cKDTree(meshes[1].vertices[ends[1]])
     true = partners >= 0, images.query(meshes[1].vertices)[0] < NEAR * spacing
-    row = Row(names, tuple(float(each.mean()) for each in true))
+    areas = (float(mesh.vertex_areas @ each / mesh.area) for mesh, each in zip(meshes, true, strict=True))
+    row = Row(names, tuple(float(each.mean()) for each in true), tuple(areas))
     start = time.perf_counter()
     try:
         result = match(*meshes)
@@ -108,7 +112,8 @@ def main():
     options = parser.parse_args()
     known = [tuple(path.stem.split("__")) for path in sorted((options.data / "maps").iterdir())]
     chosen = np.random.default_rng(options.seed).permutation(len(known))[: options.pairs]
-    print(f"{'errors x 100 / sqrt(area)':36s} true overlap    there    back    IoU  conf.  coverage    seconds")
+    titles = "true overlap    there    back    IoU  conf.  its area   coverage    seconds"
+    print(f"{'errors x 100 / sqrt(area)':36s} {titles}")
     rows = []
     for number in chosen:
         rows.append(measure(options.data, known[number]))
@@ -123,6 +128,8 @@ def main():
             print(f"{name:28s} {right}, median error {np.median(worse):5.1f}, IoU {iou.mean():.2f}")
     sure = [row for row in rows if row.confidence >= 0.5]
     print(f"with a confidence of 0.5 or more: {sum(row.is_right for row in sure)} of {len(sure)} right")
+    beyond = [np.subtract(row.coverage, row.areas).max() for row in rows]
+    print(f"coverage is beyond the area of the true overlap by {max(beyond):.2f} at most")
     print(f"seconds: median {np.nanmedian([row.seconds for row in rows]):.1f}")
 
 
