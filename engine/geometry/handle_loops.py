@@ -76,7 +76,7 @@ def shortest_handle_loop_steps(mesh: TriangleMesh, lids: Bools | None = None) ->
         roots = np.unique(np.concatenate([loop for _, loop in others or [best]]))
         roots = roots[:: -(-len(roots) // most)]
         for number, root in enumerate(roots.tolist()):
-            best = min(best, loops.at(root, 1)[0], key=lambda found: found[0])
+            best = min(best, loops.at(root)[0], key=lambda found: found[0])
             yield Progress(begin + (end - begin) * (number + 1) / len(roots), "Cutting parts open that touch")
     return best[1]
 
@@ -105,8 +105,8 @@ class _Loops:
         if lids is not None:
             in_crease |= lids[self._tails] | lids[self._heads]
         # An edge without length would be none to the search.
-        least = float(np.finfo(float).eps * lengths.max())
-        self._lengths = np.maximum(np.where(in_crease, _CREASE * lengths, lengths), least)
+        lengths = np.maximum(lengths, float(np.finfo(float).eps * lengths.max()))
+        self._lengths = np.where(in_crease, _CREASE * lengths, lengths)
         # On either side of an edge is a triangle, or what would close the loop that the surface ends in.
         other = ends.twins // 3
         other[ends.half_edges] = mesh.triangle_count + ends.labels
@@ -114,8 +114,9 @@ class _Loops:
         self._side_count = mesh.triangle_count + ends.count
         n = mesh.vertex_count
         self._graph = csr_array(coo_array((self._lengths, (self._tails, self._heads)), shape=(n, n)))
+        self._places, self._normals = mesh.vertices, mesh.vertex_normals
 
-    def at(self, root: int, most: int | None = None) -> list[tuple[float, Ints]]:
+    def at(self, root: int) -> list[tuple[float, Ints]]:
         """Find the shortest loops of a basis through a vertex: their lengths, and their vertices, shortest first."""
         distances, before = dijkstra(self._graph, directed=False, indices=root, return_predecessors=True)
         in_tree = (before[self._heads] == self._tails) | (before[self._tails] == self._heads)
@@ -131,13 +132,19 @@ class _Loops:
         ranks = coo_array((np.arange(1.0, len(candidates) + 1), (low, high)), shape=(self._side_count,) * 2)
         chosen = minimum_spanning_tree(ranks.tocsr()).data.astype(np.int64) - 1
         left = np.delete(np.arange(len(rest)), candidates[chosen])
-        left = left[np.argsort(around[left], kind="stable")][:most]
         found = []
         for edge in rest[left]:
             loop = _closed(way_to_root(before, self._tails[edge]), way_to_root(before, self._heads[edge]))
-            steps = self._graph[loop, np.roll(loop, -1)] + self._graph[np.roll(loop, -1), loop]
-            found.append((float(np.asarray(steps).sum()), loop))
+            found.append((self._length(loop), loop))
         return sorted(found, key=lambda each: each[0])
+
+    def _length(self, loop: Ints) -> float:
+        """Measure a loop: creases count less around what is solid, not around a hole, which closed would join more."""
+        places, ahead = self._places[loop], np.roll(loop, -1)
+        outwards = np.einsum("kd,kd->k", places - places.mean(axis=0), self._normals[loop])
+        if outwards.mean() < 0:
+            return float(np.linalg.norm(places - self._places[ahead], axis=1).sum())
+        return float(np.asarray(self._graph[loop, ahead] + self._graph[ahead, loop]).sum())
 
 
 def _creased(mesh: TriangleMesh) -> Bools:

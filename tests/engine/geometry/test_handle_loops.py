@@ -9,6 +9,7 @@ from engine.geometry.handle_loops import genus, shortest_handle_loop_steps
 from engine.runtime.progress import run
 from tests.messes import bridged
 from tests.shapes import (
+    capsule_surface,
     compacted,
     creature,
     cylinder,
@@ -113,3 +114,14 @@ def test_a_loop_may_go_through_what_closes_an_opening():
     outermost = away > away.max() - 1e-9
     loop = run(shortest_handle_loop_steps(mesh, outermost))
     np.testing.assert_array_equal(np.sort(loop), np.flatnonzero(outermost))
+
+
+def test_what_touches_is_parted_rather_than_the_hole_beside_it_closed():
+    """An arm lies on a trunk with most of its length, and leaves a small hole at the shoulder, in creases all round."""
+    arm = ((-1, 0, 0.5), (-0.5, 0, 0.34), 0.14, 0.16), ((-0.5, 0, 0.34), (1, 0, 0.34), 0.16, 0.16)
+    trunk = ((-1, 0, 0), (1, 0, 0), 0.2, 0.2), ((-1, 0, 0), (-1, 0, 0.5), 0.14, 0.14)
+    mesh = TriangleMesh(*capsule_surface((*trunk, *arm), [(-1.4, -0.4, -0.4), (1.4, 0.4, 0.9)], 40))
+    assert genus(mesh) == 1
+    places = mesh.vertices[shortest_loop(mesh)]
+    assert np.ptp(places[:, 0]) > 1.5  # the hole is a fifth of that
+    assert np.abs(places[:, 2] - 0.19).max() < 0.05
