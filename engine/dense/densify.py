@@ -195,6 +195,7 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     credibility = vertex_credibility(quality.orientation, pair.margin, alike, in_place)
     steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, credibility=credibility, doubts=doubts)
     whole = yield from within(steps, 0.85, 1.0)
+    del there, back  # of a million vertices, what is not needed any more counts
     forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)
     alone = max(whole.there.alone, whole.back.alone)
     quality = with_pieces(quality, alone, whole.there.share)
@@ -233,12 +234,15 @@ def _main_map_steps(lift: _Lift, here: int) -> Steps[SurfacePoints]:
     if lift.polish is not None:
         return (yield from lift.polish.steps(positions, proxy_map, here))
     ends = x.cleaned.mesh, x.proxy, positions, y.cleaned.mesh
-    return (yield from lift_steps(*ends, target_proxy=y.proxy, proxy_map=proxy_map, search=y.dense_search))
+    found = yield from lift_steps(*ends, target_proxy=y.proxy, proxy_map=proxy_map, search=y.dense_search)
+    y.dense_search.forget()
+    return found
 
 
 def _on_original(found: WholeMap, y: PreparedSurface) -> SurfaceMap:
     """Name a map of all vertices by the triangles of the original mesh, excluded ones counted."""
-    triangles = y.kept_triangles[found.points.triangles]
-    points = SurfacePoints.from_barycentric(y.original, triangles, found.points.barycentric)
+    points = found.points
+    if len(y.kept_triangles) < y.original.triangle_count:
+        points = SurfacePoints.from_barycentric(y.original, y.kept_triangles[points.triangles], points.barycentric)
     # What has no partner is trusted nowhere, and all else at least a little.
     return SurfaceMap(points, found.confidence, y.original.vertex_count, found.confidence > 0)

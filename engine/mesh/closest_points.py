@@ -149,6 +149,10 @@ class ClosestPoints:
         kept = "vertices", "_rings", "_coordinates"
         return {name: self.__dict__[name] for name in kept} | {"_trees": {}}
 
+    def forget(self) -> None:
+        """Let go of normals and trees until they are asked for again: some 200 bytes a vertex."""
+        self.__dict__ = self.__getstate__()
+
     def moved(self, vertices: Floats) -> ClosestPoints:
         """Return a search on the same triangles with other positions (n, d) of the vertices.
 
@@ -390,15 +394,16 @@ class _Rings:
     def __init__(self, triangles: Ints, vertex_count: int) -> None:
         self.triangles = triangles
         m = len(triangles)
+        short = np.int32 if 3 * m <= np.iinfo(np.int32).max else np.int64  # half the memory of a large mesh
         # Transposing a sparse matrix is a counting sort, several times as fast as argsort.
         table = csr_array(
-            (np.arange(3 * m), triangles.ravel(), np.arange(0, 3 * m + 1, 3)), shape=(m, vertex_count)
+            (np.arange(3 * m, dtype=short), triangles.ravel(), np.arange(0, 3 * m + 1, 3)), shape=(m, vertex_count)
         ).tocsc()
         self.corners = table.data  # 3 x triangle + which of its corners the vertex is
         self.starts = table.indptr.astype(np.int64)  # (n + 1,)
         self.counts = np.diff(self.starts)
         self.used = np.flatnonzero(self.counts)
-        flat, slot = triangles.ravel(), self.corners % 3
+        flat, slot = triangles.ravel().astype(short), self.corners % 3
         self.next = flat[self.corners + np.where(slot == 2, -2, 1)]  # the triangle's other corners, in its cyclic order
         self.last = flat[self.corners + np.where(slot == 0, 2, -1)]
 

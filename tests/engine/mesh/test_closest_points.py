@@ -409,3 +409,13 @@ def test_points_and_normals_are_checked(star, points):
             search.nearest(*arguments)
         with pytest.raises(MeshError, match="to search with"):
             search.walk(arguments[0], np.zeros(len(points), int), *arguments[1:])
+
+
+def test_what_is_forgotten_is_found_again(star):
+    search = ClosestPoints(star)
+    points, normals = star.vertices + 0.01, star.vertex_normals
+    before = search.nearest(points, normals, normal_length=0.1, normal_weight=0.01, normal_gate=0.5)
+    search.forget()
+    after = search.nearest(points, normals, normal_length=0.1, normal_weight=0.01, normal_gate=0.5)
+    np.testing.assert_array_equal(after.triangles, before.triangles)
+    np.testing.assert_array_equal(after.barycentric, before.barycentric)
