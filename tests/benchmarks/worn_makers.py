@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Put clothes of characters for games on the body of another maker, and measure where its skin shows.
 
-    python -m tests.benchmarks.worn_makers --data FOLDER [--only Suit,King] [--save FOLDER]
+    python -m tests.benchmarks.worn_makers --data FOLDER [--only Suit,King] [--save FOLDER] [--pictures FOLDER]
 
 FOLDER holds the files of `CASES`.  Characters are taken apart: what is named there are the items, what is left is the
 body, which has no skin below most of them.  Everything goes through import and the button *Wear*.
@@ -10,7 +10,8 @@ A row holds the confidence of the match in %; what part of the skin below the it
 at rest, in the mean of three poses, and in the worst of them; how far what is worn on the trunk stands off the skin at
 rest, in % of the body's height (the 99th percentile of its vertices); how far what is worn on the legs is higher or
 lower than on the source, in % of either's height (the 95th percentile); and the seconds of one core that it took.
---save keeps a .blend of each case, to look at.
+--save keeps a .blend of each case, to look at; --pictures renders each: the source, the target from four sides, and
+in the three poses.
 """
 
 import argparse
@@ -31,6 +32,7 @@ from mathutils.bvhtree import BVHTree
 from engine import ClosestPoints, TriangleMesh
 from tests.benchmarks.action_strip import shown_surface
 from tests.benchmarks.maker_rigs import limb
+from tools.demo_picture import render, set_stage, sheet
 from tools.source_extension import registered_extension
 
 MEN, WOMEN = "quaternius-modular_men", "quaternius-modular_women"
@@ -76,6 +78,12 @@ NEAR = 0.03
 
 WAIST = 0.58
 """How high what is worn on the legs is worn on the trunk, as a part of the height."""
+
+WIDTH, HEIGHT, SAMPLES = 420, 600, 24
+"""Size of each picture in pixels, and how often each pixel is looked at."""
+
+SIDES = (-35, 55, 145, 235)
+"""From where the target is seen, in degrees around Z from the front."""
 
 PLACES = np.array(
     [
@@ -143,18 +151,23 @@ def through(body, items):
     return (close | above).reshape(shape), showing.reshape(shape)
 
 
+def bend(rig, turns):
+    """Turn limbs about the axes of the world by some angles, and have the others at rest."""
+    for bone in rig.pose.bones:
+        bone.matrix_basis = Matrix()
+        turn = turns.get(limb(bone.name))
+        if turn is not None:
+            axes = (rig.matrix_world @ bone.bone.matrix_local).to_3x3()
+            bone.rotation_mode = "QUATERNION"
+            bone.rotation_quaternion = (axes.inverted() @ Euler(turn).to_matrix() @ axes).to_quaternion()
+    bpy.context.view_layer.update()
+
+
 def shown(rig, bodies, items):
     """What part of the skin below items shows, by area: at rest, and in each pose."""
     parts, below = [], None
     for turns in ({}, *POSES):
-        for bone in rig.pose.bones:
-            bone.matrix_basis = Matrix()
-            turn = turns.get(limb(bone.name))
-            if turn is not None:
-                axes = (rig.matrix_world @ bone.bone.matrix_local).to_3x3()
-                bone.rotation_mode = "QUATERNION"
-                bone.rotation_quaternion = (axes.inverted() @ Euler(turn).to_matrix() @ axes).to_quaternion()
-        bpy.context.view_layer.update()
+        bend(rig, turns)
         body = TriangleMesh(*shown_surface(bodies))
         near, shows = through(body, TriangleMesh(*shown_surface(items)))
         if below is None:
@@ -186,6 +199,32 @@ def shifted(skin, bodies, items):
     return np.quantile(np.abs(after - before), 0.95)
 
 
+def picture(rig, source, target, path):
+    """Render the meshes of the source, those of the target from four sides, and in each pose, on one sheet."""
+    views = [
+        (source, {}, SIDES[0]),
+        *((target, {}, side) for side in SIDES),
+        *((target, one, SIDES[0]) for one in POSES),
+    ]
+    meshes = [obj for obj in bpy.data.objects if obj.type == "MESH"]
+    paths = [path.with_name(f"{path.stem}-{number}.png") for number in range(len(views))]
+    for (seen, turns, side), one in zip(views, paths, strict=True):
+        bend(rig, turns)
+        for obj in meshes:
+            obj.hide_render = obj not in seen
+        known = set(bpy.data.objects)
+        set_stage(seen, (side, 8), WIDTH, HEIGHT)
+        if turns:  # limbs that are bent reach further
+            camera = bpy.context.scene.camera
+            camera.location += 0.25 * (camera.location - rig.matrix_world.translation)
+        render(one, SAMPLES)
+        for obj in set(bpy.data.objects) - known:
+            bpy.data.objects.remove(obj)
+    sheet([paths[:4], paths[4:]], path)
+    for one in paths:
+        one.unlink()
+
+
 def wear(case, data):
     """Put the items of a case on the other body: its armature, its meshes, the fitted items, and the source's skin."""
     source, target, chosen = CASES[case]
@@ -203,6 +242,7 @@ def main():
     parser.add_argument("--data", type=Path, required=True, help="folder with the characters")
     parser.add_argument("--only", default=",".join(CASES), help="names of cases, separated by commas")
     parser.add_argument("--save", type=Path, help="folder for the .blend files")
+    parser.add_argument("--pictures", type=Path, help="folder for the pictures")
     options = parser.parse_args()
     registered_extension()
     print(f"{'case':8s} confidence  shows at rest  in poses     worst stands off   shifted  seconds")
@@ -219,6 +259,10 @@ def main():
         if options.save:
             options.save.mkdir(parents=True, exist_ok=True)
             bpy.ops.wm.save_as_mainfile(filepath=str(options.save / f"{case}.blend"))
+        if options.pictures:
+            options.pictures.mkdir(parents=True, exist_ok=True)
+            worn = [bpy.data.objects[item["hiermatch_item"]] for item in items]
+            picture(rig, [*skin, *worn], [*bodies, *items], options.pictures / f"{case}.png")
 
 
 if __name__ == "__main__":
