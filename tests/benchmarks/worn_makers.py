@@ -69,8 +69,9 @@ POSES = (
 )
 """By what angles limbs are turned about the axes of the world, in radians."""
 
-SHOWS = 0.0005, 0.015
-"""How far above an item, in the root of the body's area, skin shows: farther away it is beside it, as at a neckline."""
+SHOWS = 0.00002, 0.015
+"""How far above an item, in the root of the body's area, skin shows: nearer the two are one, farther away it is beside
+it, as at a neckline."""
 
 NEAR = 0.03
 """How far from an item, in the same unit, skin is below it."""

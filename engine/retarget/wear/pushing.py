@@ -45,17 +45,18 @@ _NEAR = 0.03
 """Distance on the first body, in the same unit, within which a layer below is looked at."""
 
 _POKING = 0.022
-"""How far through the cloth, in the same unit, a vertex of the skin is looked for."""
+"""How far through the cloth, in the same unit, a place of the skin is looked for."""
 
 _STRAIGHT = 0.5
-"""Least cosine between the way from such a vertex to the cloth and its normal."""
+"""Least cosine between the way from such a place to the cloth and its normal."""
 
 _ALIKE, _HOME = 0.3, 0.06
 """Least cosine between the normals there and where the item lay before, and the largest distance between the two, in
 the same unit: else it is another limb."""
 
-_MARGIN = 0.0005
-"""How far over such a vertex, in the same unit, the item is moved."""
+_MARGIN = 0.001
+"""How far over such a place, in the same unit, the item is moved: with half of that, and no middles of edges among the
+places, three times as much skin shows in specks on the Witch of ``python -m tests.benchmarks.worn_makers``."""
 
 _MOSTLY = 0.3
 """Part of a place of the item by its corners that has to have lain outside, for the skin not to show above it."""
@@ -333,7 +334,7 @@ class _Above:
 
 
 class _Under:
-    """Places of a layer that may come through an item: its vertices, and the middles of its triangles.
+    """Places of a layer that may come through an item: its vertices, and the middles of its edges and triangles.
 
     Only those are looked at near which the item lay, as the skin of another limb is none of its business; and of these
     only those that it may have come to since, as in `_Above`: what is under it, it has to come as near to as it is.
@@ -343,8 +344,11 @@ class _Under:
     def __init__(self, layer: Layer, item_count: int, unit: float) -> None:
         mesh = layer.surface.mesh
         self._layer, self._unit = layer, unit
-        self._points = np.concatenate([mesh.vertices, mesh.vertices[mesh.triangles].mean(axis=1)])
-        self._normals = np.concatenate([layer.surface.normals, mesh.triangle_normals])
+        ends = layer.surface.normals[mesh.edges]
+        self._points = np.concatenate(
+            [mesh.vertices, mesh.vertices[mesh.triangles].mean(axis=1), mesh.vertices[mesh.edges].mean(axis=1)]
+        )
+        self._normals = np.concatenate([layer.surface.normals, mesh.triangle_normals, unit_vectors(ends.sum(axis=1))])
         homes = mesh.vertices[np.unique(layer.starts[:item_count])]
         self._near_home = _near_cells(self._points, homes, _HOME * unit)
         self._room = np.zeros(len(self._points))

@@ -86,6 +86,35 @@ def test_nothing_pokes_through_where_the_body_has_grown_a_bump():
     assert not left.pushed.any()
 
 
+def above(mesh, points):
+    """How far points (k, 3) are beyond a surface around the origin, seen from there; nan where there is none."""
+    heights = np.full(len(points), np.nan)
+    origin, first, second = mesh.vertices[mesh.triangles].transpose(1, 0, 2)
+    first, second = first - origin, second - origin
+    for number, point in enumerate(points):
+        length = np.linalg.norm(point)
+        solved = np.linalg.solve(
+            np.stack([np.broadcast_to(point / length, origin.shape), -first, -second], axis=2), origin[..., None]
+        )[..., 0]
+        hit = (solved[:, 0] > 0) & (solved[:, 1:] >= 0).all(axis=1) & (solved[:, 1:].sum(axis=1) <= 1)
+        if hit.any():
+            heights[number] = length - solved[hit, 0].max()
+    return heights
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_edges_of_a_rough_body_do_not_come_through_those_of_the_cloth(seed):
+    rough = BODY.vertices * (1 + 0.15 * np.random.default_rng(seed).random(BODY.vertex_count))[:, None]
+    target = TriangleMesh(rough, BODY.triangles)
+    cloth = cap(TriangleMesh(ball(9, 1.03).vertices @ TURN.T, BODY.triangles), -0.3)
+    (fitted,) = run(wear_steps(BODY, target, SurfaceMap.identity(target), BODY.vertices, [WornItem(cloth)]))
+    worn = TriangleMesh(fitted.positions, cloth.triangles)
+    for places in (rough, rough[BODY.triangles].mean(axis=1), rough[BODY.edges].mean(axis=1)):
+        heights = above(worn, places[places[:, 2] > -0.2])
+        assert np.isfinite(heights).mean() > 0.9
+        assert np.nanmax(heights) <= 0
+
+
 @pytest.mark.parametrize("closed", [True, False])
 def test_what_has_no_skin_below_it_any_more_is_told(closed):
     # A long body, and one that ends halfway, in a stump or in a hole.
