@@ -63,7 +63,7 @@ class BonePairing:
     sources, targets : (k,) array of int
         Numbers of the bones in the source's and in the target's rig, in the target's order.
     scores : (k,) array of float
-        How well they agree, 0 to 1; several sources of one target share it in this proportion.
+        How well they agree, 0 to 1.
     rotations : (k, 3, 3) array of float
         How the target's surface around the bone is turned against the source's, both at rest.
     places : (k, 3) array of float
