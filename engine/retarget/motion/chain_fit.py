@@ -12,6 +12,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...runtime.arrays import TINY, Floats, Ints, shares_along
 from ..rig.skeleton import Skeleton
 from .bone_pairing import BonePairing
+from .limbs import Limb
 from .segments import Segments, ways_up
 
 _SAMPLES = 8
@@ -74,7 +75,13 @@ class FittedChain:
 
 
 def fitted_chains(
-    pairing: BonePairing, rests: Floats, segments: Segments, trees: tuple[Skeleton, Skeleton], holders: Ints
+    pairing: BonePairing,
+    rests: Floats,
+    segments: Segments,
+    trees: tuple[Skeleton, Skeleton],
+    holders: Ints,
+    *,
+    arms: Sequence[Limb] = (),
 ) -> list[FittedChain]:
     """Find what each bone of the target has to carry, and where the source takes it.
 
@@ -95,6 +102,9 @@ def fitted_chains(
         The source's and the target's bones at rest.
     holders : (b,) array of int
         The bone of the target that carries each, -1 for none.
+    arms : sequence of Limb
+        Limbs that are to point where the source's point, bent at the same joint wherever the map puts it.  Legs are to
+        stand where those of the source stand, also if they are built in other pieces.
 
     Returns
     -------
@@ -103,7 +113,8 @@ def fitted_chains(
     """
     rigs = _Rigs(pairing, rests, segments, trees, holders)
     chains = []
-    for parts, bones in segments.chains(pairing.sources, pairing.places, trees[1]):
+    jointed = {arm.parts[1] for arm in arms}
+    for parts, bones in segments.chains(pairing.sources, pairing.places, trees[1], jointed):
         left = bones.tolist()
         while left:
             top = next((bone for bone in left if not set(ways_up(holders, bone)) & set(left)), left[0])

@@ -192,7 +192,7 @@ class _Body:
         self.limbs = limbs_of(self.segments, self.source, target, ups)
         trees = self.source, target
         rests = posed_rotations(pairing, self.segments, self.limbs, trees, ups[1])
-        self._chains = fitted_chains(pairing, rests, self.segments, trees, self._holders)
+        self._chains = fitted_chains(pairing, rests, self.segments, trees, self._holders, arms=_arms(self.limbs))
         self.scale = self._scale()
         self._rise = 0.0
         # In the pose in which the source rests the target's feet are to be as high as they are in its own.

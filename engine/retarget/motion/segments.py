@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -86,7 +87,9 @@ class Segments:
         """List the target's bones of a segment that hang on no other of it."""
         return [int(bone) for bone in self.targets[part] if not set(bones.above(int(bone))) & set(self.targets[part])]
 
-    def chains(self, sources: Ints, places: Floats, bones: Skeleton) -> list[tuple[list[int], Ints]]:
+    def chains(
+        self, sources: Ints, places: Floats, bones: Skeleton, jointed: Collection[int] = ()
+    ) -> list[tuple[list[int], Ints]]:
         """Put segments in a row together that are cut in other places in the target.
 
         Three bones of a spine may each stand for one or two of five, whose joints are not those of the three.
@@ -99,6 +102,8 @@ class Segments:
             Where their heads lie in the target.
         bones : Skeleton
             The target's bones.
+        jointed : collection of int
+            Segments that begin at the same joint in both rigs wherever it lies, such as at an elbow.
 
         Returns
         -------
@@ -107,7 +112,7 @@ class Segments:
         """
         joined = np.arange(len(self))
         for part, above in enumerate(self.parents):
-            if above < 0 or len(self.below(int(above))) != 1 or self.single[[part, above]].all():
+            if above < 0 or part in jointed or len(self.below(int(above))) != 1 or self.single[[part, above]].all():
                 continue
             first, last = self.targets[part][0], self.targets[above][-1]
             row = self.rows[part][sources[self.rows[part]] == self.sources[part][0]][0]

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 from engine import Skeleton
 from engine.retarget.motion.bone_pairing import BonePairing
 from engine.retarget.motion.chain_fit import fitted_chains
+from engine.retarget.motion.limbs import limbs_of
 from engine.retarget.motion.segments import Segments
 
 UP = np.array([0.0, 0, 1])
@@ -19,13 +20,14 @@ def column(joints):
     return Skeleton(np.arange(-1, len(joints) - 2), joints[:-1], joints[1:])
 
 
-def paired(sources, targets, source, target, rests=None):
+def paired(sources, targets, source, target, rests=None, *, arms=False):
     """Pairs of bones, whose joints lie in the target where they are in the source, and the chains that they make."""
     sources, targets = np.array(sources), np.array(targets)
     rests = np.tile(np.eye(3), (len(sources), 1, 1)) if rests is None else rests
     pairing = BonePairing(sources, targets, np.ones(len(sources)), rests, source.heads[sources], np.eye(3))
     segments = Segments.of(sources, targets, source, target)
-    return fitted_chains(pairing, rests, segments, (source, target), target.parents)
+    arms = limbs_of(segments, source, target, np.array([UP, UP])) if arms else []
+    return fitted_chains(pairing, rests, segments, (source, target), target.parents, arms=arms)
 
 
 def turned(chains, turns, count):
@@ -180,3 +182,15 @@ def test_bones_that_hang_the_other_way_round_are_fitted_all_the_same():
     for tree in (source, backwards):
         found = turned(paired([0, 1, 1, 2, 0], [0, 1, 2, 3, 2], tree, target), turns, 4)
         assert np.allclose(found @ np.swapaxes(found, 2, 3), np.eye(3))
+
+
+def test_an_arm_is_bent_at_the_elbow_wherever_the_map_puts_that():
+    """The target has a collar bone, so that its elbow lies elsewhere than that of the source, which has none."""
+    joints = np.array([[0, 0, 0], [0.3, 0, 1], [1, 0, 1], [2, 0, 1], [0, 0, 1.2], [0, 0, 1.6]])
+    source = Skeleton(np.array([-1, 0, 1, 0]), joints[[0, 1, 2, 4]], joints[[4, 2, 3, 5]])
+    other = np.array([[0, 0, 0], [0.1, 0, 1], [0.6, 0, 1], [1.5, 0, 1], [2, 0, 1], [0, 0, 1.2], [0, 0, 1.6]])
+    target = Skeleton(np.array([-1, 0, 1, 2, 0]), other[[0, 1, 2, 3, 5]], other[[5, 2, 3, 4, 6]])
+    turns, pairs = bends(9, 4, 4), [0, 1, 1, 2, 3]
+    bent, loose = (turned(paired(pairs, range(5), source, target, arms=arms), turns, 5) for arms in (True, False))
+    assert np.allclose(bent, turns[:, pairs])
+    assert not np.allclose(loose, bent)
