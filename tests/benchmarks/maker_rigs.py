@@ -253,7 +253,10 @@ def main():
     registered_extension()
     wanted = [tuple(pair.split(":")) for pair in options.only.split(",")] if options.only else pairs()
     for names in wanted:
-        line, said = row(options.data, names, options)
+        try:
+            line, said = row(options.data, names, options)
+        except RuntimeError as refused:  # what a button says where no bones belong together
+            line, said = " -> ".join(Path(name).stem for name in names), str(refused).strip().splitlines()
         print("ROW", line, *said, sep="\n    " if said else " ", flush=True)
 
 

@@ -18,7 +18,7 @@ from ..rig.fitted_rig import FittedRig
 from ..rig.joint_placement import place_joints, standing
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import carried, row_shares, row_sums
-from .mirrored_bones import mirrored_bones
+from .mirrored_bones import evened_rotations, mirrored_bones
 from .segments import Segments
 from .tree_alignment import aligned
 
@@ -63,7 +63,7 @@ class BonePairing:
     sources, targets : (k,) array of int
         Numbers of the bones in the source's and in the target's rig, in the target's order.
     scores : (k,) array of float
-        How well they agree, 0 to 1; several sources of one target share it in this proportion.
+        How well they agree, 0 to 1.
     rotations : (k, 3, 3) array of float
         How the target's surface around the bone is turned against the source's, both at rest.
     places : (k, 3) array of float
@@ -165,7 +165,8 @@ def pair_bones(
     worth[[pair in given for pair in zip(sources.tolist(), targets.tolist(), strict=True)]] = 1.0
     # Where tails point is left to whoever made the rig: bones that move something turn as their surface does.
     seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
-    rotations = _swung(seen, sources, targets, rig.skeleton, skeleton)
+    evened = evened_rotations(seen[sources], (sources, targets), trees, mirrors, upright)
+    rotations = _swung(evened, sources, targets, rig.skeleton, skeleton)
     return BonePairing(sources, targets, worth, rotations, placed.heads[sources], upright)
 
 
@@ -367,11 +368,11 @@ def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None) -> Flo
 
 
 def _swung(rotations: Floats, sources: Ints, targets: Ints, source_bones: Skeleton, bones: Skeleton) -> Floats:
-    """Rotations (k, 3, 3) of the pairs: about the bones as the surface is turned, along them as the joints lie.
+    """Swing rotations (k, 3, 3) of the pairs: about the bones as the surface is turned, along them as the joints lie.
 
     Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.
     """
-    turned = rotations[sources].copy()
+    turned = rotations.copy()
     parts = Segments.of(sources, targets, source_bones, bones)
     for part in range(len(parts)):
         below = parts.below(part)

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bones of a rig that are mirror images of each other: left and right, told by the joints."""
+"""Bones of a rig that are mirror images of each other, left and right, told by the joints; and what is so of both."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...geometry.procrustes import nearest_rotations
 from ...runtime.arrays import Floats, Ints
 from ..rig.skeleton import Skeleton
 
 _NEAR = 0.03
 """How far a joint may be from the mirror image of its partner, in units of the rig's largest extent."""
+
+_SURE = 1e-4
+"""Squared angle below which a rotation is as good as none: 0.6 degrees."""
 
 _MOST = 0.4
 """Part of the bones that must have a partner for a rig to be taken for a symmetric one: of an avatar whose fingers are
@@ -45,6 +49,55 @@ def mirrored_bones(tree: Skeleton) -> Ints:
         if pairs.any() and (found >= 0).sum() > max(_MOST * len(tree), (best >= 0).sum()):
             best = found
     return best
+
+
+def evened_rotations(
+    rotations: Floats,
+    pairs: tuple[Ints, Ints],
+    trees: tuple[Skeleton, Skeleton],
+    mirrors: tuple[Ints, Ints],
+    whole: Floats,
+) -> Floats:
+    """Make rotations of pairs of bones mirror images of those of the same pairs on the other side.
+
+    The map of a foot may be turned halfway round, and hardly ever that of the other as well.  So each side counts by
+    the inverse square of how far it is turned against the body as a whole.
+
+    Parameters
+    ----------
+    rotations : (k, 3, 3) array of float
+        How the target's surface around the bones is turned against the source's.
+    pairs : pair of (k,) arrays of int
+        Bones of the source and of the target.
+    trees : pair of Skeleton
+        Their rigs at rest.
+    mirrors : pair of arrays of int
+        What is on the other side of each bone, in either rig: see `mirrored_bones`.
+    whole : (3, 3) array of float
+        How the body as a whole is turned.
+
+    Returns
+    -------
+    (k, 3, 3) array of float
+        Those of pairs that have one on the other side, in two symmetric rigs, are images of each other.
+    """
+    rows = {(int(a), int(b)): row for row, (a, b) in enumerate(zip(*pairs, strict=True))}
+    images = np.array([rows.get((mirrors[0][a], mirrors[1][b]), -1) for a, b in rows], np.int64)
+    known = np.flatnonzero(images >= 0)
+    flips = [_flip(tree, mirror) for tree, mirror in zip(trees, mirrors, strict=True)]
+    both = np.stack([rotations[known], flips[1] @ rotations[images[known]] @ flips[0]])
+    away = 3 - np.einsum("skij,ij->sk", both, whole) + _SURE
+    result = rotations.copy()
+    result[known] = nearest_rotations((both / away[:, :, None, None]).sum(axis=0))
+    return result
+
+
+def _flip(tree: Skeleton, mirror: Ints) -> Floats:
+    """Find the reflection (3, 3) that takes bones to those on the other side."""
+    known = mirror >= 0
+    between = tree.heads[known] - tree.heads[mirror[known]]
+    normal = np.linalg.svd(between, full_matrices=False)[2][0] if known.any() else np.zeros(3)
+    return np.eye(3) - 2 * np.outer(normal, normal)
 
 
 def _images(places: Floats, normal: Floats, reach: float) -> Ints:

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from ...geometry.procrustes import nearest_rotations
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, at_once
 from ..rig.skeleton import Skeleton
 from .bone_pairing import BonePairing
+from .chain_fit import fitted_chains
 from .contacts import contacts_of, grounded_lifts, held_shifts
 from .hand_contacts import BodyLine, hand_shifts
 from .limbs import Limb, limbs_of
@@ -100,8 +100,9 @@ def transfer_motion_steps(
     If the source's bone turns by :math:`D` from rest, the target's surface is turned by :math:`M` against the
     source's around it, both at rest, and the target as a whole by :math:`G`, then the target's bone turns by
     :math:`G D M^T`: its surface then lies as the source's does, turned by :math:`G`, whatever the rest poses and the
-    axes of the bones are.  Bones without a partner go with what they hang on.  The way of the topmost bones is scaled
-    by the lengths of the legs.
+    axes of the bones are.  Bones that do together what other bones of the source do are turned so that what they carry
+    lies where the source has it (`fitted_chains`).  Bones without a partner go with what they hang on.  The way of the
+    topmost bones is scaled by the lengths of the legs.
 
     Parameters
     ----------
@@ -179,10 +180,7 @@ class _Body:
         self.moved = np.zeros(len(target), bool)
         self.moved[pairing.targets] = True
         # Of each segment the bones that hang on no other of it.
-        self.tops = [
-            [int(bone) for bone in bones if not set(target.above(bone)) & set(bones.tolist())]
-            for bones in self.segments.targets
-        ]
+        self.tops = [self.segments.tops(part, target) for part in range(len(self.segments))]
         self.placed, self.rooted = np.zeros((2, len(target)), bool)
         self._holders = target.parents.copy()
         for part, above in enumerate(self.segments.parents):
@@ -192,7 +190,9 @@ class _Body:
                 self._holders[self.tops[part]] = self.segments.targets[above][-1] if above >= 0 else -1
         self._order = self._in_order()
         self.limbs = limbs_of(self.segments, self.source, target, ups)
-        self._rotations = posed_rotations(pairing, self.segments, self.limbs, (self.source, target), ups[1])
+        trees = self.source, target
+        rests = posed_rotations(pairing, self.segments, self.limbs, trees, ups[1])
+        self._chains = fitted_chains(pairing, rests, self.segments, trees, self._holders, arms=_arms(self.limbs))
         self.scale = self._scale()
         self._rise = 0.0
         # In the pose in which the source rests the target's feet are to be as high as they are in its own.
@@ -210,18 +210,9 @@ class _Body:
 
     def turns(self, source_turns: Floats) -> Floats:
         """How the target's bones with partners turn, (f, b, 3, 3); the others are left at rest."""
-        pairing = self.pairing
-        turned = pairing.upright @ source_turns[:, pairing.sources] @ np.swapaxes(self._rotations, -1, -2)
         result = np.tile(np.eye(3), (len(source_turns), len(self.target), 1, 1))
-        order = np.argsort(pairing.targets, kind="stable")
-        bones, starts, counts = np.unique(pairing.targets[order], return_index=True, return_counts=True)
-        result[:, bones] = turned[:, order[starts]]
-        for bone, start, count in zip(bones, starts, counts, strict=True):
-            if count > 1:
-                rows = order[start : start + count]
-                shares = np.maximum(pairing.scores[rows], 1e-3)
-                blended = np.einsum("k,fkij->fij", shares / shares.sum(), turned[:, rows])
-                result[:, bone] = nearest_rotations(blended)
+        for chain in self._chains:
+            result[:, chain.bones] = chain.turns(self.pairing.upright @ source_turns)
         return result
 
     def _scale(self) -> float:

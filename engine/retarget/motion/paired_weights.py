@@ -16,10 +16,6 @@ from .segments import Segments
 _WIDTH = 1.0
 """Over what part of the shorter of two bones weights go over from one to the other at the joint between them."""
 
-_ELSEWHERE = 0.25
-"""How far apart the same joint of two chains may be, in units of the shorter bone there: further ones cut the chains in
-other places."""
-
 
 def paired_weights(
     weights: csr_array,
@@ -69,7 +65,7 @@ def paired_weights(
     owners = _owners(segments, source_bones)
     parts: list[tuple[Ints, Ints, Floats]] = []
     columns = weights.tocsc()
-    for members, chain in _chains(segments, pairing, bones):
+    for members, chain in segments.chains(pairing.sources, pairing.places, bones):
         own = np.flatnonzero(np.isin(owners, members))
         moved = np.asarray(columns[:, own].sum(axis=1)).ravel()
         rows = np.flatnonzero(moved > 0)
@@ -84,28 +80,6 @@ def paired_weights(
         factors = np.divide(row_sums(weights), totals, out=np.zeros_like(totals), where=totals > 0)
         handed.data *= np.repeat(factors, np.diff(handed.indptr))
     return handed
-
-
-def _chains(segments: Segments, pairing: BonePairing, bones: Skeleton) -> list[tuple[list[int], Ints]]:
-    """Put segments in a row together that are cut in other places in the target: their numbers, and the target's bones.
-
-    Three bones of a spine may each stand for one or two of five, whose joints are not those of the three.
-    """
-    joined = np.arange(len(segments))
-    for part, above in enumerate(segments.parents):
-        if above < 0 or len(segments.below(int(above))) != 1 or segments.single[[part, above]].all():
-            continue
-        first, last = segments.targets[part][0], segments.targets[above][-1]
-        row = segments.rows[part][pairing.sources[segments.rows[part]] == segments.sources[part][0]][0]
-        lengths = [np.linalg.norm(bones.tails[bone] - bones.heads[bone]) for bone in (first, last)]
-        if np.linalg.norm(pairing.places[row] - bones.heads[first]) > _ELSEWHERE * min(lengths):
-            joined[joined == joined[part]] = joined[above]
-    chains = []
-    for number in np.unique(joined):
-        parts = np.flatnonzero(joined == number).tolist()
-        members = np.concatenate([segments.targets[part] for part in parts])
-        chains.append((parts, bones.order[np.isin(bones.order, members)]))
-    return chains
 
 
 def _owners(segments: Segments, tree: Skeleton) -> Ints:

@@ -3,14 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...mesh.connectivity.components import joined_components
-from ...runtime.arrays import Bools, Ints
+from ...runtime.arrays import Bools, Floats, Ints
 from ..rig.skeleton import Skeleton
 from .posed_motion import Motion
+
+_ELSEWHERE = 0.25
+"""How far apart the same joint of two chains may be, in units of the shorter bone there: further ones cut the chains in
+other places."""
 
 _FIXED = 0.01
 """How far a joint may move against a bone that holds it, in units of the rig's extent."""
@@ -55,7 +60,7 @@ class Segments:
         above = [_above(tree, parts) for tree, parts in zip((source_bones, bones), members, strict=True)]
         parents, truly = above[1].copy(), np.ones(len(rows), bool)
         for part, wished in enumerate(above[0]):
-            if wished >= 0 and wished not in _chain(above[1], part) and part not in _chain(parents, int(wished)):
+            if wished >= 0 and wished not in ways_up(above[1], part) and part not in ways_up(parents, int(wished)):
                 parents[part], truly[part] = wished, False
         return cls(rows, members[0], members[1], parents, truly)
 
@@ -76,7 +81,49 @@ class Segments:
 
     def above(self, part: int) -> list[int]:
         """Segments that one hangs on, the nearest first."""
-        return _chain(self.parents, part)
+        return ways_up(self.parents, part)
+
+    def tops(self, part: int, bones: Skeleton) -> list[int]:
+        """List the target's bones of a segment that hang on no other of it."""
+        return [int(bone) for bone in self.targets[part] if not set(bones.above(int(bone))) & set(self.targets[part])]
+
+    def chains(
+        self, sources: Ints, places: Floats, bones: Skeleton, jointed: Collection[int] = ()
+    ) -> list[tuple[list[int], Ints]]:
+        """Put segments in a row together that are cut in other places in the target.
+
+        Three bones of a spine may each stand for one or two of five, whose joints are not those of the three.
+
+        Parameters
+        ----------
+        sources : (k,) array of int
+            Bones of the source in the pairs.
+        places : (k, 3) array of float
+            Where their heads lie in the target.
+        bones : Skeleton
+            The target's bones.
+        jointed : collection of int
+            Segments that begin at the same joint in both rigs wherever it lies, such as at an elbow.
+
+        Returns
+        -------
+        list of (list of int, (c,) array of int)
+            Numbers of the segments in each chain, and the target's bones in them, parents before children.
+        """
+        joined = np.arange(len(self))
+        for part, above in enumerate(self.parents):
+            if above < 0 or part in jointed or len(self.below(int(above))) != 1 or self.single[[part, above]].all():
+                continue
+            first, last = self.targets[part][0], self.targets[above][-1]
+            row = self.rows[part][sources[self.rows[part]] == self.sources[part][0]][0]
+            lengths = [np.linalg.norm(bones.tails[bone] - bones.heads[bone]) for bone in (first, last)]
+            if np.linalg.norm(places[row] - bones.heads[first]) > _ELSEWHERE * min(lengths):
+                joined[joined == joined[part]] = joined[above]
+        chains = []
+        for number in np.unique(joined):
+            parts = np.flatnonzero(joined == number).tolist()
+            chains.append((parts, _in_order(bones, np.concatenate([self.targets[part] for part in parts]))))
+        return chains
 
     def held_in(self, motion: Motion) -> Segments:
         """Find what holds segments that hang on nothing in either rig, such as feet that a solver put at the legs.
@@ -145,13 +192,13 @@ def _above(tree: Skeleton, parts: tuple[Ints, ...]) -> Ints:
 def _without_loops(parents: Ints) -> Ints:
     """Cut parents that lead back to where one came from: parts may cross one another."""
     for part in range(len(parents)):
-        if part in _chain(parents, part):
+        if part in ways_up(parents, part):
             parents[part] = -1
     return parents
 
 
-def _chain(parents: Ints, part: int) -> list[int]:
-    """Parts above one, until the top or until they repeat."""
+def ways_up(parents: Ints, part: int) -> list[int]:
+    """All that one hangs on, the nearest first, until the top or until they repeat."""
     found: list[int] = []
     above = int(parents[part])
     while above >= 0 and above not in found:

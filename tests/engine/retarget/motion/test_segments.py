@@ -72,3 +72,23 @@ def test_hips_that_move_above_a_root_have_a_place_of_their_own():
 def test_without_pairs_there_are_none():
     nothing = np.zeros(0, np.int64)
     assert len(Segments.of(nothing, nothing, tree([-1]), tree([-1]))) == 0
+
+
+def test_a_chain_that_is_cut_in_other_places_is_one():
+    def column(joints):
+        points = np.array(joints, float)[:, None] * [0, 0, 1]
+        return Skeleton(np.arange(-1, len(joints) - 2), points[:-1], points[1:])
+
+    sources, targets = np.array([0, 1, 2, 3]), np.array([0, 1, 1, 2])
+    for joints, expected in (([0, 1, 3, 4], [[0], [1], [2]]), ([0, 1.5, 3, 4], [[0, 1], [2]])):
+        source, target = column([0, 1, 2, 3, 4]), column(joints)
+        segments = Segments.of(sources, targets, source, target)
+        chains = segments.chains(sources, source.heads[sources], target)
+        assert [parts for parts, _ in chains] == expected
+        assert [bone for _, bones in chains for bone in bones.tolist()] == [0, 1, 2]
+
+
+def test_bones_of_a_segment_that_hang_on_no_other_of_it():
+    sources, targets = np.array([0, 0, 0]), np.array([1, 2, 3])
+    segments = Segments.of(sources, targets, tree([-1]), tree([-1, 0, 1, 0]))
+    assert segments.tops(0, tree([-1, 0, 1, 0])) == [1, 3]
