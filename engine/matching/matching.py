@@ -191,7 +191,7 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
         return result is not known and shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
 
     if not is_clear():
-        agreed = agreed_part_steps(result, x, y, task, of_source=of_source, is_likely=overlap.is_likely)
+        agreed = agreed_part_steps(result, x, y, task, of_source=of_source)
         result, agrees = yield from within(agreed, _BEGUN, _AGREED)
         is_sure = is_sure or agrees
     if not is_clear() and overlap.is_likely:

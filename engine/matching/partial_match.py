@@ -83,7 +83,7 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
 
 
 def agreed_part_steps(
-    known: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool, is_likely: bool
+    known: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool
 ) -> Steps[tuple[MatchResult, bool]]:
     """Match with what of one surface the other shows, by a search that does not need what is known of that already.
 
@@ -97,9 +97,6 @@ def agreed_part_steps(
         What is wanted.
     of_source : bool
         Which surface the other one shows a part of: `x`, or else `y`.
-    is_likely : bool
-        Whether the given match is likely by itself: that two searches end alike says nothing of one that is not, as
-        the second begins there, too.
 
     Returns
     -------
@@ -114,7 +111,7 @@ def agreed_part_steps(
     searching = covered_parts_steps(*ends, _needed(known, CREDIBLE, of_source=of_source))
     pieces = yield from within(searching, 0.0, _FOUND, "Looking for missing parts")
     task.clock.lap("missing parts")
-    agrees = is_likely and bool(pieces) and not pieces[0].is_new
+    agrees = bool(pieces) and not pieces[0].is_new
     task = replace(task, begun=known.source_to_target) if agrees else task
     found = [(piece, of_source) for piece in pieces[: 1 if agrees else _MOST]]
     result = yield from within(_best_piece_steps(known, x, y, task, found, least=CREDIBLE), _FOUND, 1.0)
