@@ -146,7 +146,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     """Match surfaces of which much may have been cut off: what they share first, and all of them if that is unclear."""
     overlap = yield from within(overlap_match_steps(x, y, task), 0.0, _OVERLAP)
     cut = longest_border(x) > _CUT, longest_border(y) > _CUT
-    if overlap is not None and min(overlap.shares) < _SHARED and (overlap.is_likely or not all(cut)):
+    if overlap is not None and overlap.is_likely and min(overlap.shares) < _SHARED:
         if all(cut):
             return overlap.result
         return (yield from within(_part_steps(overlap, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))
@@ -170,20 +170,19 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
 def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
-    That begins with the map of the overlap if it is likely.  Where that leads is trusted if it is nearly certain, or as
-    much alike as one body is in two poses.  Else another search looks for the piece; it is certain where both lead to
-    the same, and where they do not, the piece of a likely overlap is matched anew as well.  If some of the part has no
-    partner then, or the two are not even like two whole bodies, all of the whole surface is tried as well.  So it is if
-    most of that is shared: a body whose faces are missing here and there is no part.
+    That begins with the map of the overlap.  Where that leads is trusted if it is nearly certain, or as much alike as
+    one body is in two poses.  Else another search looks for the piece; it is certain where both lead to the same, and
+    where they do not, the piece of the overlap is matched anew as well.  If some of the part has no partner then, or
+    the two are not even like two whole bodies, all of the whole surface is tried as well.  So it is if most of that is
+    shared: a body whose faces are missing here and there is no part.
     """
     known, is_sure = overlap.result, overlap.credibility >= _SURE
     whole, shown = (x, known.dense.source_to_target) if of_source else (y, known.dense.target_to_source)
     piece = shown.has_partner[whole.vertices]
-    result, least = known, CREDIBLE if is_sure else ALL_ALIKE
-    if overlap.is_likely:
-        begun = replace(task, begun=known.source_to_target)
-        steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source, least=least)
-        result = yield from within(steps, 0.0, _BEGUN)
+    least = CREDIBLE if is_sure else ALL_ALIKE
+    begun = replace(task, begun=known.source_to_target)
+    steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source, least=least)
+    result = yield from within(steps, 0.0, _BEGUN)
 
     def is_clear() -> bool:
         """Say whether all of the part is so much like a piece that nothing else is worth trying."""
@@ -194,21 +193,18 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
         agreed = agreed_part_steps(result, x, y, task, of_source=of_source)
         result, agrees = yield from within(agreed, _BEGUN, _AGREED)
         is_sure = is_sure or agrees
-    if not is_clear() and overlap.is_likely:
+    if not is_clear():
         steps = piece_matched_steps(result, x, y, task, piece, of_source=of_source)
         result = yield from within(steps, _AGREED, _CLOSER)
     if is_clear() and min(result.dense.quality.coverage, result.dense.quality.source_coverage) < _SMALL_PART:
         return result
     # All of both wins if that is more credible, so it is given up as soon as it cannot be.
     found = result.source_to_target if is_clear() else None
-    least = least_likeness(_worth(overlap)) if result is known else part_credibility(result, of_source=of_source)
-    task = replace(task, begun=found, least=least)
+    task = replace(task, begun=found, least=part_credibility(result, of_source=of_source))
     try:
         other, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _CLOSER, 1.0)
     except MatchError:
         return result
-    if result is known:
-        return _better(other, overlap)
     return other if is_better_part(other, result, CREDIBLE, of_source=of_source) else result
 
 
