@@ -109,8 +109,10 @@ def are_distinct(first: Floats, second: Floats, areas: Floats) -> bool:
     first, second : (n, 3) array of float
         Where they take the vertices of the source, in units of the square root of the target's area.
     areas : (n,) array of float
-        Areas of these vertices, in any unit.
+        Areas of these vertices, in any unit; zero where it says nothing that they are taken elsewhere.
     """
+    if not areas.any():
+        return False
     apart = np.linalg.norm(first - second, axis=1)
     mean, elsewhere = np.average(np.stack([apart, apart > _ELSEWHERE]), axis=1, weights=areas)
     return bool(mean > _DISTINCT or elsewhere > _LIMB)

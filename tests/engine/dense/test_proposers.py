@@ -24,6 +24,8 @@ def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_lit
     assert are_distinct(places, places + limb, areas)
     assert not are_distinct(places, places + limb * (np.arange(400) < 4)[:, None], areas)
     assert are_distinct(places, places + 4 * offset, areas)
+    # Where neither finds a partner anywhere, nothing tells them apart.
+    assert not are_distinct(places, places + limb, np.zeros_like(areas))
 
 
 @pytest.mark.parametrize(
