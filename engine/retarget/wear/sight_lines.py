@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far places lie behind a surface, seen from many sides."""
+"""Depths of places behind a surface, seen from many sides."""
 
 from __future__ import annotations
 
