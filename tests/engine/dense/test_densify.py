@@ -16,6 +16,7 @@ from engine import (
     densify_steps,
     match,
     match_steps,
+    use_processes,
 )
 from engine.dense.missing_parts import round_trips
 from engine.mesh.closest_points import ClosestPoints
@@ -222,6 +223,15 @@ def test_a_coarse_stand_in_gives_nearly_the_same_map(result, bodies, monkeypatch
     assert np.isfinite(other.target_points.positions).all()
 
 
+@pytest.fixture
+def alone():
+    """No other process, which would not see what is put in the place of functions here."""
+    use_processes(1)
+    yield
+    use_processes()
+
+
+@pytest.mark.usefixtures("alone")
 def test_full_resolution_starts_from_the_strain_that_the_stand_ins_led_to(bodies, monkeypatch):
     strained, registered = [], []
     own, steps = ElasticSurface.strained, fine_registration.register_steps
