@@ -21,7 +21,7 @@ from ..runtime.arrays import Floats
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, part_of, within
 from ..shapes.landmarks import Landmarks
-from .credibility import EVEN, LITTLE_RISE, MUCH_ALIKE, RISE, is_less_alike, may_reach
+from .credibility import EVEN, LITTLE_RISE, RISE, may_reach
 from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
 from .limb_sides import exchanged_limbs, repaired_start_steps
@@ -37,10 +37,8 @@ _DISTINCT = 0.07
 _ELSEWHERE, _LIMB = 0.15, 0.02
 """Or they are different maps if they take so large a part of the source so far, in sqrt(area), from each other."""
 
-_LIKE, _LIKE_IF_ALIKE = 0.04, 0.1
-"""Mean distance, in sqrt(area), up to which a rough map would lead to where another one already has; between surfaces
-that are `MUCH_ALIKE`, where all roughness is that of the map.  Of 21 random pairs all rough maps that were 0.04 to 0.08
-from another one led to within 0.03 of it (tried once); what is turned round is 0.2 from it or more."""
+_LIKE = 0.04
+"""Mean distance, in sqrt(area), up to which a rough map would lead to where another one already has."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,15 +138,14 @@ def _matchings_steps(contest: Contest, candidates: list[Candidate]) -> Steps[lis
     best, follow, landmarks = candidates[0].hypothesis, contest.follow, contest.landmarks
     if not best.is_doubtful:
         return candidates
-    like = _LIKE if is_less_alike(candidates[0].likeness, MUCH_ALIKE) else _LIKE_IF_ALIKE
     rough = yield from within(unrefined_hypotheses_steps(best.domains), 0.0, 0.25)
     hypotheses = [h for h in rough if landmarks is None or agrees(follow.x, follow.y, landmarks, h)]
     taken = [candidate.registration.positions for candidate in candidates]
     starts = [follow.start(hypothesis.images) for hypothesis in hypotheses]
-    new = [all(follow.apart(start, positions) > like for positions in taken) for start in starts]
+    new = [all(follow.apart(start, positions) > _LIKE for positions in taken) for start in starts]
     followed = yield from within(follow.all_steps(list(compress(hypotheses, new))), 0.25, 1.0)
     for start, candidate in zip(compress(starts, new), followed, strict=True):
-        if all(follow.apart(start, positions) > like for positions in taken):
+        if all(follow.apart(start, positions) > _LIKE for positions in taken):
             candidates = [*candidates, candidate]
             taken += [start, candidate.registration.positions]
     return sorted(candidates, key=lambda candidate: candidate.score)

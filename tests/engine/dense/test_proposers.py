@@ -91,38 +91,6 @@ def test_at_last_only_rough_maps_may_gain(likeness, is_rough, given_up):
         contest_of(30.0).check_last([candidate])
 
 
-@pytest.mark.parametrize(
-    ("likeness", "apart", "followed"),
-    [(25.0, 0.06, False), (25.0, 0.2, True), (15.0, 0.06, True), (15.0, 0.03, False)],
-    ids=["alike and near", "alike and far", "unlike and near", "unlike and very near"],
-)
-def test_a_rough_map_near_a_candidate_is_followed_only_between_unlike_bodies(likeness, apart, followed, monkeypatch):
-    monkeypatch.setattr(proposers, "unrefined_hypotheses_steps", lambda _: returned([SimpleNamespace(images=apart)]))
-    candidate = placed_at(0.0, likeness)
-
-    def all_steps(hypotheses):
-        return returned([placed_at(hypothesis.images, likeness) for hypothesis in hypotheses])
-
-    follow = SimpleNamespace(
-        start=lambda images: images, apart=lambda first, second: abs(first - second), all_steps=all_steps
-    )
-    found = run(proposers.PROPOSERS[0].steps(Contest(follow), [candidate]))
-    assert [each.registration.positions for each in found] == ([0.0, apart] if followed else [0.0])
-
-
-def placed_at(place, likeness):
-    hypothesis = SimpleNamespace(is_doubtful=True, domains=())
-    return SimpleNamespace(
-        hypothesis=hypothesis, registration=SimpleNamespace(positions=place), likeness=likeness, score=0.0
-    )
-
-
-def returned(value):
-    """Steps that take none."""
-    return value
-    yield
-
-
 def contest_of(least, *, are_closed=True):
     return Contest(SimpleNamespace(standing=0.0, are_closed=are_closed), selection=Selection(least=least))
 
