@@ -47,6 +47,7 @@ from .retarget.wear.handed_weights import handed_weights
 from .retarget.wear.hanging_cloth import hanging_triangles
 from .retarget.wear.item_bones import bones_of_items, moved_with_items
 from .retarget.wear.key_following import follow_keys_steps
+from .retarget.wear.pose_lifting import lift_for_poses_steps
 from .retarget.wear.pose_mending import MendedWeights, WeightedItem, mend_weights_steps
 from .retarget.wear.wearing import wear_steps
 from .retarget.wear.worn_item import FittedItem, WornItem
@@ -152,6 +153,7 @@ __all__ = [
     "is_posed",
     "kept_in_place",
     "length_ratio",
+    "lift_for_poses_steps",
     "local_transforms",
     "match",
     "match_steps",

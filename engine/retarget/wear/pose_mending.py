@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
@@ -21,13 +21,7 @@ from ...runtime.worker import call_helpers
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 from .contact import Surface
-
-_ANGLE = np.radians(50.0)
-"""How far each joint is bent, about two axes and both ways."""
-
-_LARGE_PART = 0.02
-"""Part of the body's area that a bone and what hangs on it has to move to be tried: fingers and toes are not, which
-shoes and gloves hold."""
+from .joint_bends import joint_bends
 
 _PARTLY = 0.02
 """Part of a vertex that a bone and what hangs on it has to move for the vertex to be looked at, and that it has not."""
@@ -68,11 +62,29 @@ class WeightedItem:
         Its triangles.
     weights : (n, b) csr_array of float
         How much each bone moves each vertex; rows that are empty are left so.
+    pieces : (n,) array of int
+        The rigid piece that each vertex belongs to, -1 where it bends; all of it does if not given.
+    left : (n,) array of bool
+        Which vertices stay where they are; none if not given.
     """
 
     positions: Floats
     triangles: Ints
     weights: csr_array
+    pieces: Ints = field(default_factory=lambda: np.empty(0, np.int64))
+    left: Bools = field(default_factory=lambda: np.empty(0, bool))
+
+    def __post_init__(self) -> None:
+        n = len(self.positions)
+        if not len(self.pieces):
+            object.__setattr__(self, "pieces", np.full(n, -1))
+        if not len(self.left):
+            object.__setattr__(self, "left", np.zeros(n, bool))
+
+    @property
+    def still(self) -> Bools:
+        """Which vertices are not moved one by one: rigid pieces, and what stays, (n,)."""
+        return self.left | (self.pieces >= 0)
 
     def __repr__(self) -> str:
         return f"<WeightedItem: {len(self.positions)} vertices>"
@@ -216,25 +228,21 @@ def _deepest_of_steps(common: tuple[_PosedBody, _Ways], bones: Ints) -> Steps[li
     (posed, ways), skeleton = common, common[0].skeleton
     body = posed.body
     deepest = [np.zeros((len(weights), len(chosen))) for _, chosen, weights in ways]
-    for number, bone in enumerate(bones):
-        yield Progress(number / len(bones), "Trying poses")
-        hanging = skeleton.hanging[bone]
-        on_skin = row_sums(posed.weights[:, hanging])
-        if on_skin @ body.vertex_areas < _LARGE_PART * body.area:
-            continue
-        parts = [[row_sums(weights[:, hanging]) for weights in way[2]] for way in ways]
+    bends = list(joint_bends(body, posed.weights, skeleton, bones))
+    for number, bend in enumerate(bends):
+        yield Progress(number / len(bends), "Trying poses")
+        parts = [[row_sums(weights[:, bend.hanging]) for weights in way[2]] for way in ways]
         looked = [
             np.flatnonzero(chosen & np.any([(on > _PARTLY) & (on < 1 - _PARTLY) for on in part], axis=0))
             for (_, chosen, _), part in zip(ways, parts, strict=True)
         ]
         if not any(len(places) for places in looked):
             continue
-        head = skeleton.heads[bone]
-        for rotation in _bends(skeleton.tails[bone] - head):
-            surface = posed.skin.moved(_bent(body.vertices, on_skin, head, rotation))
+        for rotation in bend.rotations:
+            surface = posed.skin.moved(bend.bent(body.vertices, bend.on_skin, rotation))
             for (one, _, _), part, places, depths in zip(ways, parts, looked, deepest, strict=True):
                 for way, on in enumerate(part if len(places) else ()):
-                    points = _bent(one.item.positions[places], on[places], head, rotation)
+                    points = bend.bent(one.item.positions[places], on[places], rotation)
                     depth = -surface.clearance(points, one.starts[places]).distances
                     depths[way, places] = np.maximum(depths[way, places], depth)
     return deepest
@@ -242,22 +250,6 @@ def _deepest_of_steps(common: tuple[_PosedBody, _Ways], bones: Ints) -> Steps[li
 
 def _column_sums(weights: csr_array) -> Floats:
     return np.asarray(weights.sum(axis=0)).ravel()
-
-
-def _bends(along: Floats) -> list[Floats]:
-    """Rotations about two axes across a bone, both ways."""
-    along = along / max(float(np.linalg.norm(along)), 1e-300)
-    first = np.cross(along, np.eye(3)[int(np.abs(along).argmin())])
-    first /= max(float(np.linalg.norm(first)), 1e-300)
-    axes = (first, -first, np.cross(along, first), np.cross(first, along))
-    skews = (np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) for x, y, z in axes)
-    return [np.eye(3) + np.sin(_ANGLE) * skew + (1 - np.cos(_ANGLE)) * skew @ skew for skew in skews]
-
-
-def _bent(points: Floats, share: Floats, head: Floats, rotation: Floats) -> Floats:
-    """Points (k, 3), so much of each (k,) turned about the head of a bone."""
-    turned = (points - head) @ rotation.T + head
-    return points + share[:, None] * (turned - points)
 
 
 def _spread(parts: WeldedParts, values: Floats) -> Floats:

@@ -28,14 +28,14 @@ _SMOOTHLY = 6
 places of what is below that can be seen.  Chosen by ``python -m tests.benchmarks.outfits``: with 4 smooth rounds and 2
 that move places of the item one by one, twice as many of O1's edges are folded over."""
 
-_SPREAD = 0.03
-"""How far a push spreads over the cloth, in sqrt(area of the body), if `_FREE` is one; farther the less that is.  Both
+SPREAD = 0.03
+"""How far a push spreads over the cloth, in sqrt(area of the body), if `FREE` is one; farther the less that is.  Both
 were chosen by ``python -m tests.benchmarks.outfits``: with 0.018 and 0.05 most of a shirt and of trousers is pushed."""
 
-_FIRM = 30.0
+FIRM = 30.0
 """How much a place that has to move counts against the smoothness of the push."""
 
-_FREE = 0.5
+FREE = 0.5
 """How much a place that need not move counts."""
 
 _LARGEST_STEP = 0.02
@@ -239,7 +239,7 @@ def pushed_out(
     """
     free = ~fixed
     mass = np.where(laplace.mass > 0, laplace.mass, laplace.mass.mean())
-    smooth = (_SPREAD * unit) ** 2 * laplace.stiffness + diags_array(_FREE * mass + 1e6 * mass * fixed)
+    smooth = (SPREAD * unit) ** 2 * laplace.stiffness + diags_array(FREE * mass + 1e6 * mass * fixed)
     shares = np.asarray((samples != 0).sum(axis=0)).ravel()
     sample_mass = samples @ (mass / np.maximum(shares, 1))
     tolerance = 1e-4 * unit
@@ -258,7 +258,7 @@ def pushed_out(
             break
         moves *= np.minimum(1, _LARGEST_STEP * unit / np.maximum(needed, tolerance))[:, None]
         if all_places:
-            weighted = csr_array(diags_array(_FIRM * counts) @ rows)
+            weighted = csr_array(diags_array(FIRM * counts) @ rows)
             factor = symmetric_factor(csr_array(smooth + rows.T @ weighted))
             positions = positions + factor.solve(weighted.T @ moves) * free[:, None]
         else:

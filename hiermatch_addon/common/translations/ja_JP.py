@@ -1434,8 +1434,9 @@ MESSAGES: Final[dict[str, str]] = {
         "プキーやボーンを移してから、もう一度合わせてください。"
     ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
-    "there closer to those of the skin": (
-        "相手のボディのリグの各関節を曲げてみて、肌がアイテムを突き抜けるところでは、ウェイトを肌のものに近づけます"
+    "there closer to those of the skin, and lift the item a little": (
+        "相手のボディのリグの各関節を曲げてみて、肌がアイテムを突き抜けるところでは、ウェイトを肌の"
+        "ものに近づけ、アイテムを少し浮かせます"
     ),
     "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
     "Without named items it takes the selected ones, or else all that the source's armature moves": (
@@ -1575,6 +1576,7 @@ MESSAGES: Final[dict[str, str]] = {
         '"{1}"には"{0}"の下に肌がないので、"{0}"も体の一部とみなします。'
     ),
     'Weights of {0} of "{1}" were mended for poses.': 'ポーズのために"{1}"の{0}のウェイトを直しました。',
+    '{0} of "{1}" were lifted off the skin for poses.': 'ポーズのために"{1}"の{0}を肌から浮かせました。',
     "1 item": "1個のアイテム",
     "{0} items": "{0}個のアイテム",
     "{0} more": "ほか{0}個",

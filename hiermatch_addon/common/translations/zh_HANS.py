@@ -1185,8 +1185,8 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" 的形态键驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
     ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
-    "there closer to those of the skin": (
-        "弯曲另一身体绑定的每个关节，若皮肤此时穿出物品，则使该处的权重更接近皮肤的权重"
+    "there closer to those of the skin, and lift the item a little": (
+        "弯曲另一身体绑定的每个关节，若皮肤此时穿出物品，则使该处的权重更接近皮肤的权重，并将物品略微抬起"
     ),
     "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
     "Without named items it takes the selected ones, or else all that the source's armature moves": (
@@ -1304,6 +1304,7 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"也被当作身体的一部分："{1}"在它下面没有皮肤。'
     ),
     'Weights of {0} of "{1}" were mended for poses.': '已为姿势修正"{1}"的{0}的权重。',
+    '{0} of "{1}" were lifted off the skin for poses.': '已为姿势将"{1}"的{0}从皮肤上抬起。',
     "1 item": "1件物品",
     "{0} items": "{0}件物品",
     "{0} more": "另有 {0} 个",

@@ -60,7 +60,7 @@ class WearSettings:
     colors : bool
         Whether color attributes show what was done.
     poses : bool
-        Whether weights are mended that let the body poke through in test poses.
+        Whether weights are mended, and items lifted, where the body pokes through in test poses.
     keys : bool
         Whether they get the other body's shape keys that move it below them.
     """
@@ -126,7 +126,7 @@ class WearOptions:
         "wear_poses": _props.BoolProperty(
             name="Test Poses",
             description="Bend each joint of the other body's rig, and where its skin pokes through an item then, bring "
-            "the weights there closer to those of the skin",
+            "the weights there closer to those of the skin, and lift the item a little",
             default=True,
         ),
         "wear_keys": _props.BoolProperty(

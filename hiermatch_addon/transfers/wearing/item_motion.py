@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion of fitted items with the body: their weights in its rig, and the shape keys that they follow."""
+"""Motion of fitted items with the body: their weights in its rig, room for it, and the shape keys that they follow."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from ....engine import (
     carry_weights,
     follow_keys_steps,
     handed_weights,
+    lift_for_poses_steps,
     mend_weights_steps,
     pair_bones,
     within,
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ....engine import BonePairing, FittedItem, Steps
+    from ....engine import BonePairing, FittedItem, Steps, WornItem
     from ...jobs.transfer import Passage
     from ...scene.armature_copy import NewBone
     from ..options.wear import WearSettings
@@ -67,6 +68,10 @@ class ItemMotion:
         Of each item, if there is a rig.
     mended : list of (str, int)
         At how many vertices of each item, by its name, they were mended for poses.
+    lifted : list of (str, int)
+        How many vertices of each were lifted off the skin for that.
+    fitted : list of FittedItem
+        The items, lifted.
     new_bones : list of NewBone
         Bones of the items, placed on the target.
     handed : bool
@@ -90,9 +95,10 @@ class ItemMotion:
         self._bone_names = () if rig is None else rig.names
         self._old_bones, self._item_bones, self._keys = old_bones, item_bones, keys
         self._items: Sequence[ReadItem] = ()
-        self._fitted: Sequence[FittedItem] = ()
+        self.fitted: list[FittedItem] = []
         self.weights: list[ItemWeights | None] = []
         self.mended: list[tuple[str, int]] = []
+        self.lifted: list[tuple[str, int]] = []
         self.new_bones: list[NewBone] = []
         self.handed = False
         self.followed: list[NDArray[np.float64]] = []
@@ -112,11 +118,16 @@ class ItemMotion:
             for name, count in self.mended
             if count
         )
+        said.extend(
+            f'{counted(count, "vertex")} of "{name}" were lifted off the skin for poses.'
+            for name, count in self.lifted
+            if count
+        )
         return said
 
     def steps(self, passage: Passage, items: Sequence[ReadItem], fitted: Sequence[FittedItem]) -> Steps[None]:
         """Find how all items are moved with the body: their weights and keys."""
-        self._items, self._fitted = items, fitted
+        self._items, self.fitted = items, list(fitted)
         self.weights = [None] * len(items)
         other = self._other
         if other is None and self._fits_rig and passage.rig is not None:
@@ -131,7 +142,7 @@ class ItemMotion:
     def _key_steps(self, body: TriangleMesh, keys: BodyKeys, rig: SourceRig | None) -> Steps[None]:
         """Find how the items follow the body's keys."""
         worn = []
-        for item, fitted, weights in zip(self._items, self._fitted, self.weights, strict=True):
+        for item, fitted, weights in zip(self._items, self.fitted, self.weights, strict=True):
             bones = None if rig is None or weights is None else in_columns(weights, rig.names)
             mesh = TriangleMesh(fitted.positions, item.worn.mesh.triangles)
             worn.append(replace(item.worn, mesh=mesh, bones=bones, pieces=fitted.pieces, margin=0.0))
@@ -147,19 +158,19 @@ class ItemMotion:
         )
         on_skin = csr_array(spread @ rig.weights)
         brought = () if self._item_bones is None else self._item_bones.names
-        skins = [csr_array(fitted.places @ on_skin) for fitted in self._fitted]
+        skins = [csr_array(fitted.places @ on_skin) for fitted in self.fitted]
         lost = [name for name in self._bone_names if name in self._old_bones and name not in (*rig.names, *brought)]
         pairing = self._pairing(passage, rig, lost)
         self.handed = pairing is not None
         if self._item_bones is not None:
             placed = [
                 (item.weights, item.worn.mesh.vertices, fitted)
-                for item, fitted in zip(self._items, self._fitted, strict=True)
+                for item, fitted in zip(self._items, self.fitted, strict=True)
             ]
             self.new_bones = self._item_bones.placed(placed, skins, rig, pairing)
         every = tuple(dict.fromkeys([*rig.names, *brought]))
         found = []
-        for item, fitted, carried in zip(self._items, self._fitted, skins, strict=True):
+        for item, fitted, carried in zip(self._items, self.fitted, skins, strict=True):
             if pairing is not None and passage.rig is not None and self._rig is not None:
                 columns = in_columns(item.weights, self._bone_names)
                 own = csr_array(columns @ diags_array(np.isin(self._bone_names, lost).astype(float)))
@@ -170,17 +181,38 @@ class ItemMotion:
             handed = pairing is not None
             found.append(chosen_weights(item.weights, every, spread_out, old, self._settings, handed=handed))
         if self._settings.poses:
-            weighted = [
-                WeightedItem(fitted.positions, item.worn.mesh.triangles, in_columns(weights, rig.names))
-                for item, fitted, weights in zip(self._items, self._fitted, found, strict=True)
-            ]
-            mended = yield from mend_weights_steps(
-                weighted, body=passage.pair.target, skin_weights=rig.weights, skeleton=rig.skeleton
-            )
-            for number, one in enumerate(mended):
-                found[number] = replaced(found[number], rig.names, one.weights, one.changed)
-                self.mended.append((self._items[number].name, int(one.changed.sum())))
+            yield from self._pose_steps(passage.pair.target, rig, found)
         self.weights = list(found)
+
+    def _pose_steps(self, body: TriangleMesh, rig: SourceRig, found: list[ItemWeights]) -> Steps[None]:
+        """Mend the weights that were found, and lift the items, where the skin comes through them in poses."""
+        weighted = [
+            WeightedItem(
+                fitted.positions,
+                item.worn.mesh.triangles,
+                in_columns(weights, rig.names),
+                pieces=fitted.pieces,
+                left=_left(item.worn),
+            )
+            for item, fitted, weights in zip(self._items, self.fitted, found, strict=True)
+        ]
+        on_skin, skeleton = rig.weights, rig.skeleton
+        steps = mend_weights_steps(weighted, body=body, skin_weights=on_skin, skeleton=skeleton)
+        mended = yield from within(steps, 0.0, 0.6)
+        for number, one in enumerate(mended):
+            found[number] = replaced(found[number], rig.names, one.weights, one.changed)
+            self.mended.append((self._items[number].name, int(one.changed.sum())))
+        weighted = [
+            replace(item, weights=in_columns(weights, rig.names)) for item, weights in zip(weighted, found, strict=True)
+        ]
+        lifting = lift_for_poses_steps(weighted, body=body, skin_weights=on_skin, skeleton=skeleton)
+        moves = yield from within(lifting, 0.6, 1.0)
+        for number, (fitted, move) in enumerate(zip(self.fitted, moves, strict=True)):
+            lengths = np.linalg.norm(move, axis=1)
+            self.fitted[number] = replace(
+                fitted, positions=fitted.positions + move, clearance=fitted.clearance + lengths
+            )
+            self.lifted.append((self._items[number].name, int((lengths > 0).sum())))
 
     def _pairing(self, passage: Passage, rig: SourceRig, lost: Sequence[str]) -> BonePairing | None:
         """Pair the bones of both rigs, if items have weights in bones (of names that are lost) that the other lacks."""
@@ -190,3 +222,10 @@ class ItemMotion:
             return None
         pairing = pair_bones(passage.rig, passage.pair.source, passage.pair.target, rig.skeleton, rig.weights)
         return pairing if len(pairing) else None
+
+
+def _left(worn: WornItem) -> NDArray[np.bool_]:
+    """Which vertices of an item are neither pushed nor lifted, (n,)."""
+    if worn.left is None or worn.fit == "LEAVE":
+        return np.full(worn.mesh.vertex_count, worn.fit == "LEAVE")
+    return worn.left

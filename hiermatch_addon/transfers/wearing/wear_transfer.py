@@ -171,6 +171,7 @@ class WearTransfer:
             start = 0.9
         if self._moving is not None:
             yield from within(self._moving.steps(passage, self._items, self._fitted), 0.9, 1.0)
+            self._fitted = self._moving.fitted
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the fitted items."""

@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Clothes that are lifted where the skin would come through them in a bent joint."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import block_diag, csr_array, diags_array, vstack
+from scipy.spatial import cKDTree
+
+from ...geometry.laplacian import laplace_beltrami
+from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.triangle_mesh import TriangleMesh
+from ...runtime.arrays import Bools, Floats, Ints, group_means, unit_vectors
+from ...runtime.background import can_go_beside
+from ...runtime.progress import Progress, Steps
+from ..rig.skeleton import Skeleton
+from ..weights.skin_weights import row_sums
+from .contact import Surface, surface_samples
+from .joint_bends import JointBend, joint_bends
+from .pose_mending import WeightedItem
+from .pushing import FIRM, FREE, SPREAD
+
+_ROUNDS = 4
+"""How often is looked anew what comes through."""
+
+_NEAR = 0.012
+"""Distance from the skin, in sqrt(area) of the body, up to which cloth lies on it: 16 mm on a human.  What hangs
+further away moves along the skin in a pose, and is not judged by the place below it at rest."""
+
+_ABOVE = 5e-4
+"""Least distance from the skin in a pose, in the same unit, if it is more at rest."""
+
+_SHALLOW = 0.015
+"""How deep in the skin, in the same unit, cloth is in a pose that lifting it may help; what is deeper is in a fold."""
+
+_MOST = 0.004
+"""How far, in the same unit, anything is lifted at most: 5 mm on a human, by ``python -m
+tests.benchmarks.worn_makers``, where more shows no less skin in poses: what is lifted far in one place comes through in
+others."""
+
+_ROOM = 0.8
+"""Part of the distance that a vertex would have from the skin, lifted twice as far as any is, from which on it has
+room: with less, other skin is above it, as between thighs that touch, and it stays.  Without that O1 of ``python -m
+tests.benchmarks.outfits`` shows 0.29 % of the skin instead of 0.03."""
+
+_TRIFLE = 1e-4
+"""What is less than this, in the same unit, is nothing."""
+
+_TURNED = 0.5
+"""Least cosine between the normal of the skin in a pose and as it would be turned with the cloth: else it is folded."""
+
+_PARTLY = 0.005
+"""Part of a place that a joint moves from which on, and that it does not move, for the place to be looked at."""
+
+_LAYERS, _NEIGHBOURS, _OPPOSITE, _ALIKE = 0.012, 12, -0.3, 0.3
+"""How far apart layers of cloth are at most, in the same unit, that are lifted together; how many vertices are looked
+at; the largest cosine between the normals of both sides of one item; and the least between those of the skin below."""
+
+_TOGETHER = 10.0
+"""How much layers that move apart count, beside `FREE`."""
+
+_STILL = 1e6
+"""How much what stays counts."""
+
+
+@can_go_beside
+def lift_for_poses_steps(
+    items: Sequence[WeightedItem], *, body: TriangleMesh, skin_weights: csr_array, skeleton: Skeleton
+) -> Steps[list[Floats]]:
+    """Lift clothes off the skin where it comes through them when a joint is bent.
+
+    The weights of the skin are not linear over it, those of a triangle of cloth are: in a bent joint, the larger the
+    triangle, the further the skin below its middle comes through.  So places of the cloth that lie on the skin at
+    rest are looked at in poses, and lifted, smoothly, as far as they are short of it.  Layers that lie on each other
+    are lifted together, rigid pieces with what is around them.
+
+    Parameters
+    ----------
+    items : sequence of WeightedItem
+        The items.
+    body : TriangleMesh
+        The body, m vertices.
+    skin_weights : (m, b) csr_array of float
+        How much each bone moves each of its vertices.
+    skeleton : Skeleton
+        The bones.
+
+    Yields
+    ------
+    Progress
+        After each round.
+
+    Returns
+    -------
+    list of (n, 3) array of float
+        How far the vertices of each item are moved.
+    """
+    lifts = [np.zeros(item.positions.shape) for item in items]
+    chosen = [number for number, item in enumerate(items) if len(item.triangles)]
+    bends = list(joint_bends(body, skin_weights, skeleton, range(len(skeleton))))
+    if not chosen or not bends:
+        return lifts
+    unit = float(np.sqrt(body.area))
+    skin = Surface(body)
+    cloth = _Cloth([items[number] for number in chosen], skin, unit)
+    lying = _Lying.of(cloth, skin, unit)
+    for number in range(_ROUNDS):
+        yield Progress(number / _ROUNDS, "Trying poses")
+        lacking = lying.lacking(cloth, bends, unit)
+        if not lacking.any():
+            break
+        cloth.lift(lying.shares, lacking)
+    yield Progress(1.0, "Trying poses")
+    for number, lift in zip(chosen, cloth.lifts(), strict=True):
+        lifts[number] = lift
+    return lifts
+
+
+class _Cloth:
+    """All items as one surface whose seams are closed, w vertices, and how far it is lifted by now."""
+
+    def __init__(self, items: Sequence[WeightedItem], skin: Surface, unit: float) -> None:
+        self.items, self._unit = items, unit
+        self.parts = [WeldedParts.of(TriangleMesh(item.positions, item.triangles)) for item in items]
+        meshes = [part.closed for part in self.parts]
+        self.positions = np.concatenate([mesh.vertices for mesh in meshes])
+        self.weights = csr_array(
+            vstack([part.means @ item.weights for part, item in zip(self.parts, items, strict=True)])
+        )
+        still = [item.still[part.first] for part, item in zip(self.parts, items, strict=True)]
+        found = skin.search.nearest(self.positions)
+        corners = skin.mesh.triangles[found.triangles]
+        outward = unit_vectors(np.einsum("kc,kci->ki", found.barycentric, skin.normals[corners]))
+        self.is_still = np.concatenate(still) | (row_sums(self.weights) <= 0)
+        self.is_still |= _is_squeezed(self.positions, outward, skin, unit)
+        operators = [laplace_beltrami(mesh) for mesh in meshes]
+        self.mass = np.concatenate([np.where(each.mass > 0, each.mass, each.mass.mean()) for each in operators])
+        stiffness = block_diag([each.stiffness for each in operators], format="csr")
+        self._smooth = csr_array((SPREAD * unit) ** 2 * stiffness + self._ties(meshes, outward))
+        self.moves = np.zeros_like(self.positions)
+
+    def _ties(self, meshes: Sequence[TriangleMesh], outward: Floats) -> csr_array:
+        """Return what holds layers above the same skin together, be they of different items or of one, (w, w)."""
+        owners = np.repeat(np.arange(len(meshes)), [mesh.vertex_count for mesh in meshes])
+        normals = np.concatenate([mesh.vertex_normals for mesh in meshes])
+        count = min(_NEIGHBOURS, len(owners))
+        distances, near = cKDTree(self.positions).query(self.positions, [*range(1, count + 1)])
+        one, column = np.nonzero(distances < _LAYERS * self._unit)
+        other = near[one, column]
+        apart = (owners[one] != owners[other]) | (np.einsum("ki,ki->k", normals[one], normals[other]) < _OPPOSITE)
+        apart &= np.einsum("ki,ki->k", outward[one], outward[other]) > _ALIKE
+        one, other = one[apart], other[apart]
+        partners = np.bincount(one, minlength=len(owners))[one]
+        strength = _TOGETHER * np.minimum(self.mass[one], self.mass[other]) / partners
+        rows = np.arange(len(one))
+        shape = (len(one), len(owners))
+        between = csr_array((np.ones(len(one)), (rows, one)), shape=shape)
+        between = csr_array(between - csr_array((np.ones(len(one)), (rows, other)), shape=shape))
+        return csr_array(between.T @ diags_array(strength) @ between)
+
+    def samples(self, spacing: float) -> csr_array:
+        """Shares of the vertices in places that are spread over all items, (s, w)."""
+        every = [surface_samples(part.closed, spacing)[0] for part in self.parts]
+        return csr_array(block_diag(every, format="csr"))
+
+    def lift(self, shares: csr_array, lacking: Floats) -> None:
+        """Move places (k, w) as far as is lacking (k, 3), as smoothly as that allows."""
+        spread = np.asarray((shares != 0).sum(axis=0)).ravel()
+        masses = shares @ (self.mass / np.maximum(spread, 1))
+        chosen = np.flatnonzero(lacking.any(axis=1))
+        rows = csr_array(shares[chosen])
+        weighted = csr_array(diags_array(FIRM * masses[chosen]) @ rows)
+        hold = diags_array(self.mass * (FREE + _STILL * self.is_still))
+        factor = symmetric_factor(csr_array(self._smooth + hold + rows.T @ weighted))
+        moves = self.moves + factor.solve(weighted.T @ lacking[chosen])
+        lengths = np.linalg.norm(moves, axis=1)
+        moves *= np.minimum(1, _MOST * self._unit / np.maximum(lengths, _TRIFLE * self._unit))[:, None]
+        moves[self.is_still] = 0.0
+        self.moves = moves
+
+    def lifts(self) -> list[Floats]:
+        """How far the vertices of each item are moved, rigid pieces as those of its cloth that are nearest to them."""
+        ends = np.cumsum([part.welded_count for part in self.parts])
+        found = []
+        for item, part, own in zip(self.items, self.parts, np.split(self.moves, ends[:-1]), strict=True):
+            moves = own[part.welded]
+            soft, rigid = np.flatnonzero(item.pieces < 0), np.flatnonzero(item.pieces >= 0)
+            if len(soft) and len(rigid):
+                near = soft[cKDTree(item.positions[soft]).query(item.positions[rigid])[1]]
+                pieces = item.pieces[rigid]
+                moves[rigid] = group_means(pieces, moves[near], int(pieces.max()) + 1)[pieces]
+            moves[np.linalg.norm(moves, axis=1) < _TRIFLE * self._unit] = 0.0
+            found.append(moves)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Lying:
+    """Places of cloth (k) that lie on the skin at rest.
+
+    Attributes
+    ----------
+    shares : (k, w) csr_array of float
+        Their shares of the vertices of the cloth.
+    corners : (k, 3, 3) array of float
+        The triangle of the skin below each, and `barycentric` (k, 3) where in it; `numbers` (k, 3) are its vertices.
+    normals : (k, 3) array of float
+        The normal there.
+    least : (k,) array of float
+        Their least distance from it in a pose.
+    """
+
+    shares: csr_array
+    corners: Floats
+    barycentric: Floats
+    numbers: Ints
+    normals: Floats
+    least: Floats
+
+    @classmethod
+    def of(cls, cloth: _Cloth, skin: Surface, unit: float) -> _Lying:
+        """Find the places that lie on the skin."""
+        body = skin.mesh
+        shares = cloth.samples(0.75 * float(np.sqrt(2 * body.area / max(body.triangle_count, 1))))
+        shares = csr_array(shares[np.flatnonzero(shares @ cloth.is_still < 1)])
+        points = shares @ cloth.positions
+        found = skin.search.nearest(points)
+        numbers, barycentric = body.triangles[found.triangles], found.barycentric
+        away = points - found.interpolate(body.triangles, body.vertices)
+        outward = np.einsum("kc,kci->ki", barycentric, skin.normals[numbers])
+        heights = np.linalg.norm(away, axis=1)
+        beside = ((barycentric > 0) <= skin.rim[numbers]).all(axis=1)  # beyond the rim of a hole
+        lying = (heights < _NEAR * unit) & (np.einsum("ki,ki->k", away, outward) > 0) & ~beside
+        at = np.flatnonzero(lying)
+        return cls(
+            csr_array(shares[at]),
+            body.vertices[numbers[at]],
+            barycentric[at],
+            numbers[at],
+            body.triangle_normals[found.triangles[at]],
+            np.minimum(heights[at], _ABOVE * unit),
+        )
+
+    def lacking(self, cloth: _Cloth, bends: Sequence[JointBend], unit: float) -> Floats:
+        """Find how far each place has to be moved at rest so that in no pose it is below the skin, (k, 3)."""
+        largest, moves = np.full(len(self.least), _TRIFLE * unit), np.zeros((len(self.least), 3))
+        for bend in bends:
+            on_cloth = row_sums(cloth.weights[:, bend.hanging])
+            shares, on_skin = self.shares @ on_cloth, bend.on_skin[self.numbers]
+            rows = np.flatnonzero(_is_partly(np.column_stack([shares, on_skin])))
+            if not len(rows):
+                continue
+            places = csr_array(self.shares[rows])
+            for rotation in bend.rotations:
+                skin = bend.bent(self.corners[rows], on_skin[rows], rotation)
+                points = places @ bend.bent(cloth.positions + cloth.moves, on_cloth, rotation)
+                normals = unit_vectors(np.cross(skin[:, 1] - skin[:, 0], skin[:, 2] - skin[:, 0]))
+                feet = np.einsum("kc,kci->ki", self.barycentric[rows], skin)
+                lack = self.least[rows] - np.einsum("ki,ki->k", points - feet, normals)
+                worse = np.flatnonzero((lack > largest[rows]) & (lack < _SHALLOW * unit))
+                at, share = rows[worse], shares[rows[worse]][:, None]
+                back = (1 - share) * normals[worse] + share * (normals[worse] @ rotation)
+                turned = np.einsum("ki,ki->k", unit_vectors(back), self.normals[at]) > _TURNED
+                at, worse, back = at[turned], worse[turned], back[turned]
+                largest[at], moves[at] = lack[worse], lack[worse][:, None] * back
+        return moves
+
+
+def _is_squeezed(points: Floats, outward: Floats, skin: Surface, unit: float) -> Bools:
+    """Say which points (k, 3) are in the skin, or have other skin above, by the normals of that below (k, 3), (k,)."""
+    heights = skin.clearance(points).distances
+    lifted = skin.clearance(points + 2 * _MOST * unit * outward).distances
+    return (heights <= 0) | (lifted < _ROOM * (heights + 2 * _MOST * unit))
+
+
+def _is_partly(parts: Floats) -> Bools:
+    """Say which rows of parts (k, c) are neither all nothing nor all one, (k,)."""
+    return (parts > _PARTLY).any(axis=1) & (parts < 1 - _PARTLY).any(axis=1)
