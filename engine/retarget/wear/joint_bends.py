@@ -44,9 +44,18 @@ class JointBend:
     on_skin: Floats
     rotations: Floats
 
+    def levers(self, points: Floats, share: Floats) -> Floats:
+        """Ways from the joint to points (..., 3), so much of each (...) as turns about it."""
+        return share[..., None] * (points - self.head)
+
     def bent(self, points: Floats, share: Floats, rotation: Floats) -> Floats:
         """Move points (..., 3), so much of each (...) turned about the joint."""
-        return points + share[..., None] * ((points - self.head) @ (rotation - np.eye(3)).T)
+        return points + turned(self.levers(points, share), rotation)
+
+
+def turned(levers: Floats, rotation: Floats) -> Floats:
+    """How far a rotation moves the ends of levers (..., 3)."""
+    return levers @ (rotation - np.eye(3)).T
 
 
 def joint_bends(

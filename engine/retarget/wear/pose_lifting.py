@@ -20,7 +20,7 @@ from ...runtime.progress import Progress, Steps
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 from .contact import Surface, surface_samples
-from .joint_bends import JointBend, joint_bends
+from .joint_bends import JointBend, joint_bends, turned
 from .pose_mending import WeightedItem
 from .pushing import FIRM, FREE, SPREAD
 
@@ -108,9 +108,10 @@ def lift_for_poses_steps(
     skin = Surface(body)
     cloth = _Cloth([items[number] for number in chosen], skin, unit)
     lying = _Lying.of(cloth, skin, unit)
+    looked = [(bend, lying.partly(cloth, bend)) for bend in bends]
     for number in range(_ROUNDS):
         yield Progress(number / _ROUNDS, "Trying poses")
-        lacking = lying.lacking(cloth, bends, unit)
+        lacking = lying.lacking(cloth, looked, unit)
         if not lacking.any():
             break
         cloth.lift(lying.shares, lacking)
@@ -136,7 +137,9 @@ class _Cloth:
         corners = skin.mesh.triangles[found.triangles]
         outward = unit_vectors(np.einsum("kc,kci->ki", found.barycentric, skin.normals[corners]))
         self.is_still = np.concatenate(still) | (row_sums(self.weights) <= 0)
-        self.is_still |= _is_squeezed(self.positions, outward, skin, unit)
+        away = self.positions - found.interpolate(skin.mesh.triangles, skin.mesh.vertices)
+        heights = np.linalg.norm(away, axis=1) * np.sign(np.einsum("wi,wi->w", away, outward))
+        self.is_still |= _is_squeezed(self.positions, heights, outward, skin, unit)
         operators = [laplace_beltrami(mesh) for mesh in meshes]
         self.mass = np.concatenate([np.where(each.mass > 0, each.mass, each.mass.mean()) for each in operators])
         stiffness = block_diag([each.stiffness for each in operators], format="csr")
@@ -245,38 +248,40 @@ class _Lying:
             np.minimum(heights[at], _ABOVE * unit),
         )
 
-    def lacking(self, cloth: _Cloth, bends: Sequence[JointBend], unit: float) -> Floats:
+    def partly(self, cloth: _Cloth, bend: JointBend) -> Ints:
+        """Find the places that a joint neither moves wholly, with all of the skin below, nor leaves at rest."""
+        shares = self.shares @ row_sums(cloth.weights[:, bend.hanging])
+        parts = [shares, *bend.on_skin[self.numbers.T]]
+        least, most = np.minimum.reduce(parts), np.maximum.reduce(parts)
+        return np.flatnonzero((most > _PARTLY) & (least < 1 - _PARTLY))
+
+    def lacking(self, cloth: _Cloth, looked: Sequence[tuple[JointBend, Ints]], unit: float) -> Floats:
         """Find how far each place has to be moved at rest so that in no pose it is below the skin, (k, 3)."""
         largest, moves = np.full(len(self.least), _TRIFLE * unit), np.zeros((len(self.least), 3))
-        for bend in bends:
-            on_cloth = row_sums(cloth.weights[:, bend.hanging])
-            shares, on_skin = self.shares @ on_cloth, bend.on_skin[self.numbers]
-            rows = np.flatnonzero(_is_partly(np.column_stack([shares, on_skin])))
+        now = cloth.positions + cloth.moves
+        for bend, rows in looked:
             if not len(rows):
                 continue
-            places = csr_array(self.shares[rows])
+            places, corners = csr_array(self.shares[rows]), self.corners[rows]
+            on_cloth, on_skin = row_sums(cloth.weights[:, bend.hanging]), bend.on_skin[self.numbers[rows]]
+            shares = places @ on_cloth
+            at_rest, of_cloth = places @ now, places @ bend.levers(now, on_cloth)
+            of_skin = bend.levers(corners, on_skin)
             for rotation in bend.rotations:
-                skin = bend.bent(self.corners[rows], on_skin[rows], rotation)
-                points = places @ bend.bent(cloth.positions + cloth.moves, on_cloth, rotation)
+                skin, points = corners + turned(of_skin, rotation), at_rest + turned(of_cloth, rotation)
                 normals = unit_vectors(np.cross(skin[:, 1] - skin[:, 0], skin[:, 2] - skin[:, 0]))
                 feet = np.einsum("kc,kci->ki", self.barycentric[rows], skin)
                 lack = self.least[rows] - np.einsum("ki,ki->k", points - feet, normals)
                 worse = np.flatnonzero((lack > largest[rows]) & (lack < _SHALLOW * unit))
-                at, share = rows[worse], shares[rows[worse]][:, None]
+                at, share = rows[worse], shares[worse][:, None]
                 back = (1 - share) * normals[worse] + share * (normals[worse] @ rotation)
-                turned = np.einsum("ki,ki->k", unit_vectors(back), self.normals[at]) > _TURNED
-                at, worse, back = at[turned], worse[turned], back[turned]
+                alike = np.einsum("ki,ki->k", unit_vectors(back), self.normals[at]) > _TURNED
+                at, worse, back = at[alike], worse[alike], back[alike]
                 largest[at], moves[at] = lack[worse], lack[worse][:, None] * back
         return moves
 
 
-def _is_squeezed(points: Floats, outward: Floats, skin: Surface, unit: float) -> Bools:
-    """Say which points (k, 3) are in the skin, or have other skin above, by the normals of that below (k, 3), (k,)."""
-    heights = skin.clearance(points).distances
+def _is_squeezed(points: Floats, heights: Floats, outward: Floats, skin: Surface, unit: float) -> Bools:
+    """Say which points (k, 3) are in the skin, at heights (k,) along its normals (k, 3), or have other skin above."""
     lifted = skin.clearance(points + 2 * _MOST * unit * outward).distances
     return (heights <= 0) | (lifted < _ROOM * (heights + 2 * _MOST * unit))
-
-
-def _is_partly(parts: Floats) -> Bools:
-    """Say which rows of parts (k, c) are neither all nothing nor all one, (k,)."""
-    return (parts > _PARTLY).any(axis=1) & (parts < 1 - _PARTLY).any(axis=1)
