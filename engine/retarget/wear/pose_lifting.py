@@ -38,9 +38,8 @@ _SHALLOW = 0.015
 """How deep in the skin, in the same unit, cloth is in a pose that lifting it may help; what is deeper is in a fold."""
 
 _MOST = 0.004
-"""How far, in the same unit, anything is lifted at most: 5 mm on a human, by ``python -m
-tests.benchmarks.worn_makers``, where more shows no less skin in poses: what is lifted far in one place comes through in
-others."""
+"""How far, in the same unit, anything is lifted at most: 5 mm on a human.  With more, no less skin shows in the poses
+of ``python -m tests.benchmarks.worn_makers``: what is lifted far in one place comes through in others."""
 
 _ROOM = 0.8
 """Part of the distance that a vertex would have from the skin, lifted twice as far as any is, from which on it has
@@ -99,14 +98,12 @@ def lift_for_poses_steps(
     list of (n, 3) array of float
         How far the vertices of each item are moved.
     """
-    lifts = [np.zeros(item.positions.shape) for item in items]
-    chosen = [number for number, item in enumerate(items) if len(item.triangles)]
     bends = list(joint_bends(body, skin_weights, skeleton, range(len(skeleton))))
-    if not chosen or not bends:
-        return lifts
+    if not items or not bends:
+        return [np.zeros(item.positions.shape) for item in items]
     unit = float(np.sqrt(body.area))
     skin = Surface(body)
-    cloth = _Cloth([items[number] for number in chosen], skin, unit)
+    cloth = _Cloth(items, skin, unit)
     lying = _Lying.of(cloth, skin, unit)
     looked = [(bend, lying.partly(cloth, bend)) for bend in bends]
     for number in range(_ROUNDS):
@@ -116,9 +113,7 @@ def lift_for_poses_steps(
             break
         cloth.lift(lying.shares, lacking)
     yield Progress(1.0, "Trying poses")
-    for number, lift in zip(chosen, cloth.lifts(), strict=True):
-        lifts[number] = lift
-    return lifts
+    return cloth.lifts()
 
 
 class _Cloth:
@@ -126,7 +121,7 @@ class _Cloth:
 
     def __init__(self, items: Sequence[WeightedItem], skin: Surface, unit: float) -> None:
         self.items, self._unit = items, unit
-        self.parts = [WeldedParts.of(TriangleMesh(item.positions, item.triangles)) for item in items]
+        self.parts = [WeldedParts.of(item.mesh) for item in items]
         meshes = [part.closed for part in self.parts]
         self.positions = np.concatenate([mesh.vertices for mesh in meshes])
         self.weights = csr_array(

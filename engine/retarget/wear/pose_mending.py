@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
@@ -80,6 +81,11 @@ class WeightedItem:
             object.__setattr__(self, "pieces", np.full(n, -1))
         if not len(self.left):
             object.__setattr__(self, "left", np.zeros(n, bool))
+
+    @cached_property
+    def mesh(self) -> TriangleMesh:
+        """Its surface."""
+        return TriangleMesh(self.positions, self.triangles)
 
     @property
     def still(self) -> Bools:
@@ -203,7 +209,7 @@ def _tried(item: WeightedItem, posed: _PosedBody) -> _Tried:
     rest = posed.skin.clearance(item.positions, starts)
     lying = (row_sums(item.weights) > 0) & rest.known
     lying &= (rest.distances > _OUTSIDE * unit) & (rest.distances < _NEAR * unit)
-    parts = WeldedParts.of(TriangleMesh(item.positions, item.triangles))
+    parts = WeldedParts.of(item.mesh)
     of_skin = csr_array(diags_array(row_sums(item.weights)) @ below @ posed.weights)
     return _Tried(item, parts, of_skin, starts, lying)
 
