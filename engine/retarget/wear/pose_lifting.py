@@ -12,9 +12,10 @@ from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.closest_points import FoundPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, group_means, unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
 from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress, Steps
 from ..rig.skeleton import Skeleton
@@ -23,6 +24,7 @@ from .contact import Surface, surface_samples
 from .joint_bends import JointBend, joint_bends, turned
 from .pose_mending import WeightedItem
 from .pushing import FIRM, FREE, SPREAD
+from .rigid_pieces import moved_along
 
 _ROUNDS = 4
 """How often is looked anew what comes through."""
@@ -60,7 +62,8 @@ _LAYERS, _NEIGHBOURS, _OPPOSITE, _ALIKE = 0.012, 12, -0.3, 0.3
 at; the largest cosine between the normals of both sides of one item; and the least between those of the skin below."""
 
 _TOGETHER = 10.0
-"""How much layers that move apart count, beside `FREE`."""
+"""How much layers that move apart count, beside `FREE`: chosen by hand, so that they keep their order; what shows of
+the skin hardly depends on it."""
 
 _STILL = 1e6
 """How much what stays counts."""
@@ -128,12 +131,8 @@ class _Cloth:
             vstack([part.means @ item.weights for part, item in zip(self.parts, items, strict=True)])
         )
         still = [item.still[part.first] for part, item in zip(self.parts, items, strict=True)]
-        found = skin.search.nearest(self.positions)
-        corners = skin.mesh.triangles[found.triangles]
-        outward = unit_vectors(np.einsum("kc,kci->ki", found.barycentric, skin.normals[corners]))
+        _, outward, heights = _below(self.positions, skin)
         self.is_still = np.concatenate(still) | (row_sums(self.weights) <= 0)
-        away = self.positions - found.interpolate(skin.mesh.triangles, skin.mesh.vertices)
-        heights = np.linalg.norm(away, axis=1) * np.sign(np.einsum("wi,wi->w", away, outward))
         self.is_still |= _is_squeezed(self.positions, heights, outward, skin, unit)
         operators = [laplace_beltrami(mesh) for mesh in meshes]
         self.mass = np.concatenate([np.where(each.mass > 0, each.mass, each.mass.mean()) for each in operators])
@@ -185,12 +184,8 @@ class _Cloth:
         ends = np.cumsum([part.welded_count for part in self.parts])
         found = []
         for item, part, own in zip(self.items, self.parts, np.split(self.moves, ends[:-1]), strict=True):
-            moves = own[part.welded]
-            soft, rigid = np.flatnonzero(item.pieces < 0), np.flatnonzero(item.pieces >= 0)
-            if len(soft) and len(rigid):
-                near = soft[cKDTree(item.positions[soft]).query(item.positions[rigid])[1]]
-                pieces = item.pieces[rigid]
-                moves[rigid] = group_means(pieces, moves[near], int(pieces.max()) + 1)[pieces]
+            moves, rigid = own[part.welded], item.pieces >= 0
+            moves[rigid] = moved_along(item.positions, moves, item.pieces)[item.pieces[rigid]]
             moves[np.linalg.norm(moves, axis=1) < _TRIFLE * self._unit] = 0.0
             found.append(moves)
         return found
@@ -225,14 +220,10 @@ class _Lying:
         body = skin.mesh
         shares = cloth.samples(0.75 * float(np.sqrt(2 * body.area / max(body.triangle_count, 1))))
         shares = csr_array(shares[np.flatnonzero(shares @ cloth.is_still < 1)])
-        points = shares @ cloth.positions
-        found = skin.search.nearest(points)
+        found, _, heights = _below(shares @ cloth.positions, skin)
         numbers, barycentric = body.triangles[found.triangles], found.barycentric
-        away = points - found.interpolate(body.triangles, body.vertices)
-        outward = np.einsum("kc,kci->ki", barycentric, skin.normals[numbers])
-        heights = np.linalg.norm(away, axis=1)
         beside = ((barycentric > 0) <= skin.rim[numbers]).all(axis=1)  # beyond the rim of a hole
-        lying = (heights < _NEAR * unit) & (np.einsum("ki,ki->k", away, outward) > 0) & ~beside
+        lying = (heights > 0) & (heights < _NEAR * unit) & ~beside
         at = np.flatnonzero(lying)
         return cls(
             csr_array(shares[at]),
@@ -274,6 +265,15 @@ class _Lying:
                 at, worse, back = at[alike], worse[alike], back[alike]
                 largest[at], moves[at] = lack[worse], lack[worse][:, None] * back
         return moves
+
+
+def _below(points: Floats, skin: Surface) -> tuple[FoundPoints, Floats, Floats]:
+    """Find the skin nearest to points (k, 3), its normals there (k, 3), and their heights above it (k,)."""
+    found, body = skin.search.nearest(points), skin.mesh
+    outward = np.einsum("kc,kci->ki", found.barycentric, skin.normals[body.triangles[found.triangles]])
+    away = points - found.interpolate(body.triangles, body.vertices)
+    heights = np.linalg.norm(away, axis=1) * np.sign(np.einsum("ki,ki->k", away, outward))
+    return found, unit_vectors(outward), heights
 
 
 def _is_squeezed(points: Floats, heights: Floats, outward: Floats, skin: Surface, unit: float) -> Bools:

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_similarity
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, group_extents, group_sums
+from ...runtime.arrays import Bools, Floats, Ints, group_extents, group_means, group_sums
 
 _TINY, _SMALL = 0.02, 0.12
 """Size of a loose part, in units of the root of the body's area, up to which it is rigid whatever its shape, and up to
@@ -81,6 +82,31 @@ def placed_rigidly(before: Floats, after: Floats, scale: float | None = None) ->
     """
     linear, translation = nearest_similarity(before, after, scale=scale)
     return before @ linear.T + translation
+
+
+def moved_along(vertices: Floats, moves: Floats, pieces: Ints) -> Floats:
+    """Find how far each rigid piece moves with what is around it that bends.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float
+        An item.
+    moves : (n, 3) array of float
+        How far its vertices are moved; of those of pieces it does not count.
+    pieces : (n,) array of int
+        The piece that each vertex belongs to, -1 where the item bends.
+
+    Returns
+    -------
+    (p, 3) array of float
+        The mean move of what bends nearest to the vertices of each piece; zero if nothing does.
+    """
+    soft, rigid = np.flatnonzero(pieces < 0), np.flatnonzero(pieces >= 0)
+    count = int(pieces.max(initial=-1)) + 1
+    if not (len(soft) and len(rigid)):
+        return np.zeros((count, 3))
+    near = soft[cKDTree(vertices[soft]).query(vertices[rigid])[1]]
+    return group_means(pieces[rigid], moves[near], count)
 
 
 def _solid_parts(parts: WeldedParts, unit: float) -> Bools:

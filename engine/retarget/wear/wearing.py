@@ -25,7 +25,7 @@ from .body_motion import BodyMotion, BodySkin, Carriers, Motion
 from .buried_places import Buried, BuriedPlaces
 from .contact import Clearance, Surface, surface_samples
 from .pushing import Layer, layer_of, pushed_out
-from .rigid_pieces import placed_rigidly, rigid_pieces
+from .rigid_pieces import moved_along, placed_rigidly, rigid_pieces
 from .sewn_items import cut_open, sewn
 from .worn_item import FittedItem, WornItem
 
@@ -368,17 +368,9 @@ def _near(points: Floats, others: Floats, unit: float) -> bool:
 
 def _with_pieces(work: _Work, positions: Floats, layers: Sequence[Layer]) -> Floats:
     """Move rigid pieces with the cloth around them, and out of what is below."""
-    mesh = work.item.mesh
     moved = positions.copy()
-    soft = np.flatnonzero(work.pieces < 0)
-    tree = cKDTree(mesh.vertices[soft]) if len(soft) else None
-    for piece in range(int(work.pieces.max()) + 1):
-        inside = np.flatnonzero(work.pieces == piece)
-        shift = np.zeros(3)
-        if tree is not None:
-            _, near = tree.query(mesh.vertices[inside])
-            near = soft[near]
-            shift = (positions - work.positions)[near].mean(axis=0)
+    for piece, along in enumerate(moved_along(work.item.mesh.vertices, positions - work.positions, work.pieces)):
+        inside, shift = np.flatnonzero(work.pieces == piece), along
         for _ in range(3):
             push = np.zeros(3)
             for layer in layers:

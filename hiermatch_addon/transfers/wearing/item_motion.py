@@ -208,7 +208,7 @@ class ItemMotion:
         lifting = lift_for_poses_steps(weighted, body=body, skin_weights=on_skin, skeleton=skeleton)
         moves = yield from within(lifting, 0.6, 1.0)
         for number, (fitted, move) in enumerate(zip(self.fitted, moves, strict=True)):
-            lengths = np.linalg.norm(move, axis=1)
+            lengths = np.linalg.norm(move, axis=1)  # nearly along the normals of the skin
             self.fitted[number] = replace(
                 fitted, positions=fitted.positions + move, clearance=fitted.clearance + lengths
             )

@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 
 from engine import TriangleMesh
-from engine.retarget.wear.rigid_pieces import placed_rigidly, rigid_pieces
+from engine.retarget.wear.rigid_pieces import moved_along, placed_rigidly, rigid_pieces
 from tests.shapes import icosphere, plane, rotation
 
 
@@ -60,3 +60,12 @@ def test_a_piece_is_moved_by_a_similarity():
     np.testing.assert_allclose(placed_rigidly(points, moved), moved)
     smaller = placed_rigidly(points, moved, 1.0)
     np.testing.assert_allclose(smaller.std(axis=0), moved.std(axis=0) / 2, rtol=1e-9)
+
+
+def test_pieces_move_with_what_is_nearest_to_them():
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 0.1, 0], [1, 0.1, 0], [2, 0.1, 0.0]])
+    moves = np.array([[1, 0, 0], [3, 0, 0], [0, 5, 0], [9, 9, 9], [9, 9, 9], [9, 9, 9.0]])
+    pieces = np.array([-1, -1, -1, 0, 0, 1])
+    np.testing.assert_allclose(moved_along(vertices, moves, pieces), [[2, 0, 0], [0, 5, 0]])
+    np.testing.assert_array_equal(moved_along(vertices, moves, np.zeros(6, int)), np.zeros((1, 3)))
+    assert moved_along(vertices, moves, np.full(6, -1)).shape == (0, 3)
