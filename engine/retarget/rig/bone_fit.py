@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.linalg import splu
+from scipy.sparse import csr_array, diags_array
 
 from ...geometry.procrustes import nearest_rotations, nearest_similarity
+from ...geometry.symmetric_factor import symmetric_factor
 from ...runtime.arrays import TINY, Floats, Ints, numbered
 from .skeleton import Skeleton
 
@@ -134,6 +134,21 @@ class _Joints(NamedTuple):
     places: Floats
 
 
+def _shared_vertices(weights: csr_array) -> tuple[Ints, csr_array]:
+    """Pairs of bones (p, 2) that share vertices, both ways round, and products (p, n) of their weights (n, b) there."""
+    counts, count = np.diff(weights.indptr), weights.shape[1]
+    rows = np.repeat(np.arange(len(counts)), counts)
+    first = np.repeat(np.arange(weights.nnz), counts[rows])
+    begin = np.repeat(np.cumsum(counts[rows]) - counts[rows], counts[rows])
+    second = weights.indptr[rows[first]] + np.arange(len(first)) - begin
+    keys = weights.indices[first].astype(np.int64) * count + weights.indices[second]
+    pairs = np.flatnonzero(np.bincount(keys, minlength=count**2))
+    number = numbered(pairs, count**2)[keys]
+    products = weights.data[first] * weights.data[second]
+    shared = csr_array((products, (number, rows[first])), shape=(len(pairs), len(counts)))
+    return np.stack([pairs // count, pairs % count], axis=1), shared
+
+
 class _System:
     """The least squares problem of k bones that move vertices."""
 
@@ -148,12 +163,9 @@ class _System:
         self._size = float(np.sqrt(areas @ np.square(vertices - self._middle).sum(axis=1)))
         local = (vertices - self._middle) / self._size
         self._lengths = float(np.sqrt(areas @ np.square(positions - areas @ positions).sum(axis=1)))
-        entries = coo_array(weights)
-        ends = np.concatenate([local, np.ones((len(local), 1))], axis=1)  # (n, 4)
-        columns = (4 * entries.col[:, None] + np.arange(4)).ravel()
-        rows = np.repeat(entries.row, 4)
-        values = (entries.data[:, None] * ends[entries.row]).ravel()
-        self._design = csr_array((values, (rows, columns)), shape=(len(vertices), 4 * count))
+        self._weights = weights
+        self._ends = np.concatenate([local, np.ones((len(local), 1))], axis=1)  # (n, 4)
+        self._pairs, self._shared = _shared_vertices(weights)
         self._mass = mass = areas @ weights
         self._ties = self._tied(joints, mass)
         moments = np.empty(count)
@@ -187,19 +199,29 @@ class _System:
         similar, trust, doubt = self._start, self._areas, _DOUBT * _ROOT_OF_AREA * self._lengths
         count = len(similar)
         unknowns = np.zeros((4 * count, 3))
+        squares = np.einsum("ni,nj->nij", self._ends, self._ends).reshape(-1, 16)
+        images = np.einsum("ni,nj->nij", self._ends, self._positions).reshape(-1, 12)
+        pull = diags_array(self._pull.ravel() + np.finfo(float).eps)
         for number in range(_ROUNDS):
-            weighted = csr_array(self._design.T @ diags_array(trust))
-            pull = diags_array(self._pull.ravel() + np.finfo(float).eps)
+            normal = self._normal(self._shared @ (trust[:, None] * squares)) + self._ties + pull
             wanted = np.concatenate([similar.transpose(0, 2, 1), np.zeros((count, 1, 3))], axis=1).reshape(-1, 3)
-            right = weighted @ self._positions + self._pull.ravel()[:, None] * wanted
-            unknowns = splu((weighted @ self._design + self._ties + pull).tocsc()).solve(right)
+            right = (self._weights.T @ (trust[:, None] * images)).reshape(-1, 3) + self._pull.ravel()[:, None] * wanted
+            unknowns = symmetric_factor(normal).solve(right)
             similar = self._stretched(unknowns.reshape(count, 4, 3)[:, :3].transpose(0, 2, 1))
-            missed = np.linalg.norm(self._design @ unknowns - self._positions, axis=1)
+            moved = np.einsum("ni,nij->nj", self._ends, (self._weights @ unknowns.reshape(count, 12)).reshape(-1, 4, 3))
+            missed = np.linalg.norm(moved - self._positions, axis=1)
             forgiving = doubt * max(1.0, _LENIENT * (1 - 2 * number / _ROUNDS))
             trust = self._areas / (1 + (missed / forgiving) ** 2)
         blocks = unknowns.reshape(count, 4, 3)
         linear = blocks[:, :3].transpose(0, 2, 1) / self._size
         return linear, blocks[:, 3] - linear @ self._middle
+
+    def _normal(self, moments: Floats) -> csr_array:
+        """Matrix (4 k, 4 k) of the second moments (p, 16) of what pairs of bones share, a block for each pair."""
+        corners = np.arange(4)
+        rows = np.broadcast_to(4 * self._pairs[:, 0, None, None] + corners[:, None], (len(moments), 4, 4)).ravel()
+        columns = np.broadcast_to(4 * self._pairs[:, 1, None, None] + corners, (len(moments), 4, 4)).ravel()
+        return csr_array((moments.ravel(), (rows, columns)), shape=self._ties.shape)
 
     def _stretched(self, linear: Floats) -> Floats:
         """Find rotations with a stretch along the bone and one across near linear parts (k, 3, 3).
