@@ -44,6 +44,8 @@ def bridged(values: NDArray[np.float32], level: float, widest: float) -> NDArray
         sizes = np.bincount(numbers.ravel())
         sizes[0] = 0
         solids = np.flatnonzero(sizes >= _LEAST * sizes.sum())
+        if len(solids) < 2:
+            break
         nearest = _nearest_pair([np.argwhere(numbers == solid) for solid in solids[sizes[solids].argsort()]], widest)
         if nearest is None:
             break

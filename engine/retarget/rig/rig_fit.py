@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from ...dense.components.extended_maps import whole_maps_steps
 from ...geometry.laplacian import laplace_beltrami
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
 from ...mesh.surface_map import SurfaceMap
@@ -113,7 +112,7 @@ def fit_rig_steps(
     maps = source_to_target, target_to_source
     missed = np.linalg.norm(bones.posed - positions, axis=1)[x.main.original_vertices >= 0]
     if refine and np.median(missed) < _EXPLAINED * np.sqrt(y.mesh.area):
-        sliding = _sliding_steps(_Pair(x, y, moving, skeleton), bones, back)
+        sliding = _sliding_steps(_Pair(x, y, moving, skeleton), bones, back, maps)
         found = yield from within(sliding, 0.1, 1.0, "Fitting the rig")
         if found is not None:
             bones, positions, maps = found.bones, found.positions, found.maps
@@ -263,7 +262,9 @@ class _Slid:
     maps: tuple[SurfaceMap, SurfaceMap]
 
 
-def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Steps[_Slid | None]:
+def _sliding_steps(
+    pair: _Pair, bones: BoneTransforms, back: FoundPoints, maps: tuple[SurfaceMap, SurfaceMap]
+) -> Steps[_Slid | None]:
     """Let the body slide onto the target and find its bones, in turn; None if it does not come to lie there."""
     proxy = yield from within(proxy_steps(pair.x.mesh, _WORKED), 0.0, 0.1)
     target_proxy = yield from within(proxy_steps(pair.y.mesh, _WORKED), 0.1, 0.2)
@@ -300,9 +301,8 @@ def _sliding_steps(pair: _Pair, bones: BoneTransforms, back: FoundPoints) -> Ste
     whole = skinned(pair.x.mesh.vertices, pair.weights, bones.linear, bones.translations)
     if not proxy.is_identity:
         positions = whole + _evaluation(proxy.points, body) @ (positions - posed)
-    yield Progress(0.85, "Mapping every vertex")
-    steps = _maps_steps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back))
-    maps = yield from within(steps, 0.85, 1.0)
+    yield Progress(0.9, "Mapping every vertex")
+    maps = _slid_maps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back), maps)
     return _Slid(replace(bones, posed=whole), positions, maps)
 
 
@@ -325,16 +325,27 @@ def _proxy_weights(proxy: Proxy, weights: csr_array) -> csr_array:
     return row_shares(csr_array(_evaluation(proxy.points, proxy.mesh).T @ weights))
 
 
-def _maps_steps(pair: _Pair, positions: Floats, homes: Homes) -> Steps[tuple[SurfaceMap, SurfaceMap]]:
-    """Read the maps between the original meshes off the body that lies on the target at positions (n, 3)."""
+def _slid_maps(
+    pair: _Pair, positions: Floats, homes: Homes, maps: tuple[SurfaceMap, SurfaceMap]
+) -> tuple[SurfaceMap, SurfaceMap]:
+    """Read the maps between the main parts off the body that lies on the target at positions (n, 3).
+
+    Other parts stay where the maps had them, and all are trusted as before.
+    """
     x, y = pair.x, pair.y
     size = float(np.sqrt(y.mesh.area))
     lying = ClosestPoints(x.mesh).moved(positions)
     lies_on = ClosestPoints(y.mesh)
     there = homes.on_target(lies_on, facing(lies_on, positions, lying.vertex_normals, size), positions)
     back = homes.on_body(lying, facing(lying, y.mesh.vertices, y.mesh.vertex_normals, size), y.mesh.vertices)
-    on_y = SurfacePoints.from_barycentric(y.mesh, there.triangles, there.barycentric)
-    on_x = SurfacePoints.from_barycentric(x.mesh, back.triangles, back.barycentric)
-    forth, home = yield from whole_maps_steps(x, y, on_y, on_x)
-    forward = SurfaceMap(forth.points, forth.confidence, y.original.vertex_count)
-    return forward, SurfaceMap(home.points, home.confidence, x.original.vertex_count)
+    return _with_main(maps[0], x, y, there), _with_main(maps[1], y, x, back)
+
+
+def _with_main(surface_map: SurfaceMap, x: CleanSurface, y: CleanSurface, found: FoundPoints) -> SurfaceMap:
+    """Change a map of all vertices where it takes the main part."""
+    main = np.flatnonzero(x.vertex_parts == 0)
+    images = SurfacePoints.from_barycentric(y.mesh, found.triangles, found.barycentric)
+    triangles, barycentric = surface_map.triangles.copy(), surface_map.barycentric.copy()
+    triangles[main], barycentric[main] = y.main.to_original(*x.images_of(main, images, y.mesh))
+    points = SurfacePoints.from_barycentric(y.original, triangles, barycentric)
+    return replace(surface_map, points=points)

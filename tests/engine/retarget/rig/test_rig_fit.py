@@ -101,6 +101,31 @@ def test_maps_that_slid_become_better(scale):
     assert ((rig.target_to_source.confidence >= 0) & (rig.target_to_source.confidence <= 1)).all()
 
 
+def test_better_maps_are_trusted_as_before_and_parts_beside_the_body_stay(pair):
+    def beside(mesh):
+        """A mesh with a small cube in front of it."""
+        cube = 0.03 * np.array(list(np.ndindex(2, 2, 2))) + [2.2, 0.0, 0.4]
+        sides = np.array([[0, 1, 3], [0, 3, 2], [4, 7, 5], [4, 6, 7], [0, 5, 1], [0, 4, 5], [2, 3, 7], [2, 7, 6]])
+        rest = np.array([[0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+        faces = np.concatenate([sides, rest]) + mesh.vertex_count
+        return TriangleMesh(np.concatenate([mesh.vertices, cube]), np.concatenate([mesh.triangles, faces]))
+
+    bodies = beside(pair.source), beside(pair.target)
+    maps = []
+    for found, other in zip(slid_along(pair), reversed(bodies), strict=True):
+        triangles = np.append(found.triangles, np.full(8, other.triangle_count - 1))
+        barycentric = np.concatenate([found.barycentric, np.full((8, 3), 1 / 3)])
+        confidence, partner = np.full(len(triangles), 0.3), np.arange(len(triangles)) % 50 > 0
+        maps.append(SurfaceMap.from_barycentric(other, triangles, barycentric, confidence, partner))
+    weights = csr_array(np.concatenate([pair.weights.toarray(), np.eye(len(pair.names))[[0] * 8]]))
+    rig = fit_rig(*bodies, *maps, weights=weights, skeleton=pair.skeleton)
+    for before, after in zip(maps, (rig.source_to_target, rig.target_to_source), strict=True):
+        np.testing.assert_array_equal(after.confidence, before.confidence)
+        np.testing.assert_array_equal(after.has_partner, before.has_partner)
+        np.testing.assert_allclose(after.positions[-8:], before.positions[-8:])
+        assert not np.allclose(after.positions[:-8], before.positions[:-8])
+
+
 @pytest.mark.parametrize("in_pieces", [(True, False), (False, True), (True, True)])
 def test_limbs_that_are_pieces_of_their_own_are_fitted_as_well(in_pieces):
     uncut = (9.0, 9.0, 9.0)
