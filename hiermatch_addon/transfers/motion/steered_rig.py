@@ -12,12 +12,11 @@ from ....engine import Progress, rotation_channels
 from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...scene.armatures import armature_of
+from ...scene.motion.control_pose_io import posed_controls, set_switches
 from ...scene.motion.control_rigs import (
     candidates_of,
     carriers,
     chosen_controls,
-    posed_controls,
-    set_switches,
     tried_controls,
     with_carrier,
     worth_trying,
@@ -32,12 +31,13 @@ if TYPE_CHECKING:
 
     from ....engine import BonePairing, Steps, TransferredMotion
     from ...scene.character import SideReference
-    from ...scene.motion.control_rigs import Candidates, Controls
+    from ...scene.motion.control_pose_io import Controls
+    from ...scene.motion.control_rigs import Candidates
 
 __all__ = ["SteeredRig", "found_again", "is_steered", "steered_steps"]
 
-_TRIED_AT_ONCE, _POSED_AT_ONCE = 8, 2
-"""Controls tried, and frames posed, before Blender gets on with its own work."""
+_TRIED_AT_ONCE, _POSED_AT_ONCE = 8, 8
+"""Groups of controls tried, and frames posed, before Blender gets on with its own work."""
 
 _AWAY = np.radians(10.0)
 """Mean angle by which a bone is turned otherwise than it should be from which on that is told."""
@@ -148,9 +148,10 @@ def steered_steps(link: SideReference, found: TransferredMotion) -> Steps[Steere
 
 def _tried_steps(link: SideReference, tried: Candidates, names: list[str], switches: tuple) -> Steps[None]:  # type: ignore[type-arg]
     """Try controls, some at a time."""
-    for start in range(0, len(names), _TRIED_AT_ONCE):
-        yield Progress(start / len(names), "Looking for controls")
-        tried_controls(found_again(link), tried, names[start : start + _TRIED_AT_ONCE], switches)
+    groups = tried.together(names)
+    for start in range(0, len(groups), _TRIED_AT_ONCE):
+        yield Progress(start / len(groups), "Looking for controls")
+        tried_controls(found_again(link), tried, groups[start : start + _TRIED_AT_ONCE], switches)
 
 
 def found_again(reference: SideReference) -> bpy.types.Object:

@@ -3,9 +3,20 @@
 
 from __future__ import annotations
 
+import itertools
+
 import bpy
 import pytest
-from hiermatch.hiermatch_addon.scene.motion.control_rigs import Candidates, chosen_controls, with_carrier
+from hiermatch.hiermatch_addon.scene.motion.control_pose_io import Controls
+from hiermatch.hiermatch_addon.scene.motion.control_rigs import (
+    Candidates,
+    candidates_of,
+    chosen_controls,
+    tried_controls,
+    with_carrier,
+)
+
+from tests.addon.steered import DEFORMING, TURNING, chains
 
 TREE = {"hips": "", "spine": "hips", "thigh": "hips", "half": "thigh"}
 CONTROLS = ("torso", "far", "c thigh", "c half")
@@ -68,3 +79,29 @@ def test_what_carries_the_body_is_posed_by_the_bone_that_it_carries(armature):
     chosen = with_carrier(armature, found, chosen_controls(armature, found), ["hips"])
     assert chosen.placed == ("hips",)
     assert next(bone for bone, control in chosen.turning.items() if control == "torso") == "hips"
+
+
+def test_controls_of_different_limbs_are_tried_together_with_the_same_result():
+    rig = chains()
+    found = candidates_of(rig, DEFORMING)
+    groups = found.together(found.free)
+    assert sorted(itertools.chain(*groups)) == sorted(found.free)
+    assert len(groups) == 3
+    tried_controls(rig, found, groups, ())
+    single = candidates_of(rig, DEFORMING)
+    tried_controls(rig, single, [[name] for name in single.free], ())
+    assert chosen_controls(rig, found) == chosen_controls(rig, single) == Controls(TURNING)
+    for key, followers in single.followers.items():
+        assert {name: error for name, (error, _) in found.followers[key].items()} == pytest.approx(
+            {name: error for name, (error, _) in followers.items()}, abs=1e-4
+        )
+
+
+def test_controls_that_a_driver_ties_together_are_tried_one_by_one():
+    rig = chains()
+    driver = rig.pose.bones["d4"].constraints[0].driver_add("influence").driver
+    target = driver.variables.new().targets[0]
+    target.id, target.data_path = rig, 'pose.bones["c0"].rotation_quaternion[0]'
+    found = candidates_of(rig, DEFORMING)
+    assert not any({"c0", other} <= set(group) for group in found.together(found.free) for other in ("c3", "c4"))
+    assert any("c5" in group and len(group) == 2 for group in found.together(found.free))
