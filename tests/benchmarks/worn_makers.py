@@ -36,7 +36,7 @@ from tools.demo_picture import render, set_stage, sheet
 from tools.source_extension import registered_extension
 
 MEN, WOMEN = "quaternius-modular_men", "quaternius-modular_women"
-CASES = {
+OWN = {
     "Suit": (f"{MEN}-Suit", "m2m-human-male", {"Suit_Body": None, "Suit_Legs": None, "Suit_Feet": None}),
     "King": (
         f"{MEN}-King",
@@ -60,6 +60,24 @@ CASES = {
         {"Formal_Head": "Red", "Formal_Body": "LimeGreen Gold", "Formal_Legs": "LimeGreen", "Formal_Feet": "Red"},
     ),
 }
+OTHER_SEX = {
+    f"{case} on {kind}": (OWN[case][0], f"m2m-human-{kind}", OWN[case][2])
+    for kind, cases in (("female", ("Suit", "King")), ("male", ("Witch", "Casual", "Formal")))
+    for case in cases
+}
+CASES = (
+    OWN
+    | OTHER_SEX
+    | {
+        f"men-Casual on {kind}": (
+            f"{MEN}-Casual",
+            f"m2m-human-{kind}",
+            {"Casual_Body": None, "Casual_Legs": None, "Casual_Feet": None},
+        )
+        for kind in ("male", "female")
+    }
+    | {"Suit on Casual": (OWN["Suit"][0], f"{WOMEN}-Casual", OWN["Suit"][2])}
+)
 """Of each case the file of the source and of the target, and the items: objects, or their faces of some materials."""
 
 POSES = (
@@ -241,13 +259,13 @@ def wear(case, data):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True, help="folder with the characters")
-    parser.add_argument("--only", default=",".join(CASES), help="names of cases, separated by commas")
+    parser.add_argument("--only", default=",".join(OWN), help="names of cases, separated by commas, or all")
     parser.add_argument("--save", type=Path, help="folder for the .blend files")
     parser.add_argument("--pictures", type=Path, help="folder for the pictures")
     options = parser.parse_args()
     registered_extension()
-    print(f"{'case':8s} confidence  shows at rest  in poses     worst stands off   shifted  seconds")
-    for case in options.only.split(","):
+    print(f"{'case':18s} confidence  shows at rest  in poses     worst stands off   shifted  seconds")
+    for case in CASES if options.only == "all" else options.only.split(","):
         bpy.ops.wm.read_homefile(use_empty=True)
         start = time.process_time()
         rig, bodies, items, skin = wear(case, options.data)
@@ -256,7 +274,7 @@ def main():
         rest, *poses = shown(rig, bodies, items)
         said = re.search(r"Confidence (\d+)", bpy.context.scene.hiermatch_retarget.report.verdict)
         numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), *off))
-        print(f"{case:8s} {said[1] if said else '-':>10s}{numbers}{seconds:9.1f}", flush=True)
+        print(f"{case:18s} {said[1] if said else '-':>10s}{numbers}{seconds:9.1f}", flush=True)
         if options.save:
             options.save.mkdir(parents=True, exist_ok=True)
             bpy.ops.wm.save_as_mainfile(filepath=str(options.save / f"{case}.blend"))

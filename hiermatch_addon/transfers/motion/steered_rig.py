@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SteeredRig", "found_again", "is_steered", "steered_steps"]
 
-_TRIED_AT_ONCE, _POSED_AT_ONCE = 8, 8
-"""Groups of controls tried, and frames posed, before Blender gets on with its own work."""
+_AT_ONCE = 4
+"""Groups of controls tried, or frames posed, before Blender gets on with its own work: a tenth of a second."""
 
 _AWAY = np.radians(10.0)
 """Mean angle by which a bone is turned otherwise than it should be from which on that is told."""
@@ -62,9 +62,9 @@ class SteeredRig:
         names = [bone.name for bone in armature_of(found_again(link)).bones]
         chosen = [names.index(name) for name in self.controls.turning]
         parts = []
-        for start in range(0, len(found.motion), _POSED_AT_ONCE):
+        for start in range(0, len(found.motion), _AT_ONCE):
             yield Progress(start / len(found.motion), "Posing controls")
-            part = slice(start, start + _POSED_AT_ONCE)
+            part = slice(start, start + _AT_ONCE)
             turns, heads = found.motion.turns[part][:, chosen], found.motion.heads[part][:, chosen]
             parts.append(posed_controls(found_again(link), self.controls, turns, heads))
         self._bases = np.concatenate([bases for bases, _ in parts])
@@ -149,9 +149,9 @@ def steered_steps(link: SideReference, found: TransferredMotion) -> Steps[Steere
 def _tried_steps(link: SideReference, tried: Candidates, names: list[str], switches: tuple) -> Steps[None]:  # type: ignore[type-arg]
     """Try controls, some at a time."""
     groups = tried.together(names)
-    for start in range(0, len(groups), _TRIED_AT_ONCE):
+    for start in range(0, len(groups), _AT_ONCE):
         yield Progress(start / len(groups), "Looking for controls")
-        tried_controls(found_again(link), tried, groups[start : start + _TRIED_AT_ONCE], switches)
+        tried_controls(found_again(link), tried, groups[start : start + _AT_ONCE], switches)
 
 
 def found_again(reference: SideReference) -> bpy.types.Object:
