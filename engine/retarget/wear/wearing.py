@@ -12,10 +12,11 @@ from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import LaplaceBeltrami, laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.mirror_planes import MirrorPlane, mirror_planes
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import TINY, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MeshError
 from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
@@ -56,6 +57,15 @@ _FASTENED = 0.02
 _AT_SKIN = 0.03
 """Up to this distance from the skin, in the same unit, an item has skin below it, and so far beyond what it had it
 has none: about 4 cm on a human.  A boot reaches further below an ankle, no shirt stands off a thinner body as far."""
+
+_SAME = 1e-3
+"""How far the vertices of items may be from mirror images of others, in units of the extent of all."""
+
+_MIRRORED = 4e-3
+"""How far the target's skin may be from its mirror image below items, in units of its extent."""
+
+_WHOLLY = 0.9
+"""Part of an item's vertices that are mirror images, on such skin, from which on it is symmetric."""
 
 _TIGHT, _LOOSE = 0.4, 2.5
 """What tight and loose items multiply the length by over which they smooth."""
@@ -148,7 +158,7 @@ def wear_steps(
         raise MeshError("The map belongs to other meshes than the bodies. Match them again.")
     call_helpers()
     dressed = yield from within(dressed_steps(source, items, bones=bones, whole=whole), 0.0, 0.3)
-    return (yield from within(fitted_steps(dressed, target, source_to_target, images), 0.3, 1.0))
+    return (yield from within(fitted_steps(dressed, target, source_to_target, images, even=True), 0.3, 1.0))
 
 
 def dressed_steps(
@@ -183,9 +193,9 @@ def _dressed_item_steps(body: tuple[BodySkin, Surface], given: WornItem) -> Step
 
 
 def fitted_steps(
-    dressed: DressedBody, target: TriangleMesh, source_to_target: SurfaceMap, images: Floats
+    dressed: DressedBody, target: TriangleMesh, source_to_target: SurfaceMap, images: Floats, *, even: bool = False
 ) -> Steps[list[FittedItem]]:
-    """Fit what a body wears to another one, see `wear_steps`."""
+    """Fit what a body wears to another one, see `wear_steps`; what is symmetric stays so if it is to be `even`."""
     yield Progress(0.0, "Moving the skin")
     motion, unit = BodyMotion(dressed.skin, images), dressed.skin.size
     new_unit = motion.overall * unit
@@ -200,6 +210,11 @@ def fitted_steps(
         _elastic(works[-1], one.laplace, unit)
     for work in works:
         _place_pieces(work, works, motion, unit)
+    if even:
+        points = [one.item.mesh.vertices for one in dressed.items]
+        planes = mirror_planes(target.vertices)
+        for plane in mirror_planes(np.concatenate([skin_before.mesh.vertices, *points])):
+            _even_out(works, plane, skin, planes)
     order = _inner_first(works, unit)
     spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
     for done, number in enumerate(order):
@@ -264,6 +279,65 @@ def _place_pieces(work: _Work, works: Sequence[_Work], motion: BodyMotion, unit:
                 goal = goal + shifts[near[close]].mean(axis=0)
         positions[inside] = placed_rigidly(before[inside], goal, motion.growth_around(before[inside]))
     work.positions = positions
+
+
+def _even_out(works: Sequence[_Work], plane: MirrorPlane, skin: Surface, planes: Sequence[MirrorPlane]) -> None:
+    """Let items that are symmetric in a plane, each or two of them, be so where the other body is in one of its."""
+    target = skin.mesh
+    before = np.concatenate([work.item.mesh.vertices for work in works])
+    normals = np.concatenate([work.item.mesh.vertex_normals for work in works])
+    owners = np.repeat(np.arange(len(works)), [len(work.positions) for work in works])
+    if not len(before):
+        return
+    extent = float(np.linalg.norm(np.ptp(before, axis=0)))
+    # Both sides of cloth are told apart by where they look.
+    looks = _SAME * extent * normals
+    mirrored = np.concatenate([plane.reflected(before), looks - 2 * np.outer(looks @ plane.axis, plane.axis)], axis=1)
+    distances, partners = cKDTree(np.concatenate([before, looks], axis=1)).query(mirrored)
+    asked = np.concatenate([_asked(work) for work in works])
+    own = (distances <= _SAME * extent) & (asked == asked[partners]).all(axis=1)
+    if not own.any():
+        return
+    positions = np.concatenate([work.positions for work in works])
+    there = MirrorPlane.between(positions[own], positions[partners[own]], np.ones(np.count_nonzero(own)))
+    image = next((each for each in planes if each.is_along(there)), None)
+    if image is None:
+        return
+    below, number = np.unique(cKDTree(target.vertices).query(positions)[1], return_inverse=True)
+    away = np.sqrt(skin.search.nearest(image.reflected(target.vertices[below])).squared_distances)
+    own &= (away <= _MIRRORED * float(np.linalg.norm(np.ptp(target.vertices, axis=0))))[number]
+    for _ in range(2):  # one of a pair that is not symmetric itself leaves the other without
+        symmetric = _mostly(own, owners)
+        own &= symmetric[owners] & symmetric[owners[partners]]
+    if not own.any():
+        return
+    shifts = np.zeros_like(positions)
+    shifts[own] = (image.reflected(positions[partners[own]]) - positions[own]) / 2
+    # What has no mirror image, such as a pocket on one side, goes with what it is on.
+    alone = symmetric[owners] & ~own
+    shifts[alone] = shifts[own][cKDTree(before[own]).query(before[alone])[1]]
+    positions += shifts
+    for number, work in enumerate(works):
+        work.positions = positions[owners == number]
+        for piece in range(int(work.pieces.max(initial=-1)) + 1):
+            inside = work.pieces == piece
+            whole, goal = work.item.mesh.vertices[inside], work.positions[inside]
+            sizes = [float(np.linalg.norm(points - points.mean(axis=0))) for points in (goal, whole)]
+            work.positions[inside] = placed_rigidly(whole, goal, sizes[0] / max(sizes[1], TINY))
+
+
+def _asked(work: _Work) -> Floats:
+    """Tell what the owner wants of each vertex, (n, 5): what is asked for on one side alone is not symmetric."""
+    item, count = work.item, len(work.positions)
+    painted = [np.zeros(count) if values is None else values for values in (item.tightness, item.left)]
+    fits = [np.full(count, item.fit == fit) for fit in ("TIGHT", "LOOSE")]
+    return np.stack([work.pieces >= 0, *fits, *painted], axis=1).astype(np.float64)
+
+
+def _mostly(held: Bools, owners: Ints) -> Bools:
+    """Tell of which items, by the number of each vertex's, something holds at nearly all vertices."""
+    found: Bools = np.bincount(owners, held) >= _WHOLLY * np.bincount(owners)
+    return found
 
 
 def _inner_first(works: Sequence[_Work], unit: float) -> list[int]:

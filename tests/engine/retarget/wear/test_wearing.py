@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from engine import ClosestPoints, MeshError, SurfaceMap, TriangleMesh, run
 from engine.retarget.wear.wearing import wear_steps
@@ -168,6 +169,72 @@ def test_buttons_stay_rigid_and_on_the_cloth():
     assert gap.max() < 0.15
     (soft,) = wear(BODY, images, [WornItem(both, find_rigid=False)])
     assert (soft.pieces == -1).all()
+
+
+def by_a_map_that_slid_on_one_side(items, bump=0.0):
+    """Fit items from a ball to one of other proportions, whose map is turned by up to 0.2 where x is positive.
+
+    With a bump it is one on that side alone.
+    """
+
+    def taken(points):
+        angle = 0.2 * np.clip(points[:, 0], 0, None)
+        x, y, z = points.T
+        turned = np.stack([x, y * np.cos(angle) - z * np.sin(angle), y * np.sin(angle) + z * np.cos(angle)], axis=1)
+        out = bump * np.exp(-np.square(turned - [1.0, 0.0, 0.0]).sum(axis=1) / 0.5)
+        return turned * [1.3, 0.9, 1.1] * (1 + out)[:, None]
+
+    fine = ball(12)
+    back = np.exp(-np.square(fine.vertices - [1.0, 0.0, 0.0]).sum(axis=1) / 0.5)
+    target = TriangleMesh(fine.vertices * [1.3, 0.9, 1.1] * (1 + bump * back)[:, None], fine.triangles)
+    images = taken(BODY.vertices)
+    found = ClosestPoints(target).nearest(images)
+    source_to_target = SurfaceMap.from_barycentric(target, found.triangles, found.barycentric)
+    return run(wear_steps(BODY, target, source_to_target, images, items)), target
+
+
+def mirrored_away(item, fitted):
+    """How far each vertex is from where its partner's mirror image in the plane x = 0 is."""
+    partners = cKDTree(item.vertices).query(item.vertices * [-1, 1, 1])[1]
+    return np.linalg.norm(fitted[partners] * [-1, 1, 1] - fitted, axis=1)
+
+
+def test_symmetric_items_stay_symmetric_on_a_symmetric_body():
+    pocket = ball(1, 0.04, (0.7, -0.85, 0.0))
+    (shirt, with_pocket), _ = by_a_map_that_slid_on_one_side(
+        [WornItem(SHIRT), WornItem(TriangleMesh.concatenated([COAT, pocket]))]
+    )
+    assert mirrored_away(SHIRT, shirt.positions).max() < 0.01
+    coat = with_pocket.positions[: COAT.vertex_count]
+    assert mirrored_away(COAT, coat).max() < 0.01
+    assert min(shirt.clearance.min(), with_pocket.clearance.min()) > 0
+    # The pocket is as far from the coat as it was.
+    gaps = [
+        np.linalg.norm(
+            ClosestPoints(TriangleMesh(cloth, COAT.triangles)).nearest(worn.mean(axis=0)[None]).squared_distances
+        )
+        for cloth, worn in ((COAT.vertices, pocket.vertices), (coat, with_pocket.positions[COAT.vertex_count :]))
+    ]
+    assert np.sqrt(gaps[1]) == pytest.approx(np.sqrt(gaps[0]), abs=0.02)
+
+
+def test_two_items_that_are_mirror_images_are_so_afterwards_and_as_large():
+    form = ball(2, 0.1)
+    shape = form.vertices * [1.0, 0.6, 0.3] + 0.5 * form.vertices[:, [1, 2, 0]]
+    right = TriangleMesh(shape + np.array([0.8, 0.2, 0.7]), form.triangles)
+    left = TriangleMesh(right.vertices * [-1, 1, 1], form.triangles[:, ::-1])
+    fitted, _ = by_a_map_that_slid_on_one_side([WornItem(each, fit="RIGID") for each in (right, left)])
+    positions = np.concatenate([each.positions for each in fitted])
+    assert mirrored_away(TriangleMesh.concatenated([right, left]), positions).max() < 0.01
+    shape = shape - shape.mean(axis=0)
+    found = fitted[0].positions - fitted[0].positions.mean(axis=0)
+    size = np.linalg.norm(found) / np.linalg.norm(shape)
+    np.testing.assert_allclose(found @ found.T, size**2 * shape @ shape.T, atol=1e-6)
+
+
+def test_items_follow_what_a_body_has_on_one_side_alone():
+    (shirt,), _ = by_a_map_that_slid_on_one_side([WornItem(SHIRT)], bump=0.4)
+    assert mirrored_away(SHIRT, shirt.positions).max() > 0.2
 
 
 def test_what_is_named_rigid_is():
