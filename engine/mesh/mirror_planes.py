@@ -14,7 +14,7 @@ _MOST_POINTS = 1000
 """Points that are compared with their mirror images."""
 
 _ROUNDS = 16
-"""Rounds of pairing and fitting at most."""
+"""Rounds of pairing and fitting."""
 
 _FAR, _NEARER, _NEAR = 0.1, 0.6, 0.002
 """Distance from a mirror image, in units of the extent, at which a pair counts a quarter: at first, its factor from one

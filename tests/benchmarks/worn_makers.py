@@ -60,6 +60,8 @@ OWN = {
         {"Formal_Head": "Red", "Formal_Body": "LimeGreen Gold", "Formal_Legs": "LimeGreen", "Formal_Feet": "Red"},
     ),
 }
+"""What was looked at while *Wear* was made."""
+
 OTHER_SEX = {
     f"{case} on {kind}": (OWN[case][0], f"m2m-human-{kind}", OWN[case][2])
     for kind, cases in (("female", ("Suit", "King")), ("male", ("Witch", "Casual", "Formal")))

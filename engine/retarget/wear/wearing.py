@@ -195,7 +195,10 @@ def _dressed_item_steps(body: tuple[BodySkin, Surface], given: WornItem) -> Step
 def fitted_steps(
     dressed: DressedBody, target: TriangleMesh, source_to_target: SurfaceMap, images: Floats, *, even: bool = False
 ) -> Steps[list[FittedItem]]:
-    """Fit what a body wears to another one, see `wear_steps`; what is symmetric stays so if it is to be `even`."""
+    """Fit what a body wears to another one, see `wear_steps`.
+
+    What is symmetric stays so if it is to be `even`: not where the same body is compared with itself in another form.
+    """
     yield Progress(0.0, "Moving the skin")
     motion, unit = BodyMotion(dressed.skin, images), dressed.skin.size
     new_unit = motion.overall * unit
@@ -210,7 +213,7 @@ def fitted_steps(
         _elastic(works[-1], one.laplace, unit)
     for work in works:
         _place_pieces(work, works, motion, unit)
-    if even:
+    if even and works:
         points = [one.item.mesh.vertices for one in dressed.items]
         planes = mirror_planes(target.vertices)
         for plane in mirror_planes(np.concatenate([skin_before.mesh.vertices, *points])):
@@ -287,8 +290,6 @@ def _even_out(works: Sequence[_Work], plane: MirrorPlane, skin: Surface, planes:
     before = np.concatenate([work.item.mesh.vertices for work in works])
     normals = np.concatenate([work.item.mesh.vertex_normals for work in works])
     owners = np.repeat(np.arange(len(works)), [len(work.positions) for work in works])
-    if not len(before):
-        return
     extent = float(np.linalg.norm(np.ptp(before, axis=0)))
     # Both sides of cloth are told apart by where they look.
     looks = _SAME * extent * normals

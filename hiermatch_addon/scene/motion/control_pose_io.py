@@ -141,7 +141,7 @@ class _Stage:
         above = [[number[each] for each in leaders_of(armature, name)[1:] if each in number] for name in self._names]
         self._leaders = np.array([each[0] if each else -1 for each in above], np.int64)
         self._most = 2 + max((len(each) for each in above), default=0)
-        self._unit = armature_of(armature).bones[self._names[0]].length if self._names else 1.0
+        self._unit = armature_of(armature).bones[self._names[0]].length
         self._starts = places(armature, self._names)
 
     def wished(
@@ -187,6 +187,7 @@ class _Stage:
         `before` and `back` are how each had to be turned back, (c, 3, 3), when they were set and after that.
         """
         leaders = self._leaders
+        # Of those without one any number will do: they stay without.
         stayed = (_apart(before[leaders], np.eye(3)) > _LEARNS) & (_apart(back, before[leaders]) <= _STANDS)
         self._leaders = np.where(stayed & stands[leaders], -1, leaders)
 

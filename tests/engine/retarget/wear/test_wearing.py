@@ -43,6 +43,10 @@ def test_the_same_body_changes_nothing():
         np.testing.assert_allclose(one.places.sum(axis=1), 1)
 
 
+def test_a_body_that_wears_nothing_has_nothing_to_be_fitted():
+    assert wear(BODY, 2 * BODY.vertices, []) == []
+
+
 def test_a_similar_body_gets_similar_clothes():
     def moved(points):
         return 2.5 * points @ TURN.T + np.array([3.0, -1.0, 2.0])
