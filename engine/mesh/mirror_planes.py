@@ -39,6 +39,11 @@ class MirrorPlane:
         away: Floats = points - 2 * np.outer((points - self.middle) @ self.axis, self.axis)
         return away
 
+    def reflected_directions(self, directions: Floats) -> Floats:
+        """Mirror directions (n, 3), which have no place."""
+        away: Floats = directions - 2 * np.outer(directions @ self.axis, self.axis)
+        return away
+
     def is_along(self, other: MirrorPlane) -> bool:
         """Tell whether another plane has nearly the same direction."""
         return bool(abs(self.axis @ other.axis) > _SAME_AXIS)

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.mirror_planes import MirrorPlane
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Floats, Ints
 from .skeleton import Skeleton
@@ -58,11 +59,9 @@ def mirrored_joints(skeleton: Skeleton, target: TriangleMesh, placed: Joints, sp
     plane = _plane(heads, tails, partners, target, np.eye(4) if space is None else space)
     if plane is None:
         return placed
-    middle, axis = plane
-    flip = np.eye(3) - 2 * np.outer(axis, axis)
-    heads, tails = ((ends + (ends[partners] - middle) @ flip + middle) / 2 for ends in (heads, tails))
+    heads, tails = ((ends + plane.reflected(ends[partners])) / 2 for ends in (heads, tails))
     # Axes across may be mirrored, or turned about as well, as rolls want it.
-    other = across[partners] @ flip
+    other = plane.reflected_directions(across[partners])
     alike = (across * other).sum(axis=1)
     across = np.where(np.abs(alike)[:, None] > np.sqrt(0.5), across + np.sign(alike)[:, None] * other, across)
     along = tails - heads
@@ -84,31 +83,24 @@ def _partners(skeleton: Skeleton) -> Ints | None:
     return None
 
 
-def _plane(
-    heads: Floats, tails: Floats, partners: Ints, target: TriangleMesh, space: Floats
-) -> tuple[Floats, Floats] | None:
-    """Find a point and the normal (3,) of the plane in which the target is symmetric; None if it is not."""
-    between = np.concatenate([heads - heads[partners], tails - tails[partners]])
-    signs = np.sign(between @ between[np.square(between).sum(axis=1).argmax()])
-    axis = (signs[:, None] * between).sum(axis=0)
-    if not np.linalg.norm(axis) > 0:
+def _plane(heads: Floats, tails: Floats, partners: Ints, target: TriangleMesh, space: Floats) -> MirrorPlane | None:
+    """Find the plane in which the target is symmetric; None if it is not."""
+    ends, mirrored = np.concatenate([heads, tails]), np.concatenate([heads[partners], tails[partners]])
+    if not (ends != mirrored).any():
         return None
-    axis /= np.linalg.norm(axis)
-    middle = np.concatenate([heads + heads[partners], tails + tails[partners]]).mean(axis=0) / 2
+    between = MirrorPlane.between(ends, mirrored, np.ones(len(ends)))
     rows = np.linspace(0, target.vertex_count - 1, min(_SAMPLES, target.vertex_count)).astype(np.int64)
     points, search = target.vertices[rows], ClosestPoints(target)
     extent = float(np.linalg.norm(np.ptp(target.vertices, axis=0)))
 
-    def missed(place: Floats, normal: Floats) -> float:
+    def missed(plane: MirrorPlane) -> float:
         """Tell how far the mirrored target is from itself on the mean, in units of its extent."""
-        mirrored = points - 2 * np.outer((points - place) @ normal, normal)
-        return float(np.sqrt(search.nearest(mirrored).squared_distances).mean()) / extent
+        return float(np.sqrt(search.nearest(plane.reflected(points)).squared_distances).mean()) / extent
 
-    found = missed(middle, axis)
+    found = missed(between)
     axes = space[:3, :3] / np.maximum(np.linalg.norm(space[:3, :3], axis=0), TINY)
-    own = axes[:, np.abs(axes.T @ axis).argmax()]
-    if np.abs(own @ axis) > np.cos(_OWN_ANGLE) and np.abs((middle - space[:3, 3]) @ own) < _OWN_PLACE * extent:
-        snapped = missed(space[:3, 3], own)
-        if snapped < max(_AS_GOOD * found, _SAME):
-            return space[:3, 3], own
-    return (middle, axis) if found < _SYMMETRIC else None
+    own = MirrorPlane(space[:3, 3], axes[:, np.abs(axes.T @ between.axis).argmax()])
+    turned, moved = abs(own.axis @ between.axis), abs((between.middle - own.middle) @ own.axis)
+    if turned > np.cos(_OWN_ANGLE) and moved < _OWN_PLACE * extent and missed(own) < max(_AS_GOOD * found, _SAME):
+        return own
+    return between if found < _SYMMETRIC else None

@@ -293,7 +293,7 @@ def _even_out(works: Sequence[_Work], plane: MirrorPlane, skin: Surface, planes:
     extent = float(np.linalg.norm(np.ptp(before, axis=0)))
     # Both sides of cloth are told apart by where they look.
     looks = _SAME * extent * normals
-    mirrored = np.concatenate([plane.reflected(before), looks - 2 * np.outer(looks @ plane.axis, plane.axis)], axis=1)
+    mirrored = np.concatenate([plane.reflected(before), plane.reflected_directions(looks)], axis=1)
     distances, partners = cKDTree(np.concatenate([before, looks], axis=1)).query(mirrored)
     asked = np.concatenate([_asked(work) for work in works])
     own = (distances <= _SAME * extent) & (asked == asked[partners]).all(axis=1)
