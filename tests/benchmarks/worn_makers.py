@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Put clothes of characters for games on the body of another maker, and measure where its skin shows.
 
-    python -m tests.benchmarks.worn_makers --data FOLDER [--only Suit,King] [--save FOLDER] [--pictures FOLDER]
+    python -m tests.benchmarks.worn_makers --data FOLDER [--only Suit,King] [--remeshed] [--save F] [--pictures F]
 
 FOLDER holds the files of `CASES`.  Characters are taken apart: what is named there are the items, what is left is the
 body, which has no skin below most of them.  Everything goes through import and the button *Wear*.
@@ -9,7 +9,9 @@ body, which has no skin below most of them.  Everything goes through import and 
 A row holds the confidence of the match in %; what part of the skin below the items shows through them, by area, in %:
 at rest, in the mean of three poses, and in the worst of them; how far what is worn on the trunk stands off the skin at
 rest, in % of the body's height (the 99th percentile of its vertices); how far what is worn on the legs is higher or
-lower than on the source, in % of either's height (the 95th percentile); and the seconds of one core that it took.
+lower than on the source, in % of either's height (the 95th percentile); how far it is from even at rest, on the mean:
+from each vertex to the mirror image of its partner, in % of the height; and the seconds of one core that it took.
+--remeshed leaves the target 6,000 triangles, whose corners are no mirror images of one another.
 --save keeps a .blend of each case, to look at; --pictures renders each: the source, the target from four sides, and
 in the three poses.
 """
@@ -26,8 +28,9 @@ os.environ.setdefault("HIERMATCH_PROCESSES", "1")
 
 import bpy
 import numpy as np
-from mathutils import Euler, Matrix
+from mathutils import Euler, Matrix, Vector
 from mathutils.bvhtree import BVHTree
+from scipy.spatial import cKDTree
 
 from engine import ClosestPoints, TriangleMesh
 from tests.benchmarks.action_strip import shown_surface
@@ -97,6 +100,12 @@ NEAR = 0.03
 """How far from an item, in the same unit, skin is below it."""
 
 
+SAME = 1e-3
+"""How far a vertex of an item may be from the mirror image of its partner, in units of the body's height."""
+
+REMESHED, SHAKEN = 6000, 3e-4
+"""Triangles that are left of a target that is remeshed, and how far its vertices are shaken before, in its size."""
+
 WAIST = 0.58
 """How high what is worn on the legs is worn on the trunk, as a part of the height."""
 
@@ -152,6 +161,31 @@ def taken_out(obj, materials):
         build.to_mesh(one.data)
         build.free()
     return part
+
+
+def remesh(obj):
+    """Give a mesh fewer vertices, which are no mirror images of one another, with their weights."""
+    import bmesh  # only there once bpy is
+
+    for modifier in obj.modifiers:
+        modifier.show_viewport = False
+    build = bmesh.new()
+    build.from_mesh(obj.data)
+    size, random = max(obj.dimensions), np.random.default_rng(0)
+    bmesh.ops.remove_doubles(build, verts=build.verts, dist=1e-5 * size)
+    for vertex in build.verts:  # which edges are left out should differ between both sides
+        vertex.co += Vector(random.normal(scale=SHAKEN * size, size=3))
+    build.to_mesh(obj.data)
+    build.free()
+    obj.data.calc_loop_triangles()
+    fewer = obj.modifiers.new("Fewer", "DECIMATE")
+    fewer.ratio = REMESHED / len(obj.data.loop_triangles)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    shown = obj.evaluated_get(depsgraph)
+    obj.data = bpy.data.meshes.new_from_object(shown, preserve_all_data_layers=True, depsgraph=depsgraph)
+    obj.modifiers.remove(fewer)
+    for modifier in obj.modifiers:
+        modifier.show_viewport = True
 
 
 def through(body, items):
@@ -220,6 +254,18 @@ def shifted(skin, bodies, items):
     return np.quantile(np.abs(after - before), 0.95)
 
 
+def uneven(bodies, items):
+    """How far items are from the mirror images of their partners in the plane x = 0, as a part of the height."""
+    apart = []
+    for item in items:
+        before = shown_surface([bpy.data.objects[item["hiermatch_item"]]])[0]
+        distances, partners = cKDTree(before).query(before * [-1, 1, 1])
+        after = shown_surface([item])[0]
+        paired = distances < SAME * np.ptp(before[:, 2])
+        apart.append(np.linalg.norm(after[paired] - after[partners[paired]] * [-1, 1, 1], axis=1))
+    return np.concatenate(apart).mean() / np.ptp(shown_surface(bodies)[0][:, 2])
+
+
 def picture(rig, source, target, path):
     """Render the meshes of the source, those of the target from four sides, and in each pose, on one sheet."""
     views = [
@@ -246,11 +292,13 @@ def picture(rig, source, target, path):
         one.unlink()
 
 
-def wear(case, data):
+def wear(case, data, *, remeshed=False):
     """Put the items of a case on the other body: its armature, its meshes, the fitted items, and the source's skin."""
     source, target, chosen = CASES[case]
     rig, parts = added(data / f"{source}.glb", "Source")
     other, bodies = added(data / f"{target}.glb", "Target")
+    for body in bodies.values() if remeshed else ():
+        remesh(body)
     items = [taken_out(parts[name], kinds.split()) if kinds else parts[name] for name, kinds in chosen.items()]
     bpy.context.view_layer.update()
     bpy.ops.hiermatch.wear(source=rig.name, target=other.name, items=[{"name": item.name} for item in items])
@@ -262,17 +310,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True, help="folder with the characters")
     parser.add_argument("--only", default=",".join(OWN), help="names of cases, separated by commas, or all")
+    parser.add_argument("--remeshed", action="store_true", help="give the target other vertices")
     parser.add_argument("--save", type=Path, help="folder for the .blend files")
     parser.add_argument("--pictures", type=Path, help="folder for the pictures")
     options = parser.parse_args()
     registered_extension()
-    print(f"{'case':18s} confidence  shows at rest  in poses     worst stands off   shifted  seconds")
+    print(f"{'case':18s} confidence  shows at rest  in poses     worst stands off   shifted    uneven  seconds")
     for case in CASES if options.only == "all" else options.only.split(","):
         bpy.ops.wm.read_homefile(use_empty=True)
         start = time.process_time()
-        rig, bodies, items, skin = wear(case, options.data)
+        rig, bodies, items, skin = wear(case, options.data, remeshed=options.remeshed)
         seconds = time.process_time() - start
-        off = stands_off(bodies, items), shifted(skin, bodies, items)
+        off = stands_off(bodies, items), shifted(skin, bodies, items), uneven(bodies, items)
         rest, *poses = shown(rig, bodies, items)
         said = re.search(r"Confidence (\d+)", bpy.context.scene.hiermatch_retarget.report.verdict)
         numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), *off))

@@ -214,9 +214,10 @@ def fitted_steps(
     for work in works:
         _place_pieces(work, works, motion, unit)
     if even and works:
-        points = [one.item.mesh.vertices for one in dressed.items]
-        planes = mirror_planes(target.vertices)
-        for plane in mirror_planes(np.concatenate([skin_before.mesh.vertices, *points])):
+        planes = mirror_planes(target)
+        for plane in mirror_planes(
+            TriangleMesh.concatenated([skin_before.mesh, *(one.item.mesh for one in dressed.items)])
+        ):
             _even_out(works, plane, skin, planes)
     order = _inner_first(works, unit)
     spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
