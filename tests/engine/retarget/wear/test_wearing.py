@@ -239,6 +239,49 @@ def test_two_items_that_are_mirror_images_are_so_afterwards_and_as_large():
     np.testing.assert_allclose(found @ found.T, size**2 * shape @ shape.T, atol=1e-6)
 
 
+def lump():
+    """A body that is not symmetric in any plane, nearly a ball at its equator."""
+    form = ball(14)
+    bumps = [([0.3, 0.5, 0.8], 0.5), ([-0.6, 0.2, 0.8], 0.3), ([0.4, -0.3, -0.9], 0.4), ([-0.3, 0.6, -0.7], 0.6)]
+    grown = 1 + sum(high * np.exp(-np.square(form.vertices - place).sum(axis=1) / 0.2) for place, high in bumps)
+    return TriangleMesh(form.vertices * grown[:, None], form.triangles)
+
+
+LUMP = lump()
+
+
+def by_a_map_that_slides_up_and_down(items):
+    """Fit items from a lump to itself by a map that is right but for waves along its equator."""
+    x, y, z = LUMP.vertices.T
+    slid = LUMP.vertices + np.outer(0.1 * np.cos(7 * np.arctan2(y, x)) * np.exp(-8 * z**2), [0.0, 0.0, 1.0])
+    found = ClosestPoints(LUMP).nearest(slid)
+    source_to_target = SurfaceMap.from_barycentric(LUMP, found.triangles, found.barycentric)
+    images = source_to_target.positions
+    return run(wear_steps(LUMP, LUMP, source_to_target, images, [WornItem(item) for item in items]))
+
+
+def test_what_stands_for_skin_follows_the_map_less_than_what_lies_on_it():
+    belt = LUMP.submesh(np.abs(LUMP.vertices[:, 2]) < 0.3)[0]
+    on_skin = TriangleMesh(belt.vertices + 0.01 * belt.vertex_normals, belt.triangles)
+    waves = [
+        np.abs(each.positions[:, 2] - item.vertices[:, 2]).max()
+        for item in (belt, on_skin)
+        for each in by_a_map_that_slides_up_and_down([item])
+    ]
+    assert waves[1] > 0.06
+    assert waves[0] < 0.75 * waves[1]
+
+
+def test_parts_that_a_body_was_cut_into_stay_together():
+    upper, lower = (LUMP.submesh(side)[0] for side in (LUMP.vertices[:, 2] > -0.1, LUMP.vertices[:, 2] < 0.1))
+    gaps, partners = cKDTree(lower.vertices).query(upper.vertices)
+    both = np.flatnonzero(gaps == 0)
+    one, other = by_a_map_that_slides_up_and_down([upper, lower])
+    apart = np.linalg.norm(one.positions[both] - other.positions[partners[both]], axis=1)
+    assert len(both) > 20
+    assert apart.max() < 0.004
+
+
 def test_items_follow_what_a_body_has_on_one_side_alone():
     (shirt,), _ = by_a_map_that_slid_on_one_side([WornItem(SHIRT)], bump=0.4)
     assert mirrored_away(SHIRT, shirt.positions).max() > 0.2
