@@ -14,7 +14,7 @@ from scipy.sparse import csr_array, vstack
 from ...engine import continues_body, ends_at_joint, hanging_triangles
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
-from .armatures import find_armature, moving_armatures, read_rig
+from .armatures import find_armature, held_by, moving_armatures, read_rig
 from .character import FITTED_TO, Character, joined, joined_mesh, parts_of, vertex_ranges
 from .garment_shape_io import mirror_axes
 from .key_drivers import counterparts, point_key_drivers
@@ -177,7 +177,7 @@ def dressed_at_rest(item: bpy.types.Object, source: Side) -> bool:
     Else it lies on the body as this is posed.
     """
     armature = find_armature(source)
-    return armature is None or armature in moving_armatures(item)
+    return armature is None or armature in moving_armatures(item) or bool(held_by(item, armature))
 
 
 def fitted_name(item: str, body: str) -> str:

@@ -96,7 +96,8 @@ def write_copy(
 def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:
     """Write weights where they are not locked, and drop the groups of bones that are not there."""
     for name in weights.lost:
-        copy.vertex_groups.remove(copy.vertex_groups[name])
+        if name in copy.vertex_groups:  # a bone that the item hung on has none
+            copy.vertex_groups.remove(copy.vertex_groups[name])
     free = [number for number, name in enumerate(weights.names) if name not in weights.locked]
     write_weights(copy, [weights.names[number] for number in free], csr_array(weights.weights[:, free]))
 

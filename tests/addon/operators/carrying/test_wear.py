@@ -269,6 +269,38 @@ def test_bones_of_an_item_come_along_onto_the_other_rig(pair):
     )
 
 
+def test_an_item_that_hangs_on_a_bone_is_moved_by_it_alone_and_fitted_at_rest(pair):
+    """As helmets and glasses are in files for games."""
+    source, target, shirt, _ = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for obj, rig in ((source, rigs[0]), (target, rigs[1])):
+        for name in ("neck", "tail"):
+            obj.vertex_groups.new(name=name).add(range(len(obj.data.vertices)), 0.5, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+    stood = shirt.matrix_world.copy()
+    shirt.parent, shirt.parent_type, shirt.parent_bone = rigs[0], "BONE", "neck"
+    bpy.context.view_layer.update()
+    shirt.matrix_world = stood
+    found = []
+    for turn in (0.0, 1.2):
+        rigs[0].pose.bones["neck"].rotation_mode = "XYZ"
+        rigs[0].pose.bones["neck"].rotation_euler = (turn, 0.0, turn)
+        bpy.context.view_layer.update()
+        assert wear("Shirt", wear_poses=False) == {"FINISHED"}
+        copy = fitted("Shirt")
+        neck = copy.vertex_groups["neck"].index
+        weights = [{one.group: one.weight for one in vertex.groups} for vertex in copy.data.vertices]
+        assert {each[neck] for each in weights} == {1.0}
+        assert "tail" not in copy.vertex_groups
+        assert copy.modifiers["Armature"].object == rigs[1]
+        found.append(in_world(copy))
+    np.testing.assert_allclose(found[1], found[0], atol=1e-3)
+    for bone in rigs[1].data.bones:
+        bone.name = f"other {bone.name}"
+    assert wear("Shirt", wear_poses=False) == {"FINISHED"}
+    assert "neck" not in fitted("Shirt").vertex_groups
+
+
 def test_the_body_below_is_drawn_in_or_hidden(pair):
     _, target, *_ = pair
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
