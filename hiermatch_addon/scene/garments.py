@@ -225,6 +225,8 @@ def fitted_copy(
         Names of what belongs to the source that drivers of its shape keys still read from.
     """
     before = made_copy(item, target)
+    scene = cast("bpy.types.Scene", context.scene)
+    shown = before is not None and scene.objects.get(before.name) == before
     copy, mesh = item.copy(), mesh_of(item).copy()
     copy.data = mesh
     copy.animation_data_clear()
@@ -240,8 +242,10 @@ def fitted_copy(
             collection.objects.link(copy)
         before.user_remap(copy)
         bpy.data.objects.remove(before)
-    else:
-        _collection_of(context, target).objects.link(copy)
+    if not shown:
+        outfit = _collection_of(scene, target)
+        if copy not in set(outfit.objects):
+            outfit.objects.link(copy)
     copy.name = mesh.name = name
     copy.hide_set(state=False)
     copy.select_set(state=False)
@@ -268,23 +272,26 @@ def fitted_copy(
 
 
 def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:
-    """Return where a copy stands: moved with the body, and turned with it if that matters to a modifier."""
+    """Return where a copy stands: moved with the body, and turned with it if that matters to a modifier.
+
+    An object that hangs on nothing cannot be sheared, as one below a parent can that is scaled unevenly.
+    """
     matrix = item.matrix_world.copy()
     moved = Matrix(motion.tolist())
     if mirror_axes(item):
-        return moved @ matrix
-    matrix.translation = moved @ matrix.to_translation()
-    return matrix
+        matrix = moved @ matrix
+    else:
+        matrix.translation = moved @ matrix.to_translation()
+    return Matrix.LocRotScale(*matrix.decompose())
 
 
-def _collection_of(context: bpy.types.Context, body: Side) -> bpy.types.Collection:
-    """Find the collection of what was fitted to a body, or add it to the scene."""
-    for collection in bpy.data.collections:
-        if cast("Any", collection).get(BODY) == body.name:
-            return collection
-    made = bpy.data.collections.new(f"Outfit of {body.name}")
+def _collection_of(scene: bpy.types.Scene, body: Side) -> bpy.types.Collection:
+    """Find the collection of what was fitted to a body, or make it; it is added to the scene if it is not there."""
+    found = [one for one in bpy.data.collections if cast("Any", one).get(BODY) == body.name]
+    made = found[0] if found else bpy.data.collections.new(f"Outfit of {body.name}")
     cast("Any", made)[BODY] = body.name
-    cast("bpy.types.Scene", context.scene).collection.children.link(made)
+    if made not in scene.collection.children_recursive:
+        scene.collection.children.link(made)
     return made
 
 

@@ -269,6 +269,38 @@ def test_bones_of_an_item_come_along_onto_the_other_rig(pair):
     )
 
 
+def test_an_item_below_an_unevenly_scaled_parent_is_fitted_where_it_belongs(pair):
+    """A copy hangs on nothing, and what hangs on nothing cannot be sheared."""
+    target, shirt = pair[1:3]
+    assert wear("Shirt") == {"FINISHED"}
+    expected, stood = in_world(fitted("Shirt")), in_world(shirt)
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(empty)
+    empty.scale, empty.rotation_euler = (1.0, 3.0, 0.5), (0.3, 0.5, 0.2)
+    shirt.parent, shirt.rotation_euler = empty, (0.5, 0.2, 1.0)
+    bpy.context.view_layer.update()
+    matrix = np.linalg.inv(np.array(shirt.matrix_world))
+    local = stood @ matrix[:3, :3].T + matrix[:3, 3]
+    shirt.data.vertices.foreach_set("co", local.astype(np.float32).ravel())
+    assert wear("Shirt") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(in_world(fitted("Shirt")), expected, atol=1e-3)
+    assert target.name == "Target"
+
+
+def test_a_copy_that_was_taken_out_of_the_scene_is_shown_again(pair):
+    assert pair
+    scene = bpy.context.scene
+    assert wear("Shirt") == {"FINISHED"}
+    bpy.data.collections["Outfit of Target"].objects.unlink(fitted("Shirt"))
+    assert wear("Shirt") == {"FINISHED"}
+    assert fitted("Shirt").name in scene.objects
+    scene.collection.children.unlink(bpy.data.collections["Outfit of Target"])
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    assert {fitted("Shirt").name, fitted("Coat").name} <= set(scene.objects.keys())
+    assert bpy.data.collections["Outfit of Target"].users == 1
+
+
 def test_an_item_that_hangs_on_a_bone_is_moved_by_it_alone_and_fitted_at_rest(pair):
     """As helmets and glasses are in files for games."""
     source, target, shirt, _ = pair
