@@ -11,7 +11,7 @@ from mathutils import Matrix
 
 from ....engine import Motion, posed_motion, rotation_matrices
 from ..armatures import armature_of
-from .action_curves import CurveMaker, assign_action, bone_curves, played_action, slot_for
+from .action_curves import CurveMaker, assign_action, bone_curves, frame_range, played_action, slot_for
 from .rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKey
                 cycles.setdefault(bone, {name: getattr(modifier, name) for name in _CYCLE})
     frames = {bone: np.array(sorted(keys), np.float64) for bone, keys in times.items()}
     curved = {bone: [times[bone][float(frame)] for frame in found] for bone, found in frames.items()}
-    return ActionKeys(np.array(action.frame_range, np.float64), frames, curved, cycles, extrapolations)
+    return ActionKeys(np.array(frame_range(action, armature), np.float64), frames, curved, cycles, extrapolations)
 
 
 def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]) -> Motion:

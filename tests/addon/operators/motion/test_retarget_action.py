@@ -204,6 +204,35 @@ def test_what_an_action_made_by_hand_left_stays():
     assert target.pose.bones[arm].matrix_basis == before
 
 
+def test_what_is_muted_is_not_carried():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    action = add_action(source)
+    for (path, _), curve in curves_of(action).items():
+        curve.mute = "forearm.L" in path
+    for bone in source.pose.bones:
+        bone.matrix_basis = Matrix()
+    carry(source="A", target="B")
+    forearm, upper = (made.names[made.origins.index(frozenset([name]))] for name in ("forearm.L", "upper_arm.L"))
+    bpy.context.scene.frame_set(11)
+    assert target.pose.bones[forearm].matrix_basis.to_quaternion().angle < 0.01
+    assert target.pose.bones[upper].matrix_basis.to_quaternion().angle > 0.1
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 4), reason="actions have slots since Blender 4.4")
+@pytest.mark.parametrize("keying", ["AUTO", "ALL"])
+def test_an_action_that_moves_something_else_as_well_gets_no_more_frames(keying):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    slot = action.slots.new("OBJECT", "Camera")
+    curve = action.layers[0].strips[0].channelbag(slot, ensure=True).fcurves.new("location", index=0)
+    for frame in (-100, 400):
+        curve.keyframe_points.insert(frame, 0)
+    carry(source="A", target="B", keying=keying)
+    assert tuple(target.animation_data.action.frame_range) == (1, 21)
+
+
 def test_an_armature_alone_gives_motion_through_pairs_that_are_there():
     source, _ = add_person("A")
     add_person("B", "renamed")
