@@ -1185,6 +1185,11 @@ MESSAGES: Final[dict[str, str]] = {
         'コンストレイントが"{1}"の{0}を拘束しているため、新しいモーションに従わないことがあります。見るにはミュー'
         "トしてください。"
     ),
+    'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
+    "Clear Transform) unless that is wanted.": (
+        'ペアがなく、レストポーズでもないボーンが、付いているものをすべて回転させています: "{1}"の{0}。意図したもので'
+        "なければ、そのポーズをクリアしてください(ポーズ > トランスフォームをクリア)。"
+    ),
     '{0} moves the object "{1}" as a whole, too. That was left out.': (
         '{0}はオブジェクト"{1}"全体も動かします。それは移されませんでした。'
     ),

@@ -984,6 +984,11 @@ MESSAGES: Final[dict[str, str]] = {
     'Constraints hold {0} of "{1}", so they may not follow the new motion. Mute them to see it.': (
         '约束控制着 "{1}" 的 {0}，因此它们可能不会跟随新的运动。请将其静音以查看。'
     ),
+    'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
+    "Clear Transform) unless that is wanted.": (
+        '没有配对且不在静置姿态的骨骼会带动挂在其上的一切旋转："{1}" 的 {0}。如非有意，请清除其姿态'
+        "（姿态 > 清空变换）。"
+    ),
     '{0} moves the object "{1}" as a whole, too. That was left out.': '{0} 还会移动整个物体 "{1}"。这部分被略去。',
     'The action "{0}" was deleted meanwhile. Nothing was written.': '动作 "{0}" 在此期间被删除。未写入任何内容。',
     'Source and Target are both "{0}". Choose two different armatures.': '源和目标都是 "{0}"。请选择两个不同的骨架。',

@@ -15,7 +15,7 @@ from .action_curves import CurveMaker, assign_action, bone_curves, frame_range, 
 from .rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     import bpy
     from numpy.typing import NDArray
@@ -30,6 +30,7 @@ __all__ = [
     "read_keys",
     "rotation_channel",
     "set_pose",
+    "turned_above",
     "write_action",
 ]
 
@@ -96,6 +97,9 @@ class BoneKeys:
 
 _MARKER = "hiermatch_carried"
 """Custom property of actions that were made from those of other rigs."""
+
+_TURNED = 0.02
+"""By what angle a bone is no longer at rest: about one degree."""
 
 _CYCLE = ("mode_before", "cycles_before", "mode_after", "cycles_after")
 
@@ -277,6 +281,14 @@ def set_pose(armature: bpy.types.Object, bases: dict[str, NDArray[np.float64]]) 
         scale = bones[name].scale.copy()
         bones[name].matrix_basis = Matrix(basis.tolist())
         bones[name].scale = scale
+
+
+def turned_above(armature: bpy.types.Object, moved: Collection[str]) -> list[str]:
+    """Return the names of bones that are turned in the pose, on which some that are moved hang, and which are not."""
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    above = {parent.name for name in moved if name in bones for parent in bones[name].parent_recursive}
+    chosen = [bone for bone in bones if bone.name in above.difference(moved)]
+    return [bone.name for bone in chosen if bone.matrix_basis.to_quaternion().angle > _TURNED]
 
 
 def rotation_channel(mode: str) -> str:

@@ -204,6 +204,24 @@ def test_what_an_action_made_by_hand_left_stays():
     assert target.pose.bones[arm].matrix_basis == before
 
 
+def test_bones_without_a_pair_that_turn_all_else_are_named():
+    """Such as a root that the target's own action has laid down."""
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    add_action(source)
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    hips, arm = (made.names[made.origins.index(frozenset([name]))] for name in ("hips", "forearm.L"))
+    bpy.ops.hiermatch.remove_bone_pair(source="A", target="B", target_bone=hips)
+    for operator in (carry, pose):
+        operator(source="A", target="B")
+        assert "at rest" not in bpy.context.scene.hiermatch_retarget.report.notes
+    target.pose.bones[hips].rotation_quaternion = (0.7, 0.7, 0.0, 0.0)
+    for operator in (carry, pose):
+        operator(source="A", target="B")
+        assert f'hangs on them: "{hips}" of "B"' in bpy.context.scene.hiermatch_retarget.report.notes
+    assert arm not in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 def test_what_is_muted_is_not_carried():
     source, _ = add_person("A")
     target, made = add_person("B", "renamed")
