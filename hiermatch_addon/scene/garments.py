@@ -148,9 +148,17 @@ def fitted_to(body: Side) -> list[bpy.types.Object]:
 
 
 def check_item(
-    context: bpy.types.Context, item: bpy.types.Object, source: Side, target: Side, items: Collection[bpy.types.Object]
+    context: bpy.types.Context,
+    item: bpy.types.Object,
+    source: Side,
+    target: Side,
+    items: Collection[bpy.types.Object],
+    *,
+    writable: bool = True,
 ) -> None:
     """Make sure that an object, one of some items, can be fitted from one body to another.
+
+    What is copied only need not be `writable`: it may be linked from another file.
 
     Raises
     ------
@@ -168,7 +176,7 @@ def check_item(
             f'"{item.name}" is not a mesh but of type {item.type.title()}. Convert a copy of it '
             "(Object > Convert > Mesh), and fit that."
         )
-    check_object(view_layer_of(context), item)
+    check_object(view_layer_of(context), item, writable=writable)
 
 
 def dressed_at_rest(item: bpy.types.Object, source: Side) -> bool:
@@ -224,29 +232,12 @@ def fitted_copy(
     kept : list of str
         Names of what belongs to the source that drivers of its shape keys still read from.
     """
-    before = made_copy(item, target)
-    scene = cast("bpy.types.Scene", context.scene)
-    shown = before is not None and scene.objects.get(before.name) == before
-    copy, mesh = item.copy(), mesh_of(item).copy()
-    copy.data = mesh
-    copy.animation_data_clear()
-    copy.constraints.clear()
-    copy.parent = None
+    copy = _copy_of(item)
     copy.matrix_world = _placed(item, motion)
-    name = fitted_name(item.name, target.name)
+    name = _put_in_place(cast("bpy.types.Scene", context.scene), copy, item, target)
     marks: Any = copy
     marks[ITEM], marks[BODY] = item.name, target.name
-    if before is not None:
-        name = before.name
-        for collection in before.users_collection:
-            collection.objects.link(copy)
-        before.user_remap(copy)
-        bpy.data.objects.remove(before)
-    if not shown:
-        outfit = _collection_of(scene, target)
-        if copy not in set(outfit.objects):
-            outfit.objects.link(copy)
-    copy.name = mesh.name = name
+    copy.name = mesh_of(copy).name = name
     copy.hide_set(state=False)
     copy.select_set(state=False)
     # Of a body of several objects the largest stands for all that something may point to.
@@ -269,6 +260,35 @@ def fitted_copy(
         if own is not None:
             every[own] = [keys] if part is item else theirs
     return copy, point_key_drivers(keys, every)
+
+
+def _copy_of(item: bpy.types.Object) -> bpy.types.Object:
+    """Copy an item with its mesh, as this file's own, which hangs on nothing."""
+    copy, mesh = item.copy(), mesh_of(item).copy()
+    for made in (copy, mesh):
+        if made.override_library is not None:  # as a copy of an override is one, too
+            made.make_local()
+    copy.data = mesh
+    copy.animation_data_clear()
+    copy.constraints.clear()
+    copy.parent = None
+    return copy
+
+
+def _put_in_place(scene: bpy.types.Scene, copy: bpy.types.Object, item: bpy.types.Object, body: Side) -> str:
+    """Put a copy into the scene, in the place of one that was fitted before; return what it is to be called."""
+    before = made_copy(item, body)
+    name, shown = fitted_name(item.name, body.name), False
+    if before is not None:
+        name, shown = before.name, scene.objects.get(before.name) == before
+        for collection in before.users_collection:
+            collection.objects.link(copy)
+        before.user_remap(copy)
+        bpy.data.objects.remove(before)
+    outfit = None if shown else _collection_of(scene, body)
+    if outfit is not None and copy not in set(outfit.objects):
+        outfit.objects.link(copy)
+    return name
 
 
 def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:

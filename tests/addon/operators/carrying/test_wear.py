@@ -333,6 +333,33 @@ def test_an_item_that_hangs_on_a_bone_is_moved_by_it_alone_and_fitted_at_rest(pa
     assert "neck" not in fitted("Shirt").vertex_groups
 
 
+@pytest.mark.parametrize("overridden", [False, True], ids=["linked", "overridden"])
+def test_items_of_a_library_are_copied_into_the_file(pair, tmp_path, overridden):
+    """A wardrobe is often a file of its own."""
+    source, _, shirt, _ = pair
+    shirt.modifiers.new("Thick", "SOLIDIFY").thickness = 0.01
+    stood = in_world(shirt)
+    wardrobe = str(tmp_path / "wardrobe.blend")
+    bpy.data.libraries.write(wardrobe, {shirt}, fake_user=True)
+    bpy.data.objects.remove(shirt)
+    with bpy.data.libraries.load(wardrobe, link=True) as (_, wanted):
+        wanted.objects = ["Shirt"]
+    linked = wanted.objects[0]
+    item = linked.override_create() if overridden else linked
+    bpy.context.scene.collection.objects.link(item)
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="cannot be written to"):
+        wear("Shirt", wear_result="KEY")
+    for _ in range(2):
+        assert wear("Shirt") == {"FINISHED"}
+        copy = fitted("Shirt")
+        owned = (copy, copy.data)
+        assert {(one.library, one.override_library) for one in owned} == {(None, None)}
+        assert copy.modifiers.keys() == ["Thick"]
+    np.testing.assert_array_equal(in_world(item), stood)
+    assert source.name == "Source"
+
+
 def test_the_body_below_is_drawn_in_or_hidden(pair):
     _, target, *_ = pair
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
