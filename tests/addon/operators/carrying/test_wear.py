@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import bmesh
 import bpy
 import numpy as np
 import pytest
+from hiermatch.engine import Progress
 from hiermatch.hiermatch_addon.scene.character import Character, joined, parts_of, read_surface, side_of, whole
 from hiermatch.hiermatch_addon.scene.garments import undressed
+from hiermatch.hiermatch_addon.transfers.wearing import item_motion
 from mathutils import Vector
+from scipy.sparse import csr_array
 
 from tests.addon.garments import add_item
 from tests.addon.rigs import add_armature
@@ -358,6 +363,30 @@ def test_items_of_a_library_are_copied_into_the_file(pair, tmp_path, overridden)
         assert copy.modifiers.keys() == ["Thick"]
     np.testing.assert_array_equal(in_world(item), stood)
     assert source.name == "Source"
+
+
+def test_weights_that_are_mended_for_poses_keep_to_the_limit(pair, monkeypatch):
+    source, target, shirt, _ = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for obj, rig in ((source, rigs[0]), (shirt, rigs[0]), (target, rigs[1])):
+        obj.vertex_groups.new(name="neck").add(range(len(obj.data.vertices)), 1.0, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+
+    def spread_out(items, **_):
+        yield Progress(0.5, "Weights")
+        shapes = [item.weights.shape for item in items]
+        return [
+            SimpleNamespace(weights=csr_array(np.full(shape, 1 / shape[1])), changed=np.ones(shape[0], bool))
+            for shape in shapes
+        ]
+
+    monkeypatch.setattr(item_motion, "mend_weights_steps", spread_out)
+    assert wear("Shirt", wear_limit=2) == {"FINISHED"}
+    copy = fitted("Shirt")
+    bones = {group.index for group in copy.vertex_groups if group.name in rigs[1].data.bones}
+    weights = [[one.weight for one in vertex.groups if one.group in bones] for vertex in copy.data.vertices]
+    assert {sum(weight > 0 for weight in each) for each in weights} == {2}
+    np.testing.assert_allclose([sum(each) for each in weights], 1, atol=1e-5)
 
 
 def test_the_body_below_is_drawn_in_or_hidden(pair):
