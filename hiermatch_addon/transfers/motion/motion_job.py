@@ -101,12 +101,14 @@ class MotionJob(SteppedJob):
         options: TransferOptions,
     ) -> None:
         self._begun, self._plan = time.perf_counter(), plan
-        rigs = [two_rigs(source, target, written=True)[1] for target in targets]
-        self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in rigs]
+        named: dict[bpy.types.Object, Side] = {}
+        for target in targets:  # of several meshes of one rig the first
+            named.setdefault(two_rigs(source, target, written=True)[1], target)
+        self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in named]
         scene = cast("bpy.types.Scene", context.scene)
         self._scene, self._view_layer = scene.name, view_layer_of(context)
         waiting = []
-        for target, rig in zip(targets, rigs, strict=True):
+        for rig, target in named.items():
             if rows_of(scene, rig_of(source), rig):
                 _check_channels(rig, pairing_of(scene, rig_of(source), rig))
             else:

@@ -134,6 +134,16 @@ def test_all_actions_go_to_several_targets_and_strips_are_copied():
         assert (copy.frame_start, copy.repeat) == (30, 2)
 
 
+def test_a_rig_that_is_named_twice_gets_an_action_once():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source)
+    for _ in range(2):  # with pairs yet to be found, and with those that are there
+        before = set(bpy.data.actions.keys())
+        carry(source="A", targets=[{"name": "B"}, {"name": "B Body"}, {"name": "B"}])
+        assert len(set(bpy.data.actions.keys()) - before) == 1
+
+
 def test_the_pose_of_the_moment():
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed", rolls=0.3, hanging=True)
