@@ -700,6 +700,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
         "「{0}」は自身のアーマチュア「{1}」ではもう動きません。そのアーマチュアモディファイアーはオフになっています。"
     ),
+    'What it wears is still moved by "{0}": {1}. Fit it again by Wear.': (
+        '着ているものはまだ"{0}"で動きます: {1}。「着せる」でもう一度合わせてください。'
+    ),
     "Bind": "バインド",
     "Same Rest Pose": "ソースと同じレストポーズ",
     (

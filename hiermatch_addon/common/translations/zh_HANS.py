@@ -584,6 +584,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
         "“{0}”不再受自身的骨架“{1}”驱动，其骨架修改器已关闭。"
     ),
+    'What it wears is still moved by "{0}": {1}. Fit it again by Wear.': (
+        '它所穿的仍由 "{0}" 带动：{1}。请用“穿戴”重新适配。'
+    ),
     "Bind": "绑定",
     "Same Rest Pose": "与源相同的静置姿态",
     (

@@ -389,6 +389,26 @@ def test_weights_that_are_mended_for_poses_keep_to_the_limit(pair, monkeypatch):
     np.testing.assert_allclose([sum(each) for each in weights], 1, atol=1e-5)
 
 
+def test_a_body_that_gets_another_rig_wears_its_clothes_with_that_the_next_time(pair):
+    source, target, shirt, _ = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for obj, rig in ((source, rigs[0]), (shirt, rigs[0]), (target, rigs[1])):
+        obj.vertex_groups.new(name="neck").add(range(len(obj.data.vertices)), 1.0, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+    assert wear("Shirt", target="Rig B", wear_poses=False) == {"FINISHED"}
+    body = fitted("Shirt", target.name)["hiermatch_body"]
+    bpy.ops.hiermatch.retarget(source="Source", target="Rig B", refine=False, rest_pose_like_source="OFF")
+    made = target.modifiers[0].object
+    assert made not in rigs
+    remarks = bpy.context.scene.hiermatch_retarget.report.remarks
+    assert f'still moved by "Rig B": "{fitted("Shirt", body).name}"' in remarks
+    assert rigs[1].visible_get()  # as long as it moves something
+    for name in ("Rig B", target.name):
+        assert wear("Shirt", target=name, wear_poses=False) == {"FINISHED"}
+        armatures = [one.object for one in fitted("Shirt", body).modifiers if one.type == "ARMATURE"]
+        assert armatures == [made]
+
+
 def test_the_body_below_is_drawn_in_or_hidden(pair):
     _, target, *_ = pair
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
