@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "replaced_remarks", "unbind"]
+__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "replaced_remarks", "unbind", "worn_with"]
 
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
@@ -171,10 +171,15 @@ def replaced_remarks(target: Side, armatures: Iterable[bpy.types.Object]) -> lis
             f'"{target.name}" is no longer moved by its own armature "{other.name}", whose Armature modifiers are '
             "switched off."
         )
-        worn = [one.name for one in _moved_by(other) if FITTED_TO in cast("Any", one)]
+        worn = worn_with(other)
         if worn:
             said.append(f'What it wears is still moved by "{other.name}": {listed(worn)}. Fit it again by Wear.')
     return said
+
+
+def worn_with(armature: bpy.types.Object) -> list[str]:
+    """Return the names of what was fitted to a body, and is moved by an armature."""
+    return [one.name for one in _moved_by(armature) if FITTED_TO in cast("Any", one)]
 
 
 def _moved_by(armature: bpy.types.Object) -> list[bpy.types.Object]:

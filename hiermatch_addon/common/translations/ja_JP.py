@@ -729,6 +729,9 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」は「{1}」のレストポーズになり、「{2}」のアクションが再生できます。元の立ち方はアクション「{3}"
         "」に残してあります。"
     ),
+    'What "{0}" wears stands as before: {1}. Fit it again by Wear.': (
+        '"{0}"が着ているものは元の立ち方のままです: {1}。「着せる」でもう一度合わせてください。'
+    ),
     "The rest pose stays as it was, and the source's actions do not play as they should: {0}.": (
         "レストポーズは元のままで、ソースのアクションは正しく再生されません。理由：{0}。"
     ),

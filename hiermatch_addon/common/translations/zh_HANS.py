@@ -605,6 +605,9 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" has the rest pose of "{1}" now, in which the actions of "{2}" play. How it stood is kept as '
         'the action "{3}".'
     ): "“{0}”现在处于“{1}”的静置姿态，“{2}”的动作可以在其上播放。它原来的姿势保存为动作“{3}”。",
+    'What "{0}" wears stands as before: {1}. Fit it again by Wear.': (
+        '"{0}" 所穿的仍是原来的姿势：{1}。请用“穿戴”重新适配。'
+    ),
     "The rest pose stays as it was, and the source's actions do not play as they should: {0}.": (
         "静置姿态保持原样，源的动作无法正确播放：{0}。"
     ),
