@@ -17,7 +17,7 @@ from ..common.errors import ObjectError
 from .armatures import find_armature, held_by, moving_armatures, read_rig
 from .character import FITTED_TO, Character, joined, joined_mesh, parts_of, vertex_ranges
 from .garment_shape_io import mirror_axes
-from .key_drivers import counterparts, point_key_drivers
+from .key_drivers import counterparts, point_drivers
 from .mesh_io import read_mesh
 from .pair import check_object
 from .shape_key_io import keys_of
@@ -230,7 +230,7 @@ def fitted_copy(
     copy : bpy.types.Object
         The copy.
     kept : list of str
-        Names of what belongs to the source that drivers of its shape keys still read from.
+        Names of what belongs to the source that drivers of its shape keys and modifiers still read from.
     """
     copy = _copy_of(item)
     copy.matrix_world = _placed(item, motion)
@@ -248,8 +248,6 @@ def fitted_copy(
     places[item] = copy  # also of one that is part of the body
     _point_to(copy, places, growth)
     keys = keys_of(copy)
-    if keys is None:
-        return copy, []
     theirs: list[bpy.types.ID] = []
     every: dict[bpy.types.ID, list[bpy.types.ID]] = {mine: [other] for mine, other in places.items()}
     for part in (largest, *parts_of(target)):
@@ -258,8 +256,9 @@ def fitted_copy(
     for part in (*parts_of(source), item):
         own = keys_of(part)
         if own is not None:
-            every[own] = [keys] if part is item else theirs
-    return copy, point_key_drivers(keys, every)
+            every[own] = [cast("bpy.types.Key", keys)] if part is item else theirs
+    driven = [copy, *([] if keys is None else [keys])]
+    return copy, sorted({name for one in driven for name in point_drivers(one, every)})
 
 
 def _copy_of(item: bpy.types.Object) -> bpy.types.Object:
@@ -269,10 +268,26 @@ def _copy_of(item: bpy.types.Object) -> bpy.types.Object:
         if made.override_library is not None:  # as a copy of an override is one, too
             made.make_local()
     copy.data = mesh
-    copy.animation_data_clear()
+    _leave_animation(copy)
     copy.constraints.clear()
     copy.parent = None
     return copy
+
+
+def _leave_animation(copy: bpy.types.Object) -> None:
+    """Take from a copy what moves it, but not what drives its modifiers."""
+    animation = copy.animation_data
+    if animation is None:
+        return
+    drivers = [curve for curve in animation.drivers if not curve.data_path.startswith("modifiers[")]
+    if len(drivers) == len(animation.drivers):
+        copy.animation_data_clear()
+        return
+    animation.action = None
+    for track in list(animation.nla_tracks):
+        animation.nla_tracks.remove(track)
+    for curve in drivers:
+        animation.drivers.remove(curve)
 
 
 def _put_in_place(scene: bpy.types.Scene, copy: bpy.types.Object, item: bpy.types.Object, body: Side) -> str:

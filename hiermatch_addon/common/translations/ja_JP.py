@@ -1439,9 +1439,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Following shape keys": "シェイプキーに従わせています",
     '"{0}" follows {1} of "{2}".': '"{0}"は"{2}"の{1}に従います。',
-    'Drivers of the shape keys of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape '
-    "keys or bones over by Retarget, and fit it again.": (
-        '"{0}"のシェイプキーのドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'
+    'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
+    "Retarget, and fit it again.": (
+        '"{0}"のドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'
         "プキーやボーンを移してから、もう一度合わせてください。"
     ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "

@@ -1191,9 +1191,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Following shape keys": "正在跟随形态键",
     '"{0}" follows {1} of "{2}".': '"{0}" 跟随 "{2}" 的 {1}。',
-    'Drivers of the shape keys of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape '
-    "keys or bones over by Retarget, and fit it again.": (
-        '"{0}" 的形态键驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
+    'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
+    "Retarget, and fit it again.": (
+        '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
     ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (

@@ -64,7 +64,7 @@ def write_copy(
     copy, kept = fitted_copy(context, item, source, target, motion=motion, growth=growth)
     if kept:
         notes.append(
-            f'Drivers of the shape keys of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
+            f'Drivers of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
             "what they need. Carry its shape keys or bones over by Retarget, and fit it again."
         )
     write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])

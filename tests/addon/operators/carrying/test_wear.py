@@ -409,6 +409,30 @@ def test_a_body_that_gets_another_rig_wears_its_clothes_with_that_the_next_time(
         assert armatures == [made]
 
 
+def test_drivers_of_modifiers_come_along_and_nothing_else_that_moves_an_item(pair):
+    source, target, shirt, _ = pair
+    source["tailor"], target["tailor"] = 0.02, 0.03
+    shirt["size"] = 3
+    modifier = shirt.modifiers.new("Thick", "SOLIDIFY")
+    modifier.thickness = 0.01
+    shirt.keyframe_insert("location", frame=1)
+    paths = {'modifiers["Thick"].thickness': (source, '["tailor"]'), 'modifiers["Thick"].offset': (shirt, '["size"]')}
+    for path, (leader, read) in {**paths, "hide_render": (source, '["tailor"]')}.items():
+        driver = shirt.driver_add(path).driver
+        driver.type = "AVERAGE"
+        place = driver.variables.new().targets[0]
+        place.id, place.data_path = leader, read
+    assert wear("Shirt") == {"FINISHED"}
+    copy = fitted("Shirt")
+    read = {curve.data_path: curve.driver.variables[0].targets[0].id for curve in copy.animation_data.drivers}
+    assert read == {'modifiers["Thick"].thickness': target, 'modifiers["Thick"].offset': copy}
+    assert copy.animation_data.action is None
+    assert len(shirt.animation_data.drivers) == 3
+    del target["tailor"]
+    assert wear("Shirt") == {"FINISHED"}
+    assert 'still read from "Source"' in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 def test_the_body_below_is_drawn_in_or_hidden(pair):
     _, target, *_ = pair
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
