@@ -200,6 +200,8 @@ class ItemMotion:
         steps = mend_weights_steps(weighted, body=body, skin_weights=on_skin, skeleton=skeleton)
         mended = yield from within(steps, 0.0, 0.6)
         for number, one in enumerate(mended):
+            if self._items[number].held:  # it moves as one
+                continue
             mixed = replaced(found[number], rig.names, one.weights, one.changed)
             found[number] = within_limit(mixed, rig.names, self._settings)
             self.mended.append((self._items[number].name, int(one.changed.sum())))

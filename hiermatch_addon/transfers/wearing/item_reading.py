@@ -38,7 +38,21 @@ _FAR, _BESIDE = 0.25, 0.3
 
 @dataclass(frozen=True, eq=False)
 class ReadItem:
-    """An item as it was read."""
+    """An item as it was read.
+
+    Attributes
+    ----------
+    name, uid, state : str, int and tuple of str
+        Which object it is, and how it was.
+    worn : WornItem
+        What the engine has to know of it.
+    at_rest : bool
+        Whether it lies on the body at rest.
+    weights : ItemWeights
+        In all its groups.
+    held : bool
+        Whether it hangs on one bone as a whole.
+    """
 
     name: str
     uid: int
@@ -46,6 +60,7 @@ class ReadItem:
     worn: WornItem
     at_rest: bool
     weights: ItemWeights
+    held: bool
 
 
 def read_item(
@@ -76,15 +91,21 @@ def read_item(
         margin=clearance,
     )
     state = topology(mesh_of(item)), position_digest(mesh_of(item))
-    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own)
+    held = _bone_of(item, source) in names
+    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own, held)
+
+
+def _bone_of(item: bpy.types.Object, source: Side) -> str:
+    """Return the bone of the source's armature that an item hangs on as a whole; empty if there is none."""
+    armature = find_armature(source)
+    return "" if armature is None else held_by(item, armature)
 
 
 def _own_weights(item: bpy.types.Object, weights: csr_array, source: Side, bones: Collection[str]) -> ItemWeights:
     """Return the weights of an item in all its groups; one that hangs on a bone is moved by that bone of them alone."""
     names = tuple(group.name for group in item.vertex_groups)
     locked = frozenset(group.name for group in item.vertex_groups if group.lock_weight)
-    armature = find_armature(source)
-    bone = "" if armature is None else held_by(item, armature)
+    bone = _bone_of(item, source)
     if bone not in bones:
         return ItemWeights(names, weights, locked)
     others = [number for number, name in enumerate(names) if name not in bones]

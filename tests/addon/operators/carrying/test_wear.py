@@ -387,6 +387,12 @@ def test_weights_that_are_mended_for_poses_keep_to_the_limit(pair, monkeypatch):
     weights = [[one.weight for one in vertex.groups if one.group in bones] for vertex in copy.data.vertices]
     assert {sum(weight > 0 for weight in each) for each in weights} == {2}
     np.testing.assert_allclose([sum(each) for each in weights], 1, atol=1e-5)
+    shirt.modifiers.remove(shirt.modifiers["Armature"])
+    shirt.parent, shirt.parent_type, shirt.parent_bone = rigs[0], "BONE", "neck"
+    bpy.context.view_layer.update()
+    shirt.matrix_world = source.matrix_world
+    assert wear("Shirt") == {"FINISHED"}  # what hangs on a bone moves as one
+    assert not {"tail", "spine"} & set(fitted("Shirt").vertex_groups.keys())
 
 
 def test_a_body_that_gets_another_rig_wears_its_clothes_with_that_the_next_time(pair):
