@@ -30,6 +30,7 @@ __all__ = [
     "bone_of",
     "bone_weights",
     "find_armature",
+    "held_by",
     "moving_armatures",
     "read_rig",
     "read_skeleton",
@@ -77,6 +78,12 @@ def bone_of(obj: bpy.types.Object) -> str:
         return ""
     deforming = [one for one in (bone, *bone.parent_recursive) if one.use_deform]
     return deforming[0].name if deforming else bone.name
+
+
+def held_by(obj: bpy.types.Object, armature: bpy.types.Object) -> str:
+    """Return the deforming bone of an armature that an object hangs on as a whole; empty if there is none."""
+    bone = bone_of(obj) if obj.parent == armature else ""
+    return bone if bone and armature_of(armature).bones[bone].use_deform else ""
 
 
 def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | None:

@@ -9,7 +9,7 @@ import bpy
 
 from ..common.phrases import listed
 from .armatures import armature_modifier, armature_of, find_armature, moving_armatures
-from .character import parts_of, take_place
+from .character import FITTED_TO, parts_of, take_place
 from .mesh_io import rest_matrix
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "replaced_remarks", "unbind"]
+__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "replaced_remarks", "unbind", "worn_with"]
 
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
@@ -132,7 +132,8 @@ def unbind(target: Side, armature: bpy.types.Object, kept: Container[bpy.types.O
     """Let no other armatures move a side than one and those to keep.
 
     Their modifiers are switched off, and what hangs on them, hangs on the new one, where it stands while they are at
-    rest: that is how the vertices of a mesh belong to its armature.  What then moves nothing any more is hidden.
+    rest: that is how the vertices of a mesh belong to its armature.  What then moves nothing any more is hidden.  The
+    new one takes the place of such, and of those that only move what was fitted to the side.
 
     Returns
     -------
@@ -154,20 +155,37 @@ def unbind(target: Side, armature: bpy.types.Object, kept: Container[bpy.types.O
             part.matrix_basis = stands
     unique = list(dict.fromkeys(found))
     for other in unique:
-        if not any(other in (one.parent, *moving_armatures(one)) for one in bpy.data.objects if one.type == "MESH"):
+        moved = _moved_by(other)
+        if all(FITTED_TO in cast("Any", one) for one in moved):  # what a body wears is no part of it
             take_place(other, armature)
-            if other.visible_get():
-                other.hide_set(state=True)
+        if not moved and other.visible_get():
+            other.hide_set(state=True)
     return unique
 
 
 def replaced_remarks(target: Side, armatures: Iterable[bpy.types.Object]) -> list[str]:
-    """Return what to say of armatures that `unbind` has taken from a side, one sentence each."""
-    return [
-        f'"{target.name}" is no longer moved by its own armature "{other.name}", whose Armature modifiers are '
-        "switched off."
-        for other in armatures
-    ]
+    """Return what to say of armatures that `unbind` has taken from a side, and of what they still move."""
+    said = []
+    for other in armatures:
+        said.append(
+            f'"{target.name}" is no longer moved by its own armature "{other.name}", whose Armature modifiers are '
+            "switched off."
+        )
+        worn = worn_with(other)
+        if worn:
+            said.append(f'What it wears is still moved by "{other.name}": {listed(worn)}. Fit it again by Wear.')
+    return said
+
+
+def worn_with(armature: bpy.types.Object) -> list[str]:
+    """Return the names of what was fitted to a body, and is moved by an armature."""
+    return [one.name for one in _moved_by(armature) if FITTED_TO in cast("Any", one)]
+
+
+def _moved_by(armature: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return all meshes that an armature moves, or that hang on it."""
+    meshes = [obj for obj in bpy.data.objects if obj.type == "MESH"]
+    return [obj for obj in meshes if armature in (obj.parent, *moving_armatures(obj))]
 
 
 def _is_replaced(

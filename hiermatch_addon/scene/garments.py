@@ -14,10 +14,10 @@ from scipy.sparse import csr_array, vstack
 from ...engine import continues_body, ends_at_joint, hanging_triangles
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
-from .armatures import find_armature, moving_armatures, read_rig
+from .armatures import find_armature, held_by, moving_armatures, read_rig
 from .character import FITTED_TO, Character, joined, joined_mesh, parts_of, vertex_ranges
 from .garment_shape_io import mirror_axes
-from .key_drivers import counterparts, point_key_drivers
+from .key_drivers import counterparts, point_drivers
 from .mesh_io import read_mesh
 from .pair import check_object
 from .shape_key_io import keys_of
@@ -148,9 +148,17 @@ def fitted_to(body: Side) -> list[bpy.types.Object]:
 
 
 def check_item(
-    context: bpy.types.Context, item: bpy.types.Object, source: Side, target: Side, items: Collection[bpy.types.Object]
+    context: bpy.types.Context,
+    item: bpy.types.Object,
+    source: Side,
+    target: Side,
+    items: Collection[bpy.types.Object],
+    *,
+    writable: bool = True,
 ) -> None:
     """Make sure that an object, one of some items, can be fitted from one body to another.
+
+    What is copied only need not be `writable`: it may be linked from another file.
 
     Raises
     ------
@@ -168,7 +176,7 @@ def check_item(
             f'"{item.name}" is not a mesh but of type {item.type.title()}. Convert a copy of it '
             "(Object > Convert > Mesh), and fit that."
         )
-    check_object(view_layer_of(context), item)
+    check_object(view_layer_of(context), item, writable=writable)
 
 
 def dressed_at_rest(item: bpy.types.Object, source: Side) -> bool:
@@ -177,7 +185,7 @@ def dressed_at_rest(item: bpy.types.Object, source: Side) -> bool:
     Else it lies on the body as this is posed.
     """
     armature = find_armature(source)
-    return armature is None or armature in moving_armatures(item)
+    return armature is None or armature in moving_armatures(item) or bool(held_by(item, armature))
 
 
 def fitted_name(item: str, body: str) -> str:
@@ -222,27 +230,14 @@ def fitted_copy(
     copy : bpy.types.Object
         The copy.
     kept : list of str
-        Names of what belongs to the source that drivers of its shape keys still read from.
+        Names of what belongs to the source that drivers of its shape keys and modifiers still read from.
     """
-    before = made_copy(item, target)
-    copy, mesh = item.copy(), mesh_of(item).copy()
-    copy.data = mesh
-    copy.animation_data_clear()
-    copy.constraints.clear()
-    copy.parent = None
+    copy = _copy_of(item)
     copy.matrix_world = _placed(item, motion)
-    name = fitted_name(item.name, target.name)
+    name = _put_in_place(cast("bpy.types.Scene", context.scene), copy, item, target)
     marks: Any = copy
     marks[ITEM], marks[BODY] = item.name, target.name
-    if before is not None:
-        name = before.name
-        for collection in before.users_collection:
-            collection.objects.link(copy)
-        before.user_remap(copy)
-        bpy.data.objects.remove(before)
-    else:
-        _collection_of(context, target).objects.link(copy)
-    copy.name = mesh.name = name
+    copy.name = mesh_of(copy).name = name
     copy.hide_set(state=False)
     copy.select_set(state=False)
     # Of a body of several objects the largest stands for all that something may point to.
@@ -253,8 +248,6 @@ def fitted_copy(
     places[item] = copy  # also of one that is part of the body
     _point_to(copy, places, growth)
     keys = keys_of(copy)
-    if keys is None:
-        return copy, []
     theirs: list[bpy.types.ID] = []
     every: dict[bpy.types.ID, list[bpy.types.ID]] = {mine: [other] for mine, other in places.items()}
     for part in (largest, *parts_of(target)):
@@ -263,28 +256,77 @@ def fitted_copy(
     for part in (*parts_of(source), item):
         own = keys_of(part)
         if own is not None:
-            every[own] = [keys] if part is item else theirs
-    return copy, point_key_drivers(keys, every)
+            every[own] = [cast("bpy.types.Key", keys)] if part is item else theirs
+    driven = [copy, *([] if keys is None else [keys])]
+    return copy, sorted({name for one in driven for name in point_drivers(one, every)})
+
+
+def _copy_of(item: bpy.types.Object) -> bpy.types.Object:
+    """Copy an item with its mesh, as this file's own, which hangs on nothing."""
+    copy, mesh = item.copy(), mesh_of(item).copy()
+    for made in (copy, mesh):
+        if made.override_library is not None:  # as a copy of an override is one, too
+            made.make_local()
+    copy.data = mesh
+    _leave_animation(copy)
+    copy.constraints.clear()
+    copy.parent = None
+    return copy
+
+
+def _leave_animation(copy: bpy.types.Object) -> None:
+    """Take from a copy what moves it, but not what drives its modifiers."""
+    animation = copy.animation_data
+    if animation is None:
+        return
+    drivers = [curve for curve in animation.drivers if not curve.data_path.startswith("modifiers[")]
+    if len(drivers) == len(animation.drivers):
+        copy.animation_data_clear()
+        return
+    animation.action = None
+    for track in list(animation.nla_tracks):
+        animation.nla_tracks.remove(track)
+    for curve in drivers:
+        animation.drivers.remove(curve)
+
+
+def _put_in_place(scene: bpy.types.Scene, copy: bpy.types.Object, item: bpy.types.Object, body: Side) -> str:
+    """Put a copy into the scene, in the place of one that was fitted before; return what it is to be called."""
+    before = made_copy(item, body)
+    name, shown = fitted_name(item.name, body.name), False
+    if before is not None:
+        name, shown = before.name, scene.objects.get(before.name) == before
+        for collection in before.users_collection:
+            collection.objects.link(copy)
+        before.user_remap(copy)
+        bpy.data.objects.remove(before)
+    outfit = None if shown else _collection_of(scene, body)
+    if outfit is not None and copy not in set(outfit.objects):
+        outfit.objects.link(copy)
+    return name
 
 
 def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:
-    """Return where a copy stands: moved with the body, and turned with it if that matters to a modifier."""
+    """Return where a copy stands: moved with the body, and turned with it if that matters to a modifier.
+
+    An object that hangs on nothing cannot be sheared, as one below a parent can that is scaled unevenly.
+    """
     matrix = item.matrix_world.copy()
     moved = Matrix(motion.tolist())
     if mirror_axes(item):
-        return moved @ matrix
-    matrix.translation = moved @ matrix.to_translation()
-    return matrix
+        matrix = moved @ matrix
+    else:
+        matrix.translation = moved @ matrix.to_translation()
+    return Matrix.LocRotScale(*matrix.decompose())
 
 
-def _collection_of(context: bpy.types.Context, body: Side) -> bpy.types.Collection:
-    """Find the collection of what was fitted to a body, or add it to the scene."""
-    for collection in bpy.data.collections:
-        if cast("Any", collection).get(BODY) == body.name:
-            return collection
-    made = bpy.data.collections.new(f"Outfit of {body.name}")
+def _collection_of(scene: bpy.types.Scene, body: Side) -> bpy.types.Collection:
+    """Find the collection of what was fitted to a body, or make it; it is added to the scene if it is not there."""
+    found = [one for one in bpy.data.collections if cast("Any", one).get(BODY) == body.name]
+    made = found[0] if found else bpy.data.collections.new(f"Outfit of {body.name}")
     cast("Any", made)[BODY] = body.name
-    cast("bpy.types.Scene", context.scene).collection.children.link(made)
+    if made not in scene.collection.children_recursive:
+        scene.collection.children.link(made)
     return made
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["copy_key_drivers", "counterparts", "drive_key", "point_key_drivers"]
+__all__ = ["copy_key_drivers", "counterparts", "drive_key", "point_drivers"]
 
 
 def counterparts(
@@ -81,13 +81,15 @@ def drive_key(keys: bpy.types.Key, name: str, leader: bpy.types.Key) -> None:
     place.id_type, place.id, place.data_path = "KEY", leader, path
 
 
-def point_key_drivers(keys: bpy.types.Key, places: Mapping[bpy.types.ID, Iterable[bpy.types.ID]]) -> list[str]:
-    """Let the drivers of shape keys that read from some things read from others.
+def point_drivers(
+    driven: bpy.types.Key | bpy.types.Object, places: Mapping[bpy.types.ID, Iterable[bpy.types.ID]]
+) -> list[str]:
+    """Let the drivers of shape keys, or of an object, that read from some things read from others.
 
     Parameters
     ----------
-    keys : bpy.types.Key
-        The keys.
+    driven : bpy.types.Key or bpy.types.Object
+        What has them.
     places : mapping
         What may take the place of what: the first that has what is read, a bone or another property.
 
@@ -97,7 +99,7 @@ def point_key_drivers(keys: bpy.types.Key, places: Mapping[bpy.types.ID, Iterabl
         Names of those that they still read from, because nothing else has it.
     """
     kept = set()
-    for curve in keys.animation_data.drivers if keys.animation_data is not None else ():
+    for curve in driven.animation_data.drivers if driven.animation_data is not None else ():
         driver: Any = curve.driver
         for variable in driver.variables:
             for place in variable.targets:

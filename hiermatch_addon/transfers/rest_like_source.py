@@ -10,10 +10,11 @@ import numpy as np
 from ...engine import Progress, at_rest, length_ratio, rest_pose
 from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError
+from ..common.phrases import listed
 from ..jobs.transfer import TransferReport
 from ..scene.armature_copy import move_joints
 from ..scene.armatures import armature_of, bone_weights, find_armature
-from ..scene.binding import made_rig
+from ..scene.binding import made_rig, worn_with
 from ..scene.posing.rest_mesh_io import bring_to_rest, plays_actions, why_not_to_rest
 from ..scene.rest_action import AS_IT_WAS, keep_pose, kept_pose, pose_bases
 from ..storage.halves import moved_by_us
@@ -97,15 +98,17 @@ class RestLikeSource:
         move_joints(context, armature, names, at_rest(placed, rest))
         with moved_by_us(target):
             bring_to_rest(target, weights, rest)
-        notes = []
+        remarks, notes = [], []
         if first:
             action = keep_pose(armature, f"{target.name} As It Was", self._bases(armature), show=False, kind=AS_IT_WAS)
-            notes.append(
+            remarks.append(
                 f'"{target.name}" has the rest pose of "{source.name}" now, in which the actions of "{source.name}" '
                 f'play. How it stood is kept as the action "{action.name}".'
             )
+            if worn := worn_with(armature):
+                notes.append(f'What "{target.name}" wears stands as before: {listed(worn)}. Fit it again by Wear.')
         view_layer_of(context).update()
-        return TransferReport("a rest pose like the source's", remarks=tuple(notes))
+        return TransferReport("a rest pose like the source's", tuple(notes), tuple(remarks))
 
     def _bases(self, armature: bpy.types.Object) -> dict[str, Matrix]:
         """Find the pose in which the target looks as it did."""

@@ -498,6 +498,7 @@ def _fitted(work: _Work, skin: Surface, source_to_target: SurfaceMap, units: tup
     apart = np.abs(below.distances)
     # Beyond the rim of a hole there is no inside.
     away = np.where(found.known, found.distances, np.abs(found.distances))
+    wanted = np.maximum(moved.scales * apart, work.item.margin)
     return FittedItem(
         positions=work.positions,
         rotations=moved.rotations,
@@ -507,6 +508,6 @@ def _fitted(work: _Work, skin: Surface, source_to_target: SurfaceMap, units: tup
         clearance=found.distances,
         pushed=work.pushed,
         confidence=moved.places @ source_to_target.confidence,
-        bare=below.known & (apart < _AT_SKIN * units[0]) & (away > moved.scales * apart + _AT_SKIN * units[1]),
+        bare=below.known & (apart < _AT_SKIN * units[0]) & (away > wanted + _AT_SKIN * units[1]),
         through=work.through,
     )

@@ -700,6 +700,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
         "「{0}」は自身のアーマチュア「{1}」ではもう動きません。そのアーマチュアモディファイアーはオフになっています。"
     ),
+    'What it wears is still moved by "{0}": {1}. Fit it again by Wear.': (
+        '着ているものはまだ"{0}"で動きます: {1}。「着せる」でもう一度合わせてください。'
+    ),
     "Bind": "バインド",
     "Same Rest Pose": "ソースと同じレストポーズ",
     (
@@ -725,6 +728,9 @@ MESSAGES: Final[dict[str, str]] = {
     ): (
         "「{0}」は「{1}」のレストポーズになり、「{2}」のアクションが再生できます。元の立ち方はアクション「{3}"
         "」に残してあります。"
+    ),
+    'What "{0}" wears stands as before: {1}. Fit it again by Wear.': (
+        '"{0}"が着ているものは元の立ち方のままです: {1}。「着せる」でもう一度合わせてください。'
     ),
     "The rest pose stays as it was, and the source's actions do not play as they should: {0}.": (
         "レストポーズは元のままで、ソースのアクションは正しく再生されません。理由：{0}。"
@@ -1185,6 +1191,11 @@ MESSAGES: Final[dict[str, str]] = {
         'コンストレイントが"{1}"の{0}を拘束しているため、新しいモーションに従わないことがあります。見るにはミュー'
         "トしてください。"
     ),
+    'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
+    "Clear Transform) unless that is wanted.": (
+        'ペアがなく、レストポーズでもないボーンが、付いているものをすべて回転させています: "{1}"の{0}。意図したもので'
+        "なければ、そのポーズをクリアしてください(ポーズ > トランスフォームをクリア)。"
+    ),
     '{0} moves the object "{1}" as a whole, too. That was left out.': (
         '{0}はオブジェクト"{1}"全体も動かします。それは移されませんでした。'
     ),
@@ -1428,9 +1439,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Following shape keys": "シェイプキーに従わせています",
     '"{0}" follows {1} of "{2}".': '"{0}"は"{2}"の{1}に従います。',
-    'Drivers of the shape keys of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape '
-    "keys or bones over by Retarget, and fit it again.": (
-        '"{0}"のシェイプキーのドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'
+    'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
+    "Retarget, and fit it again.": (
+        '"{0}"のドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'
         "プキーやボーンを移してから、もう一度合わせてください。"
     ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "

@@ -584,6 +584,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
         "“{0}”不再受自身的骨架“{1}”驱动，其骨架修改器已关闭。"
     ),
+    'What it wears is still moved by "{0}": {1}. Fit it again by Wear.': (
+        '它所穿的仍由 "{0}" 带动：{1}。请用“穿戴”重新适配。'
+    ),
     "Bind": "绑定",
     "Same Rest Pose": "与源相同的静置姿态",
     (
@@ -602,6 +605,9 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" has the rest pose of "{1}" now, in which the actions of "{2}" play. How it stood is kept as '
         'the action "{3}".'
     ): "“{0}”现在处于“{1}”的静置姿态，“{2}”的动作可以在其上播放。它原来的姿势保存为动作“{3}”。",
+    'What "{0}" wears stands as before: {1}. Fit it again by Wear.': (
+        '"{0}" 所穿的仍是原来的姿势：{1}。请用“穿戴”重新适配。'
+    ),
     "The rest pose stays as it was, and the source's actions do not play as they should: {0}.": (
         "静置姿态保持原样，源的动作无法正确播放：{0}。"
     ),
@@ -984,6 +990,11 @@ MESSAGES: Final[dict[str, str]] = {
     'Constraints hold {0} of "{1}", so they may not follow the new motion. Mute them to see it.': (
         '约束控制着 "{1}" 的 {0}，因此它们可能不会跟随新的运动。请将其静音以查看。'
     ),
+    'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
+    "Clear Transform) unless that is wanted.": (
+        '没有配对且不在静置姿态的骨骼会带动挂在其上的一切旋转："{1}" 的 {0}。如非有意，请清除其姿态'
+        "（姿态 > 清空变换）。"
+    ),
     '{0} moves the object "{1}" as a whole, too. That was left out.': '{0} 还会移动整个物体 "{1}"。这部分被略去。',
     'The action "{0}" was deleted meanwhile. Nothing was written.': '动作 "{0}" 在此期间被删除。未写入任何内容。',
     'Source and Target are both "{0}". Choose two different armatures.': '源和目标都是 "{0}"。请选择两个不同的骨架。',
@@ -1180,9 +1191,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Following shape keys": "正在跟随形态键",
     '"{0}" follows {1} of "{2}".': '"{0}" 跟随 "{2}" 的 {1}。',
-    'Drivers of the shape keys of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape '
-    "keys or bones over by Retarget, and fit it again.": (
-        '"{0}" 的形态键驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
+    'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
+    "Retarget, and fit it again.": (
+        '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
     ),
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (

@@ -19,6 +19,7 @@ __all__ = [
     "actions_of",
     "assign_action",
     "bone_curves",
+    "frame_range",
     "named_action",
     "object_curves",
     "played_action",
@@ -89,14 +90,23 @@ def slot_for(action: bpy.types.Action, armature: bpy.types.Object) -> Any:  # no
 
 
 def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterator[tuple[str, str, Any]]:
-    """Go through the curves of an action that move bones of an armature: bone, channel, and the curve."""
+    """Go through the curves of an action that move bones of an armature, unless muted: bone, channel, and the curve."""
     bones = armature_of(armature).bones
     for curve in _curves(action, slot_for(action, armature)):
         found = _BONE.match(curve.data_path)
-        if found is not None:
+        if found is not None and not curve.mute and not (curve.group is not None and curve.group.mute):
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
+
+
+def frame_range(action: bpy.types.Action, armature: bpy.types.Object) -> tuple[float, float]:
+    """Return the first and the last frame of an action, of an armature's own slot if others have keys elsewhere."""
+    curves = list(_curves(action, slot_for(action, armature)))
+    ends = [curve.range() for curve in curves if len(curve.keyframe_points)]
+    if action.use_frame_range or not ends:
+        return float(action.frame_range[0]), float(action.frame_range[1])
+    return min(float(start) for start, _ in ends), max(float(end) for _, end in ends)
 
 
 def renamed_paths(

@@ -11,11 +11,11 @@ from mathutils import Matrix
 
 from ....engine import Motion, posed_motion, rotation_matrices
 from ..armatures import armature_of
-from .action_curves import CurveMaker, assign_action, bone_curves, played_action, slot_for
+from .action_curves import CurveMaker, assign_action, bone_curves, frame_range, played_action, slot_for
 from .rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     import bpy
     from numpy.typing import NDArray
@@ -30,6 +30,7 @@ __all__ = [
     "read_keys",
     "rotation_channel",
     "set_pose",
+    "turned_above",
     "write_action",
 ]
 
@@ -97,6 +98,9 @@ class BoneKeys:
 _MARKER = "hiermatch_carried"
 """Custom property of actions that were made from those of other rigs."""
 
+_TURNED = 0.02
+"""By what angle a bone is no longer at rest: about one degree."""
+
 _CYCLE = ("mode_before", "cycles_before", "mode_after", "cycles_after")
 
 
@@ -129,7 +133,7 @@ def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKey
                 cycles.setdefault(bone, {name: getattr(modifier, name) for name in _CYCLE})
     frames = {bone: np.array(sorted(keys), np.float64) for bone, keys in times.items()}
     curved = {bone: [times[bone][float(frame)] for frame in found] for bone, found in frames.items()}
-    return ActionKeys(np.array(action.frame_range, np.float64), frames, curved, cycles, extrapolations)
+    return ActionKeys(np.array(frame_range(action, armature), np.float64), frames, curved, cycles, extrapolations)
 
 
 def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]) -> Motion:
@@ -277,6 +281,14 @@ def set_pose(armature: bpy.types.Object, bases: dict[str, NDArray[np.float64]]) 
         scale = bones[name].scale.copy()
         bones[name].matrix_basis = Matrix(basis.tolist())
         bones[name].scale = scale
+
+
+def turned_above(armature: bpy.types.Object, moved: Collection[str]) -> list[str]:
+    """Return the names of bones that are turned in the pose, on which some that are moved hang, and which are not."""
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    above = {parent.name for name in moved if name in bones for parent in bones[name].parent_recursive}
+    chosen = [bone for bone in bones if bone.name in above.difference(moved)]
+    return [bone.name for bone in chosen if bone.matrix_basis.to_quaternion().angle > _TURNED]
 
 
 def rotation_channel(mode: str) -> str:

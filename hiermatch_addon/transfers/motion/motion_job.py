@@ -28,6 +28,7 @@ from ...scene.motion.motion_io import (
     posed_at,
     read_keys,
     set_pose,
+    turned_above,
     write_action,
 )
 from ...scene.motion.nla_strips import copy_strips
@@ -100,12 +101,14 @@ class MotionJob(SteppedJob):
         options: TransferOptions,
     ) -> None:
         self._begun, self._plan = time.perf_counter(), plan
-        rigs = [two_rigs(source, target, written=True)[1] for target in targets]
-        self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in rigs]
+        named: dict[bpy.types.Object, Side] = {}
+        for target in targets:  # of several meshes of one rig the first
+            named.setdefault(two_rigs(source, target, written=True)[1], target)
+        self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in named]
         scene = cast("bpy.types.Scene", context.scene)
         self._scene, self._view_layer = scene.name, view_layer_of(context)
         waiting = []
-        for target, rig in zip(targets, rigs, strict=True):
+        for rig, target in named.items():
             if rows_of(scene, rig_of(source), rig):
                 _check_channels(rig, pairing_of(scene, rig_of(source), rig))
             else:
@@ -164,7 +167,9 @@ class MotionJob(SteppedJob):
             if steered is not None:
                 moved = [name for name in moved if name in steered.controls.lost]
             remarks = () if steered is None else steered.finished(rig)
-            report = TransferReport(_said(made), tuple(_notes(source, rig, actions, moved)), remarks)
+            played = not actions or (self._plan.assign and len(actions) == 1)
+            notes = _notes(source, rig, actions, moved, played=played and steered is None)
+            report = TransferReport(_said(made), tuple(notes), remarks)
             seconds = time.perf_counter() - self._begun
             if before is None:
                 done.append(Carried(rig.name, None, (report,), seconds))
@@ -333,9 +338,14 @@ def _set_pose(rig: bpy.types.Object, found: TransferredMotion, steered: SteeredR
 
 
 def _notes(
-    source: bpy.types.Object, target: bpy.types.Object, actions: list[bpy.types.Action], moved: list[str]
+    source: bpy.types.Object,
+    target: bpy.types.Object,
+    actions: list[bpy.types.Action],
+    moved: list[str],
+    *,
+    played: bool,
 ) -> list[str]:
-    """Say what is to be known of a target."""
+    """Say what is to be known of a target, and of how it stands if it has got a pose, or plays its new action."""
     notes = []
     held = [
         bone.name
@@ -347,6 +357,13 @@ def _notes(
             f'Constraints hold {listed(held)} of "{target.name}", so they may not follow the new motion. Mute them to '
             "see it."
         )
+    if played:
+        turned = turned_above(target, moved)
+        if turned:
+            notes.append(
+                f"Bones without a pair that are not at rest turn all that hangs on them: {listed(turned)} of "
+                f'"{target.name}". Clear their pose (Pose > Clear Transform) unless that is wanted.'
+            )
     whole = [action.name for action in actions if object_curves(action, source)]
     if whole:
         notes.append(f'{listed(whole)} moves the object "{source.name}" as a whole, too. That was left out.')

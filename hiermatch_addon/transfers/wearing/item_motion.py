@@ -23,7 +23,7 @@ from ....engine import (
 )
 from ...common.phrases import counted
 from ...scene.armatures import SourceRig
-from .item_weights import ItemWeights, chosen_weights, in_columns, replaced
+from .item_weights import ItemWeights, chosen_weights, in_columns, replaced, within_limit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -200,7 +200,10 @@ class ItemMotion:
         steps = mend_weights_steps(weighted, body=body, skin_weights=on_skin, skeleton=skeleton)
         mended = yield from within(steps, 0.0, 0.6)
         for number, one in enumerate(mended):
-            found[number] = replaced(found[number], rig.names, one.weights, one.changed)
+            if self._items[number].held:  # it moves as one
+                continue
+            mixed = replaced(found[number], rig.names, one.weights, one.changed)
+            found[number] = within_limit(mixed, rig.names, self._settings)
             self.mended.append((self._items[number].name, int(one.changed.sum())))
         weighted = [
             replace(item, weights=in_columns(weights, rig.names)) for item, weights in zip(weighted, found, strict=True)

@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import numpy as np
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array, diags_array, hstack
 
 from ....engine import ClosestPoints, TriangleMesh, WornItem, row_sums
 from ...common.access import mesh_of
 from ...common.errors import ObjectError
+from ...scene.armatures import find_armature, held_by
 from ...scene.deform_layer import read_weights
 from ...scene.garments import dressed_at_rest
 from ...scene.mesh_io import position_digest, read_mesh, topology
-from .item_weights import ItemWeights
+from .item_weights import ItemWeights, in_columns
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from ...scene.armatures import SourceRig
@@ -35,7 +38,21 @@ _FAR, _BESIDE = 0.25, 0.3
 
 @dataclass(frozen=True, eq=False)
 class ReadItem:
-    """An item as it was read."""
+    """An item as it was read.
+
+    Attributes
+    ----------
+    name, uid, state : str, int and tuple of str
+        Which object it is, and how it was.
+    worn : WornItem
+        What the engine has to know of it.
+    at_rest : bool
+        Whether it lies on the body at rest.
+    weights : ItemWeights
+        In all its groups.
+    held : bool
+        Whether it hangs on one bone as a whole.
+    """
 
     name: str
     uid: int
@@ -43,6 +60,7 @@ class ReadItem:
     worn: WornItem
     at_rest: bool
     weights: ItemWeights
+    held: bool
 
 
 def read_item(
@@ -56,17 +74,10 @@ def read_item(
     stored: Any = cast("Any", item).hiermatch_wear
     mesh = read_mesh(item, depsgraph, use_modifiers=False)
     weights = read_weights(item)
-    numbers = {name: number for number, name in enumerate(names)}
-    groups = [group for group in item.vertex_groups if group.name in numbers]
-    bones = None
-    if groups:
-        columns = weights[:, [group.index for group in groups]].tocoo()
-        places = np.array([numbers[group.name] for group in groups], np.int64)
-        bones = csr_array((columns.data, (columns.row, places[columns.col])), shape=(mesh.vertex_count, len(names)))
-        total = row_sums(bones)
-        bones = csr_array(diags_array(1 / np.where(total > 0, total, 1)) @ bones)
-        if (total <= 0).any():  # accessory bones of its own: they say nothing of the body's
-            bones = None
+    own = _own_weights(item, weights, source, names)
+    total = row_sums(in_columns(own, names))
+    # Without weights, or with those of accessory bones of its own, nothing is said of the body's bones.
+    bones = None if (total <= 0).any() else csr_array(diags_array(1 / total) @ in_columns(own, names))
     rigid, tight, loose, left = (_painted(item, weights, name) for name in painted_groups)
     tightness = None if tight is None and loose is None else _or_none(tight, mesh) - _or_none(loose, mesh)
     worn = WornItem(
@@ -80,10 +91,26 @@ def read_item(
         margin=clearance,
     )
     state = topology(mesh_of(item)), position_digest(mesh_of(item))
-    names_of = tuple(group.name for group in item.vertex_groups)
+    held = _bone_of(item, source) in names
+    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own, held)
+
+
+def _bone_of(item: bpy.types.Object, source: Side) -> str:
+    """Return the bone of the source's armature that an item hangs on as a whole; empty if there is none."""
+    armature = find_armature(source)
+    return "" if armature is None else held_by(item, armature)
+
+
+def _own_weights(item: bpy.types.Object, weights: csr_array, source: Side, bones: Collection[str]) -> ItemWeights:
+    """Return the weights of an item in all its groups; one that hangs on a bone is moved by that bone of them alone."""
+    names = tuple(group.name for group in item.vertex_groups)
     locked = frozenset(group.name for group in item.vertex_groups if group.lock_weight)
-    own = ItemWeights(names_of, weights, locked)
-    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own)
+    bone = _bone_of(item, source)
+    if bone not in bones:
+        return ItemWeights(names, weights, locked)
+    others = [number for number, name in enumerate(names) if name not in bones]
+    whole = csr_array(np.ones((weights.shape[0], 1)))
+    return ItemWeights((*(names[one] for one in others), bone), csr_array(hstack([weights[:, others], whole])), locked)
 
 
 def still_there(item: ReadItem) -> bpy.types.Object:

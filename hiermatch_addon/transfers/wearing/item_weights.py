@@ -12,14 +12,14 @@ from scipy.sparse import csr_array, diags_array
 from ....engine import Columns, put_in, row_sums
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
     from collections.abc import Set as AbstractSet
 
     from numpy.typing import NDArray
 
     from ..options.wear import WearSettings
 
-__all__ = ["ItemWeights", "chosen_weights", "in_columns", "replaced"]
+__all__ = ["ItemWeights", "chosen_weights", "in_columns", "replaced", "within_limit"]
 
 _ALIKE = 0.5
 """Part of an item's weights that has to be of bones that the other rig has as well, for them to be kept."""
@@ -92,7 +92,7 @@ def chosen_weights(
     mine, gone = in_columns(own, kept), in_columns(own, lost)
     has, lacks = row_sums(mine), row_sums(gone)
     if settings.weights == "OWN":
-        return ItemWeights(tuple(kept), mine, own.locked)
+        return within_limit(ItemWeights(tuple(kept), mine, own.locked), kept, settings)
     whole = has + lacks
     share = has.sum() / whole.sum() if whole.sum() > 0 else 0.0
     from_skin = settings.weights == "SKIN" or (share < _ALIKE and not handed)
@@ -113,6 +113,16 @@ def chosen_weights(
     return ItemWeights(
         tuple(names[number] for number in used), csr_array(mixed[:, used]), own.locked, gone_names, from_skin or handed
     )
+
+
+def within_limit(weights: ItemWeights, bones: Collection[str], settings: WearSettings) -> ItemWeights:
+    """Let no vertex have weights in more of some bones than is wanted, and let them sum to one if that is."""
+    if not settings.limit:
+        return weights
+    locked, shared = (np.array([name in some for name in weights.names], bool) for some in (weights.locked, bones))
+    columns = Columns(locked, np.ones(len(weights.names), bool), shared)
+    limits = {"limit": settings.limit, "normalise": settings.normalise}
+    return replace(weights, weights=put_in(weights.weights, weights.weights, columns, **limits))
 
 
 def in_columns(weights: ItemWeights, names: Sequence[str]) -> csr_array:

@@ -64,7 +64,7 @@ def write_copy(
     copy, kept = fitted_copy(context, item, source, target, motion=motion, growth=growth)
     if kept:
         notes.append(
-            f'Drivers of the shape keys of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
+            f'Drivers of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
             "what they need. Carry its shape keys or bones over by Retarget, and fit it again."
         )
     write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])
@@ -96,7 +96,8 @@ def write_copy(
 def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:
     """Write weights where they are not locked, and drop the groups of bones that are not there."""
     for name in weights.lost:
-        copy.vertex_groups.remove(copy.vertex_groups[name])
+        if name in copy.vertex_groups:  # a bone that the item hung on has none
+            copy.vertex_groups.remove(copy.vertex_groups[name])
     free = [number for number, name in enumerate(weights.names) if name not in weights.locked]
     write_weights(copy, [weights.names[number] for number in free], csr_array(weights.weights[:, free]))
 

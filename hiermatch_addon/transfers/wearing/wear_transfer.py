@@ -77,7 +77,7 @@ class WearTransfer:
         depsgraph = context.evaluated_depsgraph_get()
         self._ends = [item.name for item in chosen if item in parts_of(source)]
         for item in chosen:
-            check_item(context, item, source, target, chosen)
+            check_item(context, item, source, target, chosen, writable=settings.result == "KEY")
             if settings.result == "KEY":
                 check_keys_writable(item, [KEY + target.name])
                 check_writable(item)

@@ -15,6 +15,7 @@ from hiermatch.hiermatch_addon.transfers.rest_like_source import RestLikeSource
 from hiermatch.hiermatch_addon.transfers.rig import RigTransfer
 from mathutils import Matrix
 
+from tests.addon.operators.carrying import test_fit_rig
 from tests.addon.operators.carrying.test_fit_rig import TURNED, add_weights, own, shown
 from tests.addon.rigs import add_rigged, add_target, pose, true_passage, unpose
 
@@ -94,6 +95,21 @@ def test_the_source_s_actions_play_on_the_new_rig(pair):
     apart -= apart.mean(axis=0)  # where the target stands is its own affair
     assert np.linalg.norm(apart, axis=1).max() < 0.03 * np.ptp(wanted, axis=0).max()
     assert np.linalg.norm(followed - stood, axis=1).max() > 0.3
+
+
+def test_what_the_target_wears_is_left_and_named(pair):
+    source, target, _ = pair
+    made, *_ = test_fit_rig.fit(source, target)
+    vest = target.copy()
+    vest.name, vest.data = "Vest on Target", target.data.copy()
+    vest["hiermatch_item"], vest["hiermatch_body"] = "Vest", target.name
+    bpy.context.scene.collection.objects.link(vest)
+    stood = own(vest)
+    again, reports = fit(source, target)
+    assert again == made
+    assert reports[-1].notes == ('What "Target" wears stands as before: "Vest on Target". Fit it again by Wear.',)
+    np.testing.assert_allclose(own(vest), stood, atol=1e-5)
+    assert fit(source, target)[1][-1].notes == ()
 
 
 def test_a_step_is_as_long_as_the_body_is_large(pair):

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import bmesh
 import bpy
 import numpy as np
 import pytest
+from hiermatch.engine import Progress
 from hiermatch.hiermatch_addon.scene.character import Character, joined, parts_of, read_surface, side_of, whole
 from hiermatch.hiermatch_addon.scene.garments import undressed
+from hiermatch.hiermatch_addon.transfers.wearing import item_motion
 from mathutils import Vector
+from scipy.sparse import csr_array
 
 from tests.addon.garments import add_item
 from tests.addon.rigs import add_armature
@@ -267,6 +272,171 @@ def test_bones_of_an_item_come_along_onto_the_other_rig(pair):
     assert (
         '2 bones of the items were added to the rig of "Target"' in bpy.context.scene.hiermatch_retarget.report.remarks
     )
+
+
+def test_an_item_below_an_unevenly_scaled_parent_is_fitted_where_it_belongs(pair):
+    """A copy hangs on nothing, and what hangs on nothing cannot be sheared."""
+    target, shirt = pair[1:3]
+    assert wear("Shirt") == {"FINISHED"}
+    expected, stood = in_world(fitted("Shirt")), in_world(shirt)
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(empty)
+    empty.scale, empty.rotation_euler = (1.0, 3.0, 0.5), (0.3, 0.5, 0.2)
+    shirt.parent, shirt.rotation_euler = empty, (0.5, 0.2, 1.0)
+    bpy.context.view_layer.update()
+    matrix = np.linalg.inv(np.array(shirt.matrix_world))
+    local = stood @ matrix[:3, :3].T + matrix[:3, 3]
+    shirt.data.vertices.foreach_set("co", local.astype(np.float32).ravel())
+    assert wear("Shirt") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(in_world(fitted("Shirt")), expected, atol=1e-3)
+    assert target.name == "Target"
+
+
+def test_a_copy_that_was_taken_out_of_the_scene_is_shown_again(pair):
+    assert pair
+    scene = bpy.context.scene
+    assert wear("Shirt") == {"FINISHED"}
+    bpy.data.collections["Outfit of Target"].objects.unlink(fitted("Shirt"))
+    assert wear("Shirt") == {"FINISHED"}
+    assert fitted("Shirt").name in scene.objects
+    scene.collection.children.unlink(bpy.data.collections["Outfit of Target"])
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    assert {fitted("Shirt").name, fitted("Coat").name} <= set(scene.objects.keys())
+    assert bpy.data.collections["Outfit of Target"].users == 1
+
+
+def test_an_item_that_hangs_on_a_bone_is_moved_by_it_alone_and_fitted_at_rest(pair):
+    """As helmets and glasses are in files for games."""
+    source, target, shirt, _ = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for obj, rig in ((source, rigs[0]), (target, rigs[1])):
+        for name in ("neck", "tail"):
+            obj.vertex_groups.new(name=name).add(range(len(obj.data.vertices)), 0.5, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+    stood = shirt.matrix_world.copy()
+    shirt.parent, shirt.parent_type, shirt.parent_bone = rigs[0], "BONE", "neck"
+    bpy.context.view_layer.update()
+    shirt.matrix_world = stood
+    found = []
+    for turn in (0.0, 1.2):
+        rigs[0].pose.bones["neck"].rotation_mode = "XYZ"
+        rigs[0].pose.bones["neck"].rotation_euler = (turn, 0.0, turn)
+        bpy.context.view_layer.update()
+        assert wear("Shirt", wear_poses=False) == {"FINISHED"}
+        copy = fitted("Shirt")
+        neck = copy.vertex_groups["neck"].index
+        weights = [{one.group: one.weight for one in vertex.groups} for vertex in copy.data.vertices]
+        assert {each[neck] for each in weights} == {1.0}
+        assert "tail" not in copy.vertex_groups
+        assert copy.modifiers["Armature"].object == rigs[1]
+        found.append(in_world(copy))
+    np.testing.assert_allclose(found[1], found[0], atol=1e-3)
+    for bone in rigs[1].data.bones:
+        bone.name = f"other {bone.name}"
+    assert wear("Shirt", wear_poses=False) == {"FINISHED"}
+    assert "neck" not in fitted("Shirt").vertex_groups
+
+
+@pytest.mark.parametrize("overridden", [False, True], ids=["linked", "overridden"])
+def test_items_of_a_library_are_copied_into_the_file(pair, tmp_path, overridden):
+    """A wardrobe is often a file of its own."""
+    source, _, shirt, _ = pair
+    shirt.modifiers.new("Thick", "SOLIDIFY").thickness = 0.01
+    stood = in_world(shirt)
+    wardrobe = str(tmp_path / "wardrobe.blend")
+    bpy.data.libraries.write(wardrobe, {shirt}, fake_user=True)
+    bpy.data.objects.remove(shirt)
+    with bpy.data.libraries.load(wardrobe, link=True) as (_, wanted):
+        wanted.objects = ["Shirt"]
+    linked = wanted.objects[0]
+    item = linked.override_create() if overridden else linked
+    bpy.context.scene.collection.objects.link(item)
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="cannot be written to"):
+        wear("Shirt", wear_result="KEY")
+    for _ in range(2):
+        assert wear("Shirt") == {"FINISHED"}
+        copy = fitted("Shirt")
+        owned = (copy, copy.data)
+        assert {(one.library, one.override_library) for one in owned} == {(None, None)}
+        assert copy.modifiers.keys() == ["Thick"]
+    np.testing.assert_array_equal(in_world(item), stood)
+    assert source.name == "Source"
+
+
+def test_weights_that_are_mended_for_poses_keep_to_the_limit(pair, monkeypatch):
+    source, target, shirt, _ = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for obj, rig in ((source, rigs[0]), (shirt, rigs[0]), (target, rigs[1])):
+        obj.vertex_groups.new(name="neck").add(range(len(obj.data.vertices)), 1.0, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+
+    def spread_out(items, **_):
+        yield Progress(0.5, "Weights")
+        shapes = [item.weights.shape for item in items]
+        return [
+            SimpleNamespace(weights=csr_array(np.full(shape, 1 / shape[1])), changed=np.ones(shape[0], bool))
+            for shape in shapes
+        ]
+
+    monkeypatch.setattr(item_motion, "mend_weights_steps", spread_out)
+    assert wear("Shirt", wear_limit=2) == {"FINISHED"}
+    copy = fitted("Shirt")
+    bones = {group.index for group in copy.vertex_groups if group.name in rigs[1].data.bones}
+    weights = [[one.weight for one in vertex.groups if one.group in bones] for vertex in copy.data.vertices]
+    assert {sum(weight > 0 for weight in each) for each in weights} == {2}
+    np.testing.assert_allclose([sum(each) for each in weights], 1, atol=1e-5)
+    shirt.modifiers.remove(shirt.modifiers["Armature"])
+    shirt.parent, shirt.parent_type, shirt.parent_bone = rigs[0], "BONE", "neck"
+    bpy.context.view_layer.update()
+    shirt.matrix_world = source.matrix_world
+    assert wear("Shirt") == {"FINISHED"}  # what hangs on a bone moves as one
+    assert not {"tail", "spine"} & set(fitted("Shirt").vertex_groups.keys())
+
+
+def test_a_body_that_gets_another_rig_wears_its_clothes_with_that_the_next_time(pair):
+    source, target, shirt, _ = pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for obj, rig in ((source, rigs[0]), (shirt, rigs[0]), (target, rigs[1])):
+        obj.vertex_groups.new(name="neck").add(range(len(obj.data.vertices)), 1.0, "REPLACE")
+        obj.modifiers.new("Armature", "ARMATURE").object = rig
+    assert wear("Shirt", target="Rig B", wear_poses=False) == {"FINISHED"}
+    body = fitted("Shirt", target.name)["hiermatch_body"]
+    bpy.ops.hiermatch.retarget(source="Source", target="Rig B", refine=False, rest_pose_like_source="OFF")
+    made = target.modifiers[0].object
+    assert made not in rigs
+    remarks = bpy.context.scene.hiermatch_retarget.report.remarks
+    assert f'still moved by "Rig B": "{fitted("Shirt", body).name}"' in remarks
+    assert rigs[1].visible_get()  # as long as it moves something
+    for name in ("Rig B", target.name):
+        assert wear("Shirt", target=name, wear_poses=False) == {"FINISHED"}
+        armatures = [one.object for one in fitted("Shirt", body).modifiers if one.type == "ARMATURE"]
+        assert armatures == [made]
+
+
+def test_drivers_of_modifiers_come_along_and_nothing_else_that_moves_an_item(pair):
+    source, target, shirt, _ = pair
+    source["tailor"], target["tailor"] = 0.02, 0.03
+    shirt["size"] = 3
+    modifier = shirt.modifiers.new("Thick", "SOLIDIFY")
+    modifier.thickness = 0.01
+    shirt.keyframe_insert("location", frame=1)
+    paths = {'modifiers["Thick"].thickness': (source, '["tailor"]'), 'modifiers["Thick"].offset': (shirt, '["size"]')}
+    for path, (leader, read) in {**paths, "hide_render": (source, '["tailor"]')}.items():
+        driver = shirt.driver_add(path).driver
+        driver.type = "AVERAGE"
+        place = driver.variables.new().targets[0]
+        place.id, place.data_path = leader, read
+    assert wear("Shirt") == {"FINISHED"}
+    copy = fitted("Shirt")
+    read = {curve.data_path: curve.driver.variables[0].targets[0].id for curve in copy.animation_data.drivers}
+    assert read == {'modifiers["Thick"].thickness': target, 'modifiers["Thick"].offset': copy}
+    assert copy.animation_data.action is None
+    assert len(shirt.animation_data.drivers) == 3
+    del target["tailor"]
+    assert wear("Shirt") == {"FINISHED"}
+    assert 'still read from "Source"' in bpy.context.scene.hiermatch_retarget.report.notes
 
 
 def test_the_body_below_is_drawn_in_or_hidden(pair):

@@ -134,6 +134,16 @@ def test_all_actions_go_to_several_targets_and_strips_are_copied():
         assert (copy.frame_start, copy.repeat) == (30, 2)
 
 
+def test_a_rig_that_is_named_twice_gets_an_action_once():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source)
+    for _ in range(2):  # with pairs yet to be found, and with those that are there
+        before = set(bpy.data.actions.keys())
+        carry(source="A", targets=[{"name": "B"}, {"name": "B Body"}, {"name": "B"}])
+        assert len(set(bpy.data.actions.keys()) - before) == 1
+
+
 def test_the_pose_of_the_moment():
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed", rolls=0.3, hanging=True)
@@ -202,6 +212,53 @@ def test_what_an_action_made_by_hand_left_stays():
     carry(source="A", target="B", action="Wave")
     bpy.context.scene.frame_set(1)
     assert target.pose.bones[arm].matrix_basis == before
+
+
+def test_bones_without_a_pair_that_turn_all_else_are_named():
+    """Such as a root that the target's own action has laid down."""
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    add_action(source)
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    hips, arm = (made.names[made.origins.index(frozenset([name]))] for name in ("hips", "forearm.L"))
+    bpy.ops.hiermatch.remove_bone_pair(source="A", target="B", target_bone=hips)
+    for operator in (carry, pose):
+        operator(source="A", target="B")
+        assert "at rest" not in bpy.context.scene.hiermatch_retarget.report.notes
+    target.pose.bones[hips].rotation_quaternion = (0.7, 0.7, 0.0, 0.0)
+    for operator in (carry, pose):
+        operator(source="A", target="B")
+        assert f'hangs on them: "{hips}" of "B"' in bpy.context.scene.hiermatch_retarget.report.notes
+    assert arm not in bpy.context.scene.hiermatch_retarget.report.notes
+
+
+def test_what_is_muted_is_not_carried():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    action = add_action(source)
+    for (path, _), curve in curves_of(action).items():
+        curve.mute = "forearm.L" in path
+    for bone in source.pose.bones:
+        bone.matrix_basis = Matrix()
+    carry(source="A", target="B")
+    forearm, upper = (made.names[made.origins.index(frozenset([name]))] for name in ("forearm.L", "upper_arm.L"))
+    bpy.context.scene.frame_set(11)
+    assert target.pose.bones[forearm].matrix_basis.to_quaternion().angle < 0.01
+    assert target.pose.bones[upper].matrix_basis.to_quaternion().angle > 0.1
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 4), reason="actions have slots since Blender 4.4")
+@pytest.mark.parametrize("keying", ["AUTO", "ALL"])
+def test_an_action_that_moves_something_else_as_well_gets_no_more_frames(keying):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    slot = action.slots.new("OBJECT", "Camera")
+    curve = action.layers[0].strips[0].channelbag(slot, ensure=True).fcurves.new("location", index=0)
+    for frame in (-100, 400):
+        curve.keyframe_points.insert(frame, 0)
+    carry(source="A", target="B", keying=keying)
+    assert tuple(target.animation_data.action.frame_range) == (1, 21)
 
 
 def test_an_armature_alone_gives_motion_through_pairs_that_are_there():

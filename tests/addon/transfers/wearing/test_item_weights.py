@@ -5,7 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 from hiermatch.hiermatch_addon.transfers.options.wear import WearSettings
-from hiermatch.hiermatch_addon.transfers.wearing.item_weights import ItemWeights, chosen_weights, in_columns, replaced
+from hiermatch.hiermatch_addon.transfers.wearing.item_weights import (
+    ItemWeights,
+    chosen_weights,
+    in_columns,
+    replaced,
+    within_limit,
+)
 from scipy.sparse import csr_array
 
 OLD = {"arm", "hand", "skirt"}
@@ -48,11 +54,21 @@ def test_limit_and_locked_groups():
     limited = chosen_weights(item, ["arm", "hand"], SKIN, OLD, WearSettings(limit=1))
     assert ((rows(limited, "arm", "hand") > 0).sum(axis=1) == 1).all()
     np.testing.assert_allclose(rows(limited, "arm", "hand").sum(axis=1), 1)
+    limited = chosen_weights(item, ["arm", "hand"], SKIN, OLD, WearSettings(weights="OWN", limit=1))
+    np.testing.assert_allclose(rows(limited, "arm", "hand").max(axis=1), 1)
     locked = own(["arm", "hand"], [[0.6, 0.4], [0.5, 0.5], [0.2, 0.8]], ["arm"])
     found = chosen_weights(locked, ["arm", "hand"], SKIN, OLD, WearSettings(weights="SKIN"))
     np.testing.assert_allclose(rows(found, "arm")[:, 0], [0.6, 0.5, 0.2])
     # Where the skin has nothing in the others there is nothing to make up a whole.
     np.testing.assert_allclose(rows(found, "hand")[:, 0], [0.4, 0, 0.8])
+
+
+def test_what_was_mended_is_limited_as_well():
+    item = own(["arm", "hand", "Seam"], [[0.6, 0.4, 0.7], [0.5, 0.5, 0], [1, 0, 0.2]])
+    found = within_limit(item, ["arm", "hand"], WearSettings(limit=1))
+    np.testing.assert_allclose(rows(found, "arm", "hand")[[0, 2]], [[1, 0], [1, 0]])
+    np.testing.assert_allclose(rows(found, "Seam"), rows(item, "Seam"))
+    assert within_limit(item, ["arm", "hand"], WearSettings()) is item
 
 
 def test_mended_weights_come_in_where_they_changed():

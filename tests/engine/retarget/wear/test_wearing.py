@@ -150,6 +150,13 @@ def test_a_margin_is_kept():
     assert before.clearance.min() < 0.06
 
 
+def test_a_large_margin_is_no_lack_of_skin():
+    shirt = cap(ball(9, 1.02), 0.0)
+    (fitted,) = wear(BODY, BODY.vertices, [WornItem(shirt, margin=0.3)])
+    assert np.median(fitted.clearance) > 0.28
+    assert not fitted.bare.any()
+
+
 def similarity_error(before, after):
     """How far points are from being a similar image of others, and how many times as large they are."""
     x, y = before - before.mean(axis=0), after - after.mean(axis=0)
