@@ -257,7 +257,7 @@ def fitted_copy(
         own = keys_of(part)
         if own is not None:
             every[own] = [cast("bpy.types.Key", keys)] if part is item else theirs
-    driven = [copy, *([] if keys is None else [keys])]
+    driven: list[bpy.types.Key | bpy.types.Object] = [copy] if keys is None else [copy, keys]
     return copy, sorted({name for one in driven for name in point_drivers(one, every)})
 
 

@@ -121,8 +121,8 @@ def within_limit(weights: ItemWeights, bones: Collection[str], settings: WearSet
         return weights
     locked, shared = (np.array([name in some for name in weights.names], bool) for some in (weights.locked, bones))
     columns = Columns(locked, np.ones(len(weights.names), bool), shared)
-    limits = {"limit": settings.limit, "normalise": settings.normalise}
-    return replace(weights, weights=put_in(weights.weights, weights.weights, columns, **limits))
+    own = weights.weights
+    return replace(weights, weights=put_in(own, own, columns, limit=settings.limit, normalise=settings.normalise))
 
 
 def in_columns(weights: ItemWeights, names: Sequence[str]) -> csr_array:
