@@ -303,6 +303,14 @@ def test_what_is_named_rigid_is():
     assert similarity_error(SHIRT.vertices, whole.positions)[0] < 1e-6
 
 
+def test_what_is_named_rigid_and_does_not_fit_is_said_to_show_what_is_below():
+    images = BODY.vertices * [1.6, 1.2, 1.0]
+    shirt, button = wear(BODY, images, [WornItem(SHIRT, fit="RIGID"), WornItem(BUTTON)])
+    assert shirt.through > 0.1
+    assert (shirt.clearance < -0.01).mean() == pytest.approx(shirt.through, abs=0.05)
+    assert button.through == 0
+
+
 def test_a_tight_item_follows_more_closely_than_a_loose_one():
     waves = 1 + 0.06 * np.sin(9 * BODY.vertices[:, 2])
     images = BODY.vertices * waves[:, None]
