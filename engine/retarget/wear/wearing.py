@@ -38,8 +38,8 @@ _HOLD_AWAY = 0.6
 
 _UNSEEN = 0.05
 """How far below an item that stands for skin, in the same unit, the skin may be: 7 cm on a human.  With 0 the waist of
-Formal, whose skirt lacks hips below it, dips by 7 cm in ``python -m tests.benchmarks.worn_makers``; with 0.08 clothes
-stand off by a quarter more there."""
+Formal, whose skirt lacks hips below it, dips by 7 instead of 5 cm in ``python -m tests.benchmarks.worn_makers``; with
+0.08 clothes stand off by a quarter more there."""
 
 _SEWN, _SEAM = 1e-6, 100.0
 """How near, in the same unit, vertices of two items are that move as one, and how much more that counts than cloth."""
