@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
+from mathutils import Vector
 
 from tests.addon.shape_keys import positions
 
@@ -27,3 +28,35 @@ def add_item(body, name, offset):
     bpy.context.scene.collection.objects.link(obj)
     bpy.context.view_layer.update()
     return obj
+
+
+def in_world(obj):
+    """Where the vertices of an object are in the world, (n, 3)."""
+    matrix = np.array(obj.matrix_world)
+    return positions(obj) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def wear(*items, **options):
+    """Press the button Wear with some items, of the Source onto the Target if not said otherwise."""
+    named = [{"name": item} for item in items]
+    return bpy.ops.hiermatch.wear(
+        **({"source": "Source", "target": "Target", "items": named, "refine": False} | options)
+    )
+
+
+def fitted(item, body="Target"):
+    """The one copy of an item that was fitted to a body."""
+    found = [obj for obj in bpy.data.objects if obj.get("hiermatch_item") == item and obj.get("hiermatch_body") == body]
+    assert len(found) == 1
+    return found[0]
+
+
+def depths(obj, body):
+    """How far vertices are inside a body, by its nearest face."""
+    into = body.matrix_world.inverted()
+    found = []
+    for point in in_world(obj):
+        hit, place, normal, _ = body.closest_point_on_mesh(into @ Vector(point))
+        assert hit
+        found.append(-(into @ Vector(point) - place).dot(normal))
+    return np.array(found)

@@ -75,9 +75,10 @@ def read_item(
     mesh = read_mesh(item, depsgraph, use_modifiers=False)
     weights = read_weights(item)
     own = _own_weights(item, weights, source, names)
-    total = row_sums(in_columns(own, names))
+    in_bones = in_columns(own, names)
+    total = row_sums(in_bones)
     # Without weights, or with those of accessory bones of its own, nothing is said of the body's bones.
-    bones = None if (total <= 0).any() else csr_array(diags_array(1 / total) @ in_columns(own, names))
+    bones = None if (total <= 0).any() else csr_array(diags_array(1 / total) @ in_bones)
     rigid, tight, loose, left = (_painted(item, weights, name) for name in painted_groups)
     tightness = None if tight is None and loose is None else _or_none(tight, mesh) - _or_none(loose, mesh)
     worn = WornItem(
