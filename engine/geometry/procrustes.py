@@ -135,6 +135,11 @@ def nearest_rotations(matrices: Floats) -> Floats:
     return rotations
 
 
+def nearest_orthogonal(matrices: Floats, handedness: float) -> Floats:
+    """Find the nearest rotations to matrices (n, 3, 3), or the nearest reflections if the handedness is -1, not 1."""
+    return handedness * nearest_rotations(handedness * matrices)
+
+
 def _of_block(matrices: Floats) -> Floats:
     """Nearest rotations: by quaternions, after the half turn that leaves least to turn, or where that fails exactly."""
     diagonals = np.einsum("nii->ni", matrices)

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ..runtime.arrays import Floats
+from .surface_map import SurfaceMap
 from .surface_points import SurfacePoints
 from .triangle_mesh import TriangleMesh
 
@@ -21,3 +24,8 @@ def reflected_positions(positions: Floats) -> Floats:
 def reflected_points(reflection: TriangleMesh, points: SurfacePoints) -> SurfacePoints:
     """Name points of a mesh as points of its reflection, or the other way round."""
     return SurfacePoints.from_barycentric(reflection, points.triangles, points.barycentric[:, [0, 2, 1]])
+
+
+def reflected_map(reflection: TriangleMesh, surface_map: SurfaceMap) -> SurfaceMap:
+    """Name the images of a map to a mesh as points of its reflection, or the other way round."""
+    return replace(surface_map, points=reflected_points(reflection, surface_map.points))

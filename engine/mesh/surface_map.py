@@ -256,6 +256,18 @@ class SurfaceMap:
         signs = self.face_orientations(domain, image)
         return self._area_share(domain, signs > 0) - self._area_share(domain, signs < 0)
 
+    def mirrors(self, domain: TriangleMesh, image: TriangleMesh) -> bool:
+        """Say whether the domain lies on the image as if seen in a mirror, its left side on the right.
+
+        Then most of it is turned over, and what fits the map best on the whole is a reflection: where only the
+        triangles of one of the two are the wrong way round, it is a rotation.
+        """
+        self._check(domain, image)
+        shares = domain.vertex_areas / domain.area
+        here, there = (each - shares @ each for each in (domain.vertices, self.positions))
+        spread = there.T @ (shares[:, None] * here)
+        return bool(np.linalg.det(spread) < 0) and self.orientation(domain, image) < 0
+
     def face_orientations(self, domain: TriangleMesh, image: TriangleMesh) -> NDArray[np.int8]:
         """Say of each triangle of the domain how its image lies on the surface.
 

@@ -14,6 +14,7 @@ from ..geometry.procrustes import nearest_similarity
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.adjacency import edge_means, vertex_adjacency
 from ..mesh.connectivity.welded_parts import WeldedParts
+from ..mesh.reflection import reflected_map, reflected_mesh
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
@@ -117,6 +118,9 @@ def wrap_steps(
     if len(source_to_target) != source.vertex_count or len(target_to_source) != target.vertex_count:
         raise MatchError("The maps belong to other meshes than those to be wrapped. Match them again.")
     wanted = source_to_target.positions if registered is None else registered
+    if source_to_target.mirrors(source, target):  # what lies there without a crease is the mirror image
+        source = reflected_mesh(source)
+        target_to_source = reflected_map(source, target_to_source)
     held = _held(source, source_to_target, target_to_source)
     confidence, points = source_to_target.confidence, source_to_target.points
     parts = WeldedParts.of(source)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 from bpy.app.handlers import persistent
 
+from ..common.access import mesh_of
 from ..common.redraw import redraw_sidebars
 from ..storage.halves import find_carriers
 from ..storage.landmark_layer import has_landmarks
@@ -27,6 +28,9 @@ __all__ = ["refresh", "start_watching", "stop_watching"]
 
 _DELAY = 0.3
 """Seconds from an edit to the look at it, so that many edits in a row cost one look."""
+
+_negative: dict[int, bool] = {}
+"""Of each object with a match that has moved, by its number in this session: whether it was mirrored the last time."""
 
 _PLAYING_DELAY = 1.0
 """Seconds until the next try while an animation plays, which must not stutter."""
@@ -85,16 +89,17 @@ def _handlers() -> tuple[tuple[list[Any], Any], ...]:
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Look soon if a mesh with a match was edited, or objects came or went.
+    """Look soon if a mesh with a match was edited or mirrored, or objects came or went.
 
-    Posing, moving and selecting objects edits no mesh and no collection.
+    Posing, moving and selecting objects edits no mesh and no collection, and turns no object over.
     """
     if depsgraph.id_type_updated("COLLECTION"):
         _look_soon()
         return
     for update in depsgraph.updates:
         changed = update.id
-        if update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed):
+        edited = update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed)
+        if edited or (update.is_updated_transform and isinstance(changed, bpy.types.Object) and _turned_over(changed)):
             _look_soon()
             return
 
@@ -102,6 +107,16 @@ def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 def _is_ours(mesh: bpy.types.Mesh) -> bool:
     """Return whether a mesh carries a match or landmarks."""
     return is_marked(mesh) or has_landmarks(mesh)
+
+
+def _turned_over(obj: bpy.types.Object) -> bool:
+    """Return whether an object with a match may have been mirrored since it moved before."""
+    if obj.type != "MESH" or not _is_ours(mesh_of(obj)):
+        return False
+    negative = obj.matrix_world.is_negative
+    known = _negative.get(obj.session_uid)
+    _negative[obj.session_uid] = negative
+    return known is not negative
 
 
 @persistent  # type: ignore[untyped-decorator]

@@ -280,8 +280,10 @@ def topology_of(side: Side) -> str:
 
 
 def positions_of(side: Side) -> str:
-    """Return a text that is the same as long as no vertex of a part moves within its object."""
-    return _digest([position_digest(mesh_of(part)) for part in parts_of(side)])
+    """Return a text that is the same as long as no vertex of a part moves within its object, and none is mirrored."""
+    parts = parts_of(side)
+    mirrored = [str(number) for number, part in enumerate(parts) if part.matrix_world.is_negative]
+    return " ".join([_digest([position_digest(mesh_of(part)) for part in parts]), *mirrored])
 
 
 def _digest(texts: list[str]) -> str:

@@ -72,8 +72,8 @@ class Half:
         """Return a sentence that says why the match is out of date on this side; empty if it is not."""
         if not self.has_same_faces():
             change = "it has other vertices or faces"
-        elif self.kept.get("positions") not in (None, "", positions_of(self.obj)):
-            change = "its vertices were moved"
+        elif (then := self.kept.get("positions")) not in (None, "", now := positions_of(self.obj)):
+            change = "it was mirrored" if then.split()[0] == now.split()[0] else "its vertices were moved"
         else:
             return ""
         return f'The match is out of date: "{self.obj.name}" was edited since ({change}). Match again.'

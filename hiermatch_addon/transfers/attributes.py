@@ -141,7 +141,11 @@ class AttributeTransfer:
             carrying = called_steps(carry_face_values, self._materials, faces, crossing.places)
             self._materials = yield from within(carrying, 1 - 1 / count, 1.0)
         if self._normals is not None:
-            placing = called_steps(surface_frames, pair.target, pair.target_to_source.positions, radius=_NORMAL_RADIUS)
+            back = pair.target_to_source
+            mirrored = back.mirrors(pair.target, pair.source)
+            placing = called_steps(
+                surface_frames, pair.target, back.positions, radius=_NORMAL_RADIUS, mirrored=mirrored
+            )
             turns = (yield from within(placing, 1.0, 1.0)).rotations.transpose(0, 2, 1)
             carrying = called_steps(carry_normals, self._normals, faces, crossing.places, pair.target, turns)
             self._normals = yield from within(carrying, 1.0, 1.0)

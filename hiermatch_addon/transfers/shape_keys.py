@@ -114,7 +114,9 @@ class ShapeKeyTransfer:
         """Compute the offsets of the target's vertices."""
         pair, rig = passage.pair, passage.rig
         images = pair.source_to_target.positions if rig is None else rig.registered
-        frames = yield from within(called_steps(surface_frames, pair.source, images), 0.0, 0.1)
+        mirrored = pair.source_to_target.mirrors(pair.source, pair.target)
+        framing = called_steps(surface_frames, pair.source, images, mirrored=mirrored)
+        frames = yield from within(framing, 0.0, 0.1)
         turned = (
             called_steps(evened_frames, pair.source, frames) if rig is None else called_steps(bone_frames, rig, frames)
         )

@@ -137,8 +137,13 @@ def pair_bones(
     Raises
     ------
     RigError
-        If the arrays do not fit together.
+        If the arrays do not fit together, or the rig was fitted across a map to the mirror image.
     """
+    if rig.mirrored:
+        raise RigError(
+            "The match exchanges left and right, so bones would turn the wrong way. Use another answer of the match, "
+            "or match the bodies again."
+        )
     if weights.shape != (target.vertex_count, len(skeleton)):
         raise RigError(
             f"{target.vertex_count} vertices and {len(skeleton)} bones need weights of that shape, but got "

@@ -28,7 +28,7 @@ class FittedRig:
     translations : (b, 3) array of float
         Its translation.
     rotations : (b, 3, 3) array of float
-        The rotation nearest to `linear`.
+        The rotation nearest to `linear`; the reflection nearest to it if the map takes the source to its mirror image.
     scales : (b,) array of float
         Its mean scale.
     posed : (n_x, 3) array of float
@@ -52,6 +52,11 @@ class FittedRig:
 
     def __repr__(self) -> str:
         return f"<FittedRig: {len(self.scales)} bones, {len(self.posed)} vertices>"
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the source comes to lie as if seen in a mirror, its left side on the right."""
+        return bool((np.linalg.det(self.rotations) < 0).any())
 
     @property
     def heads(self) -> Floats:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.procrustes import across_axes, least_turns, nearest_frame, nearest_rotations
+from ...geometry.procrustes import across_axes, least_turns, nearest_frame, nearest_orthogonal
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Floats, Ints, group_means, unit_vectors
 from ...runtime.errors import RigError
@@ -20,6 +20,9 @@ _SHORTEST = 0.02
 
 NEAR_FRAME = np.radians(45.0)
 """A body is turned by one of the frames if its own rotation is not further away."""
+
+_REFLECTIONS = np.eye(3) - 2 * np.einsum("ij,ik->ijk", np.eye(3), np.eye(3))
+"""Reflections along the axes: a body in a mirror may be turned by a frame after one of them."""
 
 _LEAST_REACH = 0.05
 """Least part of the body's extent by which a root is away from its middle, and with which it reaches towards it."""
@@ -93,7 +96,8 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
     for place, bone in np.argwhere(carriers.of_places > 0):
         placed[place] += carriers.of_places[place, bone] * _carried(rig, bone, points[place])
     upright = standing(rig, source, frames)
-    turns = nearest_rotations(np.einsum("bc,cij->bij", carriers.of_turns, rig.rotations))
+    handedness = -1.0 if rig.mirrored else 1.0
+    turns = nearest_orthogonal(np.einsum("bc,cij->bij", carriers.of_turns, rig.rotations), handedness)
     for bone in np.flatnonzero(carriers.anchors >= 0):
         turns[bone] = upright
         placed[carriers.places[bone]] = _rooted(rig, source, upright, bone, carriers.anchors[bone])
@@ -130,7 +134,11 @@ def standing(rig: FittedRig, source: TriangleMesh, frames: Floats | None = None)
         The nearest of the frames, or the median rotation of all bones if none is near.
     """
     masses = moved_areas(rig, source)
-    middle = nearest_rotations(np.einsum("b,bij->ij", _median_shares(rig.rotations, masses), rig.rotations)[None])[0]
+    handedness = -1.0 if rig.mirrored else 1.0
+    shares = _median_shares(rig.rotations, masses, handedness)
+    middle = nearest_orthogonal(np.einsum("b,bij->ij", shares, rig.rotations)[None], handedness)[0]
+    if rig.mirrored and frames is not None:
+        frames = np.concatenate([frames @ reflection for reflection in _REFLECTIONS])
     return nearest_frame(middle, frames, NEAR_FRAME)
 
 
@@ -152,11 +160,11 @@ def _aimed(skeleton: Skeleton, heads: Floats, turns: Floats, masses: Floats) -> 
     return aimed
 
 
-def _median_shares(rotations: Floats, masses: Floats) -> Floats:
+def _median_shares(rotations: Floats, masses: Floats, handedness: float) -> Floats:
     """Share one among the bones, (b,), so that the blended rotation is their median by mass: limbs tilt no body."""
     shares = masses / masses.sum()
     for _ in range(_MEDIAN_ROUNDS):
-        middle = nearest_rotations(np.einsum("b,bij->ij", shares, rotations)[None])[0]
+        middle = nearest_orthogonal(np.einsum("b,bij->ij", shares, rotations)[None], handedness)[0]
         apart = np.linalg.norm(rotations - middle, axis=(1, 2))
         shares = masses / np.maximum(apart, _MEDIAN_SHARPNESS)
         shares /= shares.sum()

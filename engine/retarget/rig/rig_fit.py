@@ -10,6 +10,7 @@ from scipy.sparse import csr_array, vstack
 
 from ...geometry.laplacian import laplace_beltrami
 from ...mesh.closest_points import ClosestPoints, FoundPoints, facing
+from ...mesh.reflection import reflected_map, reflected_mesh, reflected_positions
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import SurfacePoints, interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
@@ -68,7 +69,8 @@ def fit_rig_steps(
 
     The bones are found that pose the source as the maps say.  Then, in turn, the source slides onto the target, held
     by the shape that its bones give it, and the bones are found anew: where on a limb a point lies, the bones know
-    better than the surface, and where the surface is, the target knows better than the bones.
+    better than the surface, and where the surface is, the target knows better than the bones.  Where the maps take the
+    source to its mirror image, it is that which slides.
 
     Parameters
     ----------
@@ -96,8 +98,34 @@ def fit_rig_steps(
         If the weights do not fit the source and the bones, or no bone moves the main part of the source.
     """
     weights = _checked(weights, source, skeleton)
+    bodies, maps = (source, target), (source_to_target, target_to_source)
+    if not source_to_target.mirrors(source, target):
+        return (yield from _fitted_steps(bodies, maps, weights, skeleton, (refine, known)))
+    reflection = reflected_mesh(source)
+    ends = (reflected_positions(each) for each in (skeleton.heads, skeleton.tails))
+    maps = source_to_target, reflected_map(reflection, target_to_source)
+    seen = Skeleton(skeleton.parents, *ends)
+    fitted = yield from _fitted_steps((reflection, target), maps, weights, seen, (refine, known))
+    back = reflected_map(source, fitted.target_to_source)
+    # The reflection comes before what moves it: it changes the first column of each matrix.
+    linear, rotations = (reflected_positions(each) for each in (fitted.linear, fitted.rotations))
+    return replace(fitted, skeleton=skeleton, linear=linear, rotations=rotations, target_to_source=back)
+
+
+fit_rig = at_once(fit_rig_steps)
+
+
+def _fitted_steps(
+    bodies: tuple[TriangleMesh, TriangleMesh],
+    maps: tuple[SurfaceMap, SurfaceMap],
+    weights: csr_array,
+    skeleton: Skeleton,
+    options: tuple[bool, KnownShapes | None],
+) -> Steps[FittedRig]:
+    """Fit a rig across maps that keep left and right; the options are `refine` and `known`."""
+    (source, _), (source_to_target, target_to_source), (refine, known) = bodies, maps, options
     yield Progress(0.0, "Cleaning")
-    x, y = yield from within(_cleaned_steps((source, target), known), 0.0, 0.05)
+    x, y = yield from within(_cleaned_steps(bodies, known), 0.0, 0.05)
     body, there = x.mesh, _on_main(y, source_to_target, x)
     back = _on_main(x, target_to_source, y)
     moving = _of_main(x, weights)
@@ -109,7 +137,6 @@ def fit_rig_steps(
     positions = there.interpolate(y.mesh.triangles, y.mesh.vertices)
     evidence = _Evidence(body, moving, y.mesh, skeleton)
     bones = evidence.bones(positions, back, forward, backward)
-    maps = source_to_target, target_to_source
     missed = np.linalg.norm(bones.posed - positions, axis=1)[x.main.original_vertices >= 0]
     if refine and np.median(missed) < _EXPLAINED * np.sqrt(y.mesh.area):
         sliding = _sliding_steps(_Pair(x, y, moving, skeleton), bones, back, maps)
@@ -121,9 +148,6 @@ def fit_rig_steps(
     return FittedRig(
         skeleton, weights, bones.linear, bones.translations, bones.rotations, bones.scales, posed, registered, *maps
     )
-
-
-fit_rig = at_once(fit_rig_steps)
 
 
 def _cleaned_steps(meshes: tuple[TriangleMesh, TriangleMesh], known: KnownShapes | None) -> Steps[list[CleanSurface]]:

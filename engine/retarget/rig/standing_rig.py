@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.procrustes import across_axes, nearest_frame, nearest_rotations
+from ...geometry.procrustes import across_axes, nearest_frame, nearest_orthogonal
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
@@ -218,12 +218,16 @@ class _Moved:
 
 @dataclass(frozen=True, eq=False)
 class _Field:
-    """Places of the source's surface (n, 3), its normals there, their images, and how much each counts."""
+    """Places of the source's surface (n, 3), its normals there, their images, and how much each counts.
+
+    The handedness is -1 if the images are those of a mirror, else 1.
+    """
 
     places: Floats
     normals: Floats
     images: Floats
     areas: Floats
+    handedness: float
 
     @classmethod
     def of(cls, source: TriangleMesh, target: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> _Field:
@@ -242,7 +246,8 @@ class _Field:
         normals = np.concatenate([source.vertex_normals[forward], back.transfer(source.vertex_normals)[backward]])
         places = np.concatenate([source.vertices[forward], back.positions[backward]])
         images = np.concatenate([there.positions[forward], target.vertices[backward]])
-        return cls(places[kept], normals[kept], images[kept], areas[kept])
+        handedness = -1.0 if there.mirrors(source, target) else 1.0
+        return cls(places[kept], normals[kept], images[kept], areas[kept], handedness)
 
     def at(self, points: Floats) -> _Moved:
         """Move points (k, 3) with what is around them."""
@@ -266,7 +271,7 @@ class _Field:
         products = np.einsum("nd,ne->nde", self.images, self.places).reshape(-1, 9)
         covariances = (weights @ products).reshape(-1, 3, 3) - there[:, :, None] * here[:, None]
         spreads = weights @ np.square(self.places).sum(axis=1) - np.square(here).sum(axis=1)
-        turns = nearest_rotations(covariances)
+        turns = nearest_orthogonal(covariances, self.handedness)
         scales = np.einsum("kij,kij->k", turns, covariances) / np.maximum(spreads, TINY)
         return _Moved(there + scales[:, None] * np.einsum("kij,kj->ki", turns, points - here), turns, scales)
 

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import SuperLU
 from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
-from ...geometry.procrustes import nearest_rotations
+from ...geometry.procrustes import nearest_orthogonal
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
@@ -124,7 +124,7 @@ def surface_frames(
     sums = np.stack([mesh.sum_at_vertices(column) for column in (columns / 3).T], axis=1)
     spread = _spread(mesh, sums, radius)
     spread = spread[bearers(mesh)]
-    rotations = _orthogonal(spread[:, :9].reshape(-1, 3, 3), -1.0 if mirrored else 1.0)
+    rotations = nearest_orthogonal(spread[:, :9].reshape(-1, 3, 3), -1.0 if mirrored else 1.0)
     return LocalFrames(rotations, _bounded(spread[:, 9]), overall)
 
 
@@ -155,7 +155,9 @@ def bone_frames(rig: FittedRig, otherwise: LocalFrames) -> LocalFrames:
     moved = total > 0
     blended = (weights @ rig.rotations.reshape(-1, 9)).reshape(-1, 3, 3)
     scales = np.divide(weights @ rig.scales, total, out=otherwise.scales.copy(), where=moved)
-    rotations = np.where(moved[:, None, None], _orthogonal(blended, 1.0), otherwise.rotations)
+    rotations = np.where(
+        moved[:, None, None], nearest_orthogonal(blended, -1.0 if rig.mirrored else 1.0), otherwise.rotations
+    )
     return LocalFrames(rotations, scales, otherwise.overall)
 
 
@@ -191,7 +193,7 @@ def evened_frames(mesh: TriangleMesh, frames: LocalFrames) -> LocalFrames:
         alike = np.exp(-np.square(flat - flat[chosen]).sum(axis=1) / (2 * _ALIKE**2))[:, None]
         sums += alike * spread.solve(alike * columns)
     evened = (sums[:, :9] / sums[:, 9:])[bearers(mesh)].reshape(-1, 3, 3)
-    return replace(frames, rotations=_orthogonal(evened, float(np.sign(np.linalg.det(frames.rotations[0])))))
+    return replace(frames, rotations=nearest_orthogonal(evened, float(np.sign(np.linalg.det(frames.rotations[0])))))
 
 
 def _unlike(rotations: Floats) -> list[int]:
@@ -273,8 +275,3 @@ def _bounded(scales: Floats) -> Floats:
     """Bound scales (n,) around their middle."""
     middle = float(np.maximum(np.median(scales), TINY))
     return scales.clip(middle / _LARGEST_STRETCH, middle * _LARGEST_STRETCH)
-
-
-def _orthogonal(matrices: Floats, handedness: float) -> Floats:
-    """Orthogonal matrices of such a determinant, 1 or -1, that are nearest to matrices (n, 3, 3)."""
-    return handedness * nearest_rotations(handedness * matrices)

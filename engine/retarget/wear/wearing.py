@@ -18,7 +18,7 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.elastic import ElasticSurface
 from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.background import can_go_beside
-from ...runtime.errors import MeshError
+from ...runtime.errors import MatchError, MeshError
 from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ...runtime.progress import Progress, Steps, within
 from ...runtime.worker import call_helpers
@@ -164,9 +164,16 @@ def wear_steps(
     ------
     MeshError
         If the map or positions are those of other meshes.
+    MatchError
+        If the map leads to the mirror image.
     """
     if images.shape != source.vertices.shape or len(source_to_target) != source.vertex_count:
         raise MeshError("The map belongs to other meshes than the bodies. Match them again.")
+    if source_to_target.mirrors(source, target):
+        raise MatchError(
+            "The match exchanges left and right, and would turn clothes inside out. Use another answer of the match, "
+            "or match the bodies again."
+        )
     call_helpers()
     dressed = yield from within(dressed_steps(source, items, bones=bones, whole=whole), 0.0, 0.3)
     return (yield from within(fitted_steps(dressed, target, source_to_target, images, even=True), 0.3, 1.0))

@@ -56,7 +56,12 @@ def rename(obj):
 
 
 def turn(obj):
-    obj.rotation_euler, obj.scale = (1, 2, 3), (2, -1, 1)
+    obj.rotation_euler, obj.scale = (1, 2, 3), (2, 3, 1)
+    bpy.context.view_layer.update()
+
+
+def mirror(obj):
+    obj.scale.x = -1
     bpy.context.view_layer.update()
 
 
@@ -87,6 +92,7 @@ EDITS = {
     "moved by a script": (lambda obj: setattr(obj.data.vertices[3].co, "x", 0.1), MOVED),
     "scale applied": (lambda obj: obj.data.transform(((2, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))), MOVED),
     "subdivided": (lambda obj: in_edit_mode(obj, bpy.ops.mesh.subdivide), OTHER_FACES),
+    "mirrored": (mirror, r"was edited since \(it was mirrored\)"),
     "turned": (lambda obj: obj.data.flip_normals(), OTHER_FACES),
     "a vertex more": (lambda obj: obj.data.vertices.add(1), OTHER_FACES),
 }
@@ -116,6 +122,11 @@ class TestEdits:
         vertex.co.x += 1
         assert stale()
         vertex.co.x = before
+        assert not stale()
+
+    def test_turning_it_twice_is_no_mirror(self, dense_pair):
+        dense_pair[0].scale = -1, -1, 1
+        bpy.context.view_layer.update()
         assert not stale()
 
     def test_undo_does_too(self, dense_pair):

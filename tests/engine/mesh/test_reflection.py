@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from engine import SurfacePoints, TriangleMesh
-from engine.mesh.reflection import reflected_mesh, reflected_points
+from engine import SurfaceMap, SurfacePoints, TriangleMesh
+from engine.mesh.reflection import reflected_map, reflected_mesh, reflected_points
 from tests.shapes import creature, icosphere
 
 
@@ -67,3 +67,13 @@ def test_points_come_back(body):
     back = reflected_points(body, reflected_points(reflected_mesh(body), points))
     np.testing.assert_array_equal(back.barycentric, points.barycentric)
     np.testing.assert_allclose(back.positions, points.positions, atol=1e-12)
+
+
+def test_a_map_to_a_mesh_leads_to_the_same_places_of_its_reflection(body):
+    reflection = reflected_mesh(body)
+    led = SurfaceMap.from_points(body, some_points(body), np.linspace(0, 1, 50), np.arange(50) % 7 > 0)
+    seen = reflected_map(reflection, led)
+    np.testing.assert_allclose(seen.positions, led.positions * [-1, 1, 1], atol=1e-12)
+    np.testing.assert_array_equal(seen.confidence, led.confidence)
+    np.testing.assert_array_equal(seen.has_partner, led.has_partner)
+    np.testing.assert_array_equal(reflected_map(body, seen).triangles, led.triangles)

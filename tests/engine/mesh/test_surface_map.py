@@ -10,7 +10,7 @@ from engine import MatchError, MeshError, SurfacePoints, TriangleMesh
 from engine.mesh import surface_map
 from engine.mesh.closest_points import ClosestPoints
 from engine.mesh.surface_map import SurfaceMap
-from tests.shapes import icosphere, plane, rotation, torus
+from tests.shapes import creature, icosphere, plane, rotation, torus
 
 
 def onto(domain, image, positions=None, confidence=None):
@@ -218,6 +218,23 @@ def test_the_mirror_image_turns_every_triangle_over(fine):
     assert mapped.orientation(fine, fine) == pytest.approx(-1)
     assert mapped.flipped_faces(fine, fine) == pytest.approx(1)
     np.testing.assert_array_equal(mapped.face_orientations(fine, fine), -1)
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), rotation([1, 2, 3], 2.0)])
+def test_only_what_lies_as_in_a_mirror_is_mirrored(turn):
+    """Triangles that are all the wrong way round on one of the meshes are no mirror."""
+    vertices, triangles, _ = creature(0.4, 7)
+    mesh = TriangleMesh(vertices, triangles)
+    turned = vertices @ turn.T
+    for other, wound, mirrored in [
+        (turned, triangles, False),
+        (turned, triangles[:, ::-1], False),
+        (turned * [1, -1, 1], triangles[:, ::-1], True),
+    ]:
+        image = TriangleMesh(other, wound)
+        for domain, end in ((mesh, image), (image, mesh)):
+            led = SurfaceMap.from_points(end, SurfacePoints.at_vertices(end, np.arange(len(vertices))))
+            assert led.mirrors(domain, end) is mirrored
 
 
 def test_between_triangulations_orientation_is_kept(fine, coarse):

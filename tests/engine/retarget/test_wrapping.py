@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from engine import ClosestPoints, MatchError, SurfaceMap, TriangleMesh, run
+from engine.mesh.reflection import reflected_map, reflected_mesh
 from engine.retarget.wrapping import _folded, _smoothed, _united, kept_in_place, wrap_steps
 from tests.shapes import creature, cut_open, icosphere, irregular, rotation
 
@@ -168,3 +169,14 @@ def test_maps_of_other_meshes_are_refused(bodies):
     doubted = SurfaceMap(there.points, np.zeros(len(there)), target.vertex_count)
     with pytest.raises(MatchError, match="does not hold"):
         run(wrap_steps(source, target, doubted, back))
+
+
+def test_where_the_map_leads_to_the_mirror_image_that_lies_there_without_folds(bodies):
+    source, target, there, back = bodies
+    mirror = reflected_mesh(target)
+    wrapped, seen = (
+        run(wrap_steps(source, end, led, back))
+        for end, led in ((target, there), (mirror, reflected_map(mirror, there)))
+    )
+    np.testing.assert_allclose(seen.positions, wrapped.positions * [-1, 1, 1], atol=1e-4)
+    assert seen.folded < 0.002

@@ -4,10 +4,11 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from hiermatch.engine import HierMatchError
+from hiermatch.engine import HierMatchError, fit_rig
 from hiermatch.engine.runtime.progress import run
+from hiermatch.hiermatch_addon.jobs.transfer import Passage
 from hiermatch.hiermatch_addon.operators.checking.rig_operator import meant_armature
-from hiermatch.hiermatch_addon.scene.armatures import find_armature, moving_armatures, read_skeleton
+from hiermatch.hiermatch_addon.scene.armatures import find_armature, moving_armatures, read_rig, read_skeleton
 from hiermatch.hiermatch_addon.scene.character import side_of
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.transfers.options.rig import RigSettings
@@ -18,6 +19,7 @@ from tests.addon.rigs import CONTROLS, POSE, add_mesh, add_rigged, add_target, p
 from tests.addon.scene.test_armatures import IMPORTED
 from tests.addon.scenes import add_blob
 
+MIRRORED = Matrix.Translation((4, 0, 0)) @ Matrix.Scale(-1, 4, (0, 1, 0))
 TURNED = Matrix.Translation((3, 1, 0)) @ Matrix.Rotation(0.7, 4, "Z") @ Matrix.Scale(2, 4)
 
 
@@ -93,6 +95,19 @@ def test_joints_go_where_the_pose_took_them(matrix):
     assert made.name == "Target Rig"
     assert "17 bones" in report.done
     assert made.matrix_world.to_3x3() == armature.matrix_world.to_3x3()
+
+
+def test_across_a_map_to_the_mirror_image_they_do_as_well():
+    source, _ = add_rigged()
+    target, joints = add_target(source, matrix=MIRRORED)
+    pair, rig = true_passage(source, target).pair, read_rig(source)
+    maps = pair.source_to_target, pair.target_to_source
+    fitted = fit_rig(pair.source, pair.target, *maps, weights=rig.weights, skeleton=rig.skeleton, refine=False)
+    transfer = RigTransfer(RigSettings())
+    transfer.read(bpy.context, source, target)
+    run(transfer.steps(Passage(pair, fitted, rig.names)))
+    transfer.write(bpy.context, source, target)
+    assert missed(target.modifiers["Armature"].object, joints) < 0.02
 
 
 def test_rolls_turn_with_the_bones():

@@ -6,13 +6,16 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
+from hiermatch.engine import fit_rig
 from hiermatch.hiermatch_addon.jobs.transfer import Passage
+from hiermatch.hiermatch_addon.scene.armatures import read_rig
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.storage.stored_map import find_maps
 from hiermatch.hiermatch_addon.transfers.options.shape_keys import ShapeKeySettings
 from hiermatch.hiermatch_addon.transfers.shape_keys import ShapeKeyTransfer
+from mathutils import Matrix
 
-from tests.addon.rigs import add_rigged_pair, find_armature, pose, true_passage, unpose
+from tests.addon.rigs import add_rigged, add_rigged_pair, add_target, find_armature, pose, true_passage, unpose
 from tests.addon.shape_keys import add_key, offsets_of, positions
 
 
@@ -150,6 +153,20 @@ def test_bones_turn_the_offsets_of_a_posed_body():
     assert report.done == "1 shape key"
     truth = shown[1] - shown[0]
     assert np.linalg.norm(offsets_of(target, "Nod") - truth) < 0.05 * np.linalg.norm(truth)
+
+
+@pytest.mark.parametrize("rigged", [True, False])
+def test_across_a_map_to_the_mirror_image_offsets_are_mirrored(rigged):
+    """The target is the source but for a negative scale: in its own space a key is the same."""
+    source, _ = add_rigged()
+    target, _ = add_target(source, matrix=Matrix.Scale(-1, 4, (0, 1, 0)), part=0.0)
+    head = positions(source)[:, 0] > 0.9
+    add_key(source, "Nod", np.where(head[:, None], [0.1, 0.05, 0.2], 0))
+    pair, rig = true_passage(source, target).pair, read_rig(source)
+    maps = pair.source_to_target, pair.target_to_source
+    fitted = fit_rig(pair.source, pair.target, *maps, weights=rig.weights, skeleton=rig.skeleton, refine=False)
+    run_transfer(source, target, Passage(pair, fitted, rig.names) if rigged else Passage(pair))
+    np.testing.assert_allclose(offsets_of(target, "Nod"), offsets_of(source, "Nod"), atol=0.01)
 
 
 def test_drivers_by_bones_point_to_the_armature_of_the_target():

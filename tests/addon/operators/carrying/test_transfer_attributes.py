@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
+from hiermatch.engine.runtime.progress import run
 from hiermatch.hiermatch_addon.operators.carrying.transfer_attributes import HIERMATCH_OT_transfer_attributes
 from hiermatch.hiermatch_addon.scene.attribute_io import (
     AttributeLayout,
@@ -18,8 +19,11 @@ from hiermatch.hiermatch_addon.scene.attribute_io import (
     write_corner_normals,
     write_seams,
 )
+from hiermatch.hiermatch_addon.transfers.attributes import AttributeTransfer
+from hiermatch.hiermatch_addon.transfers.options.attributes import AttributeSettings
 
-from tests.addon.scenes import mesh_snapshot
+from tests.addon.rigs import true_passage
+from tests.addon.scenes import add_blob, mesh_snapshot
 
 
 @pytest.fixture(autouse=True)
@@ -176,6 +180,21 @@ def test_custom_normals_turn_with_the_object(pair):
     # The source's are those of flat faces; at the corners of a face of the target they lean to both sides.
     products = np.einsum("ld,ld->l", read_corner_normals(target.data), smooth)
     assert products.mean() > 0.9
+
+
+def test_across_a_map_to_the_mirror_image_custom_normals_are_mirrored():
+    """The target is the source but for a negative scale, and the normals lean along the body and to one side."""
+    source, target = add_blob("Source"), add_blob("Target")
+    target.scale.y = -1
+    bpy.context.view_layer.update()
+    leaning = read_corner_normals(source.data) + np.array([0.3, 0.5, 0.0])
+    write_corner_normals(source.data, leaning / np.linalg.norm(leaning, axis=1, keepdims=True))
+    transfer = AttributeTransfer(AttributeSettings())
+    transfer.read(bpy.context, source, target)
+    run(transfer.steps(true_passage(source, target)))
+    transfer.write(bpy.context, source, target)
+    products = np.einsum("ld,ld->l", read_corner_normals(target.data), read_corner_normals(source.data))
+    assert products.mean() > 0.99
 
 
 def test_other_things_of_the_same_name_are_left_alone(pair):

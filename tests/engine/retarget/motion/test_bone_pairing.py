@@ -6,6 +6,7 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import BonePairing, RigError, Skeleton, SurfaceMap, TriangleMesh, fit_rig, pair_bones
+from engine.mesh.reflection import reflected_mesh
 from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, haunched_rig, renamed
 from tests.shapes import rotation
 
@@ -116,3 +117,8 @@ def test_what_does_not_fit_together_is_refused(someone, paired):
         paired(someone, rig, alone=[99])
     with pytest.raises(RigError, match="need scores of the shape"):
         BonePairing(*np.zeros((2, 1), int), np.zeros(2), np.zeros((1, 3, 3)), np.zeros((1, 3)), np.eye(3))
+
+
+def test_nothing_is_paired_across_a_map_to_the_mirror_image(someone, paired):
+    with pytest.raises(RigError, match="exchanges left and right"):
+        paired(Person(reflected_mesh(someone.mesh), someone.rig), someone.rig)

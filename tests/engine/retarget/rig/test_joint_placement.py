@@ -221,3 +221,23 @@ def test_where_an_importer_ends_a_bone_turns_nothing(body, length):
     assert angles.max() < 8
     np.testing.assert_allclose(placed.heads[moving], true.heads[moving], atol=0.02)
     np.testing.assert_allclose(np.linalg.norm(placed.tails - placed.heads, axis=1)[moving], length, rtol=1e-6)
+
+
+def test_seen_in_a_mirror_joints_and_normals_are_mirrored(body):
+    linear, translations = bent({"neck": 0.4, "tail": -0.3, "lower hind.L": 0.5})
+    flip = rotation([1, 2, 3], 0.1) @ np.diag([1.0, -1.0, 1.0])
+    direct = fitted(body, linear, translations)
+    mirrored = fitted(body, flip @ linear, translations @ flip.T)
+    mirrored = replace(mirrored, registered=direct.registered @ flip.T)
+    assert mirrored.mirrored
+    placed, seen = (place_joints(rig, body, normals()) for rig in (direct, mirrored))
+    for ends, others in ((placed.heads, seen.heads), (placed.tails, seen.tails), (placed.normals, seen.normals)):
+        np.testing.assert_allclose(others, ends @ flip.T, atol=1e-9)
+    np.testing.assert_allclose(seen.rotations, flip @ placed.rotations, atol=1e-9)
+
+
+def test_seen_in_a_mirror_the_whole_body_may_be_turned_by_a_frame_after_it(body):
+    flip = rotation([1, 2, 3], 0.1) @ np.diag([1.0, -1.0, 1.0])
+    rig = fitted(body, *everywhere(flip, np.zeros(3)))
+    np.testing.assert_allclose(standing(rig, body), flip, atol=1e-9)
+    np.testing.assert_array_equal(standing(rig, body, np.eye(3)[None]), np.diag([1.0, -1.0, 1.0]))

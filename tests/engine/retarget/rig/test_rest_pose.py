@@ -148,3 +148,19 @@ def test_a_foot_that_hangs_on_nothing_goes_with_the_leg(body):
     lower = [NUMBER["lower front.L"], NUMBER["lower hind.R"]]
     np.testing.assert_allclose(rest.heads[lower], HEADS[lower], atol=0.02)
     np.testing.assert_allclose(unposed(rig.posed, rig.weights, rest), body.vertices, atol=0.03)
+
+
+def test_seen_in_a_mirror_the_rest_pose_is_that_of_the_mirror_image(body):
+    flip = np.diag([1.0, -1.0, 1.0])
+    direct = posed_rig(body, POSE)
+    moved = {"linear": flip @ direct.linear, "rotations": flip @ direct.rotations}
+    seen = {name: getattr(direct, name) @ flip for name in ("translations", "posed", "registered")}
+    mirrored = replace(direct, **moved, **seen)
+    placed = [placed_joints(body, rig) for rig in (direct, mirrored)]
+    assert is_posed(mirrored, body, placed[1])
+    np.testing.assert_allclose(
+        *(bend_angles(rig, body, at) for rig, at in zip((direct, mirrored), placed, strict=True))
+    )
+    rests = [rest_pose(rig, body, at, np.eye(3)[None]) for rig, at in zip((direct, mirrored), placed, strict=True)]
+    np.testing.assert_allclose(rests[1].heads, rests[0].heads @ flip, atol=1e-9)
+    np.testing.assert_allclose(rests[1].turns, flip @ rests[0].turns @ flip, atol=1e-9)

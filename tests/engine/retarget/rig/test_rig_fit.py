@@ -4,6 +4,7 @@ import pytest
 from scipy.sparse import csr_array
 
 from engine import ClosestPoints, KnownShapes, RigError, Shape, Skeleton, SurfaceMap, TriangleMesh, fit_rig
+from engine.mesh.reflection import reflected_map, reflected_mesh
 from engine.retarget.rig.bone_fit import skinned
 from engine.runtime.progress import run
 from engine.shapes.enclosing_surface import with_limbs_steps
@@ -203,3 +204,20 @@ def test_weights_that_are_none_are_refused(pair, change, message):
     weights = csr_array(change(pair.weights.toarray()))
     with pytest.raises(RigError, match=message):
         fit_rig(pair.source, pair.target, *pair.maps, weights=weights, skeleton=pair.skeleton)
+
+
+def test_across_a_map_to_the_mirror_image_all_is_mirrored(pair):
+    """The target seen in a mirror, and the same map: the rig that comes of it is the other one, seen in the mirror."""
+    maps, flip = slid_along(pair), np.diag([-1.0, 1.0, 1.0])
+    direct = pair.fitted(maps)
+    target = reflected_mesh(pair.target)
+    seen = reflected_map(target, maps[0]), maps[1]
+    rig = fit_rig(pair.source, target, *seen, weights=pair.weights, skeleton=pair.skeleton)
+    assert rig.mirrored
+    assert not direct.mirrored
+    np.testing.assert_allclose(rig.heads, direct.heads @ flip, atol=1e-6)
+    np.testing.assert_allclose(rig.rotations, flip @ direct.rotations, atol=1e-6)
+    np.testing.assert_allclose(rig.posed, direct.posed @ flip, atol=1e-6)
+    np.testing.assert_allclose(rig.registered, direct.registered @ flip, atol=1e-6)
+    np.testing.assert_allclose(rig.source_to_target.positions, direct.source_to_target.positions @ flip, atol=1e-6)
+    np.testing.assert_allclose(rig.target_to_source.positions, direct.target_to_source.positions, atol=1e-6)

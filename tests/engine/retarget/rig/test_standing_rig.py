@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from engine import RigError, Skeleton, SurfaceMap, TriangleMesh, carry_standing_rig, moved_into, standing_share
+from engine.mesh.reflection import reflected_mesh
 from tests.people import HANGING, at_rest_in, person
 from tests.shapes import rotation
 
@@ -128,3 +129,12 @@ def test_a_rig_of_any_size_is_moved_into_a_body(someone, turned):
     moved = moved_into(elsewhere, mesh, every, turn[:, 2])
     assert standing_share(moved, mesh, every) > 0.85
     assert np.linalg.norm(moved.heads - skeleton.heads @ turn.T, axis=1).max() < 0.06
+
+
+def test_across_a_map_to_the_mirror_image_it_is_mirrored(someone):
+    other = at_rest_in(someone, {"upper_arm.L": (0.0, 0.6, 0.0)}).mesh
+    skeleton = someone.rig.skeleton
+    placed = carried(someone.mesh, other, skeleton)
+    seen = carried(someone.mesh, reflected_mesh(other), skeleton)
+    for ends, others in ((placed.heads, seen.heads), (placed.tails, seen.tails), (placed.normals, seen.normals)):
+        np.testing.assert_allclose(others, ends * [-1, 1, 1], atol=1e-4)

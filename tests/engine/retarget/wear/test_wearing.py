@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from engine import ClosestPoints, MeshError, SurfaceMap, TriangleMesh, run
+from engine import ClosestPoints, MatchError, MeshError, SurfaceMap, TriangleMesh, run
+from engine.mesh.reflection import reflected_map, reflected_mesh
 from engine.retarget.wear.wearing import wear_steps
 from engine.retarget.wear.worn_item import WornItem
 from tests.shapes import icosphere, rotation
@@ -334,6 +335,13 @@ def test_a_hole_in_the_body_does_no_harm():
 def test_meshes_that_do_not_belong_together_are_refused():
     with pytest.raises(MeshError, match="Match them again"):
         run(wear_steps(BODY, BODY, SurfaceMap.identity(BODY), BODY.vertices[:-1], [WornItem(SHIRT)]))
+
+
+def test_nothing_is_worn_across_a_map_to_the_mirror_image():
+    other = reflected_mesh(BODY)
+    led = reflected_map(other, SurfaceMap.identity(BODY))
+    with pytest.raises(MatchError, match="exchanges left and right"):
+        run(wear_steps(BODY, other, led, led.positions, [WornItem(SHIRT)]))
 
 
 def test_folds_that_one_body_has_alone_do_not_shrink_a_rigid_piece():
