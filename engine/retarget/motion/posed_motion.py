@@ -56,6 +56,13 @@ class Motion:
         along = self.skeleton.tails - self.skeleton.heads
         return self.heads + np.einsum("fbij,bj->fbi", self.turns, along)
 
+    def moved(self, transforms: Floats) -> Motion:
+        """Move the whole skeleton in each pose by a similarity, (f, 4, 4), of which bones take the rotation."""
+        linear = transforms[:, :3, :3]
+        turns = nearest_rotations(linear)[:, None] @ self.turns
+        heads = np.einsum("fij,fbj->fbi", linear, self.heads) + transforms[:, None, :3, 3]
+        return Motion(self.skeleton, turns, heads)
+
 
 @dataclass(frozen=True, eq=False)
 class LocalTransforms:

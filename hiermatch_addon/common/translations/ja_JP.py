@@ -1196,8 +1196,8 @@ MESSAGES: Final[dict[str, str]] = {
         'ペアがなく、レストポーズでもないボーンが、付いているものをすべて回転させています: "{1}"の{0}。意図したもので'
         "なければ、そのポーズをクリアしてください(ポーズ > トランスフォームをクリア)。"
     ),
-    '{0} moves the object "{1}" as a whole, too. That was left out.': (
-        '{0}はオブジェクト"{1}"全体も動かします。それは移されませんでした。'
+    '{0} changes the size of the object "{1}", too. That was left out.': (
+        '{0}はオブジェクト"{1}"のサイズも変えます。それは移されませんでした。'
     ),
     'The action "{0}" was deleted meanwhile. Nothing was written.': (
         'アクション"{0}"がその間に削除されました。何も書き込まれていません。'

@@ -995,7 +995,9 @@ MESSAGES: Final[dict[str, str]] = {
         '没有配对且不在静置姿态的骨骼会带动挂在其上的一切旋转："{1}" 的 {0}。如非有意，请清除其姿态'
         "（姿态 > 清空变换）。"
     ),
-    '{0} moves the object "{1}" as a whole, too. That was left out.': '{0} 还会移动整个物体 "{1}"。这部分被略去。',
+    '{0} changes the size of the object "{1}", too. That was left out.': (
+        '{0} 还会改变物体 "{1}" 的大小。这部分被略去。'
+    ),
     'The action "{0}" was deleted meanwhile. Nothing was written.': '动作 "{0}" 在此期间被删除。未写入任何内容。',
     'Source and Target are both "{0}". Choose two different armatures.': '源和目标都是 "{0}"。请选择两个不同的骨架。',
     "Reading motion": "正在读取运动",

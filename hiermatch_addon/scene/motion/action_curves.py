@@ -31,6 +31,11 @@ _BONE_PATH = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]')
 
 _BONE = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]\.(?P<channel>\w+)$')
 
+_OF_OBJECTS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
+
+_STILL = 1e-6
+"""Difference of values up to which a curve moves nothing: rounding of what is written by single precision."""
+
 
 def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     """Return the action that an armature plays; None for none."""
@@ -94,7 +99,7 @@ def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterato
     bones = armature_of(armature).bones
     for curve in _curves(action, slot_for(action, armature)):
         found = _BONE.match(curve.data_path)
-        if found is not None and not curve.mute and not (curve.group is not None and curve.group.mute):
+        if found is not None and _is_heard(curve):
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
@@ -132,11 +137,21 @@ def renamed_paths(
     return found
 
 
-def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> list[str]:
-    """Return which channels of the object itself an action moves."""
-    moving = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
-    paths = {curve.data_path for curve in _curves(action, slot_for(action, armature))}
-    return [path for path in moving if path in paths]
+def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterator[tuple[str, Any]]:
+    """Go through the curves of an action that move the object itself, unless muted: channel, and the curve.
+
+    Curves that stay at one value, as importers write them, move nothing.
+    """
+    for curve in _curves(action, slot_for(action, armature)):
+        if curve.data_path in _OF_OBJECTS and _is_heard(curve):
+            values = [point.co[1] for point in curve.keyframe_points]
+            if len(curve.modifiers) or (values and max(values) - min(values) > _STILL):
+                yield curve.data_path, curve
+
+
+def _is_heard(curve: Any) -> bool:  # noqa: ANN401 - Blender's types differ
+    """Tell whether a curve is muted neither by itself nor with its group."""
+    return not curve.mute and not (curve.group is not None and curve.group.mute)
 
 
 def assign_action(armature: bpy.types.Object, action: bpy.types.Action) -> None:

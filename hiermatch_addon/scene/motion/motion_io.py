@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -11,26 +12,37 @@ from mathutils import Matrix
 
 from ....engine import Motion, posed_motion, rotation_matrices
 from ..armatures import armature_of
-from .action_curves import CurveMaker, assign_action, bone_curves, frame_range, played_action, slot_for
+from .action_curves import (
+    CurveMaker,
+    assign_action,
+    bone_curves,
+    frame_range,
+    object_curves,
+    played_action,
+    slot_for,
+)
 from .rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     import bpy
     from numpy.typing import NDArray
 
 __all__ = [
+    "OBJECT",
     "ActionKeys",
     "BoneKeys",
     "current_motion",
     "evaluated_frames",
+    "grows",
     "needs_evaluation",
     "posed_at",
     "read_keys",
     "rotation_channel",
     "set_pose",
     "turned_above",
+    "with_object",
     "write_action",
 ]
 
@@ -47,7 +59,7 @@ class ActionKeys:
     frames : (2,) array of float
         First and last frame.
     times : dict
-        For each bone that it moves the frames of its keys, (k,).
+        For each bone that it moves the frames of its keys, (k,); for the object itself those of `OBJECT`.
     interpolations : dict
         For each bone the interpolation after each of these keys, and the easing.
     cycles : dict
@@ -95,6 +107,9 @@ class BoneKeys:
     extrapolation: str = "CONSTANT"
 
 
+OBJECT = ""
+"""What stands among names of bones for the object itself, which carries them all."""
+
 _MARKER = "hiermatch_carried"
 """Custom property of actions that were made from those of other rigs."""
 
@@ -123,7 +138,8 @@ def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKey
     times: dict[str, dict[float, tuple[str, str]]] = {}
     cycles: dict[str, dict[str, Any]] = {}
     extrapolations: dict[str, str] = {}
-    for bone, _, curve in bone_curves(action, armature):
+    whole = ((OBJECT, channel, curve) for channel, curve in object_curves(action, armature) if channel != "scale")
+    for bone, _, curve in chain(bone_curves(action, armature), whole):
         keys = times.setdefault(bone, {})
         for point in curve.keyframe_points:
             keys.setdefault(float(point.co[0]), (point.interpolation, point.easing))
@@ -141,24 +157,49 @@ def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArr
 
     Channels without curves are as the bones stand, as if the action were played now.
     """
-    pose = cast("bpy.types.Pose", armature.pose)
-    curves: dict[tuple[str, str], dict[int, Any]] = {}
+    curves: dict[str, list[tuple[str, Any]]] = {}
     for bone, channel, curve in bone_curves(action, armature):
-        curves.setdefault((bone, channel), {})[curve.array_index] = curve
-    basis = np.tile(np.eye(4), (len(frames), len(pose.bones), 1, 1))
-    for number, posed in enumerate(pose.bones):
-        channel, _ = _ROTATIONS.get(posed.rotation_mode, _EULER)
-        read = {}
-        for name in (channel, "location", "scale"):
-            found = curves.get((posed.name, name), {})
-            values = np.tile(np.array(getattr(posed, name), np.float64), (len(frames), 1))
-            for index, curve in found.items():
-                values[:, index] = [curve.evaluate(frame) for frame in frames]
-            read[name] = values
-        turn = rotation_matrices(read[channel], posed.rotation_mode)
-        basis[:, number, :3, :3] = turn * read["scale"][:, None]
-        basis[:, number, :3, 3] = read["location"]
+        curves.setdefault(bone, []).append((channel, curve))
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    basis = np.stack([_basis(bone, curves.get(bone.name, ()), frames) for bone in bones], axis=1)
     return posed_motion(own_skeleton(armature), rest_matrices(armature), basis)
+
+
+def _basis(
+    owner: Any,  # noqa: ANN401 - a bone or an object
+    curves: Iterable[tuple[str, Any]],
+    frames: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Transform of a bone or an object by curves of its channels at frames (f,), (f, 4, 4), else as it stands."""
+    rotation = rotation_channel(owner.rotation_mode)
+    names = rotation, "location", "scale"
+    values = {name: np.tile(np.array(getattr(owner, name), np.float64), (len(frames), 1)) for name in names}
+    for channel, curve in curves:
+        if channel in values:
+            values[channel][:, curve.array_index] = [curve.evaluate(frame) for frame in frames]
+    basis = np.tile(np.eye(4), (len(frames), 1, 1))
+    basis[:, :3, :3] = rotation_matrices(values[rotation], owner.rotation_mode) * values["scale"][:, None]
+    basis[:, :3, 3] = values["location"]
+    return basis
+
+
+def with_object(
+    motion: Motion, action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64], first: float
+) -> Motion:
+    """Let the bones do what an action does to the object as a whole, against where it has that in its first frame.
+
+    What an action does to its size is left out.
+    """
+    curves = [found for found in object_curves(action, armature) if found[0] != "scale"]
+    if not curves:
+        return motion
+    basis = _basis(armature, curves, np.append(first, frames))
+    return motion.moved(np.linalg.inv(basis[0]) @ basis[1:])
+
+
+def grows(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
+    """Tell whether an action changes the size of the object."""
+    return any(channel == "scale" for channel, _ in object_curves(action, armature))
 
 
 def current_motion(armature: bpy.types.Object) -> Motion:

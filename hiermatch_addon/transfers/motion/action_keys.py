@@ -10,7 +10,7 @@ import numpy as np
 
 from ....engine import local_transforms, reduced_keys, rotation_channels, slopes_of
 from ...scene.armatures import armature_of
-from ...scene.motion.motion_io import BoneKeys, rotation_channel
+from ...scene.motion.motion_io import OBJECT, BoneKeys, rotation_channel
 from ...scene.motion.rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
@@ -149,6 +149,8 @@ def _movers(pairing: BonePairing, rigs: tuple[bpy.types.Object, bpy.types.Object
             while parent is not None and parent.name not in held:
                 found.append(parent.name)
                 parent = parent.parent
+        if above is None:
+            found.append(OBJECT)
         # What holds it turns it as well where both have no partner in common above.
         shared = above is None or any(_hangs_on(sources[start], held) for start in own)
         movers[name] = list(dict.fromkeys(found if shared else [*found, *_with_ancestors(held, rigs[0])]))
@@ -161,7 +163,6 @@ def _hangs_on(bone: bpy.types.Bone, names: list[str]) -> bool:
 
 def _with_ancestors(names: list[str], rig: bpy.types.Object) -> list[str]:
     """Names of bones, and of all that they hang on."""
-    bones = armature_of(rig).bones
-    return list(
-        dict.fromkeys(each for name in names for each in (name, *(b.name for b in bones[name].parent_recursive)))
-    )
+    bones = [armature_of(rig).bones[name] for name in names if name != OBJECT]
+    above = [parent.name for bone in bones for parent in bone.parent_recursive]
+    return list(dict.fromkeys([*names, *above]))

@@ -20,15 +20,16 @@ from ...jobs.transfer_job import Carried
 from ...properties.bone_pairs import pairing_of, rows_of
 from ...scene.armatures import armature_of
 from ...scene.character import SideReference
-from ...scene.motion.action_curves import object_curves
 from ...scene.motion.motion_io import (
     current_motion,
     evaluated_frames,
+    grows,
     needs_evaluation,
     posed_at,
     read_keys,
     set_pose,
     turned_above,
+    with_object,
     write_action,
 )
 from ...scene.motion.nla_strips import copy_strips
@@ -240,7 +241,7 @@ class MotionJob(SteppedJob):
             sparse = False  # between keys, controls would turn otherwise than what they carry
         frames = sparse_frames(keys) if sparse else np.arange(first, last + 1)
         sampled = (frames[:, None] + np.array([-SIDE_STEP, 0, SIDE_STEP])).ravel() if sparse else frames
-        motion = yield from within(self._reading_steps(name, sampled), 0.0, 0.5)
+        motion = yield from within(self._reading_steps(name, sampled, first), 0.0, 0.5)
         settings = self._plan.settings
         if sparse:
             settings = MotionSettings(stride=settings.stride, in_place=settings.in_place, rate=settings.rate)
@@ -272,8 +273,8 @@ class MotionJob(SteppedJob):
             return True
         return len(sparse_frames(keys)) < _FEW * count and not needs_evaluation(found_again(self._source))
 
-    def _reading_steps(self, name: str, frames: NDArray[np.float64]) -> Steps[Motion]:
-        """Read the source's poses in frames (f,), some at a time."""
+    def _reading_steps(self, name: str, frames: NDArray[np.float64], first: float) -> Steps[Motion]:
+        """Read the source's poses in frames (f,), some at a time, and the way of its object from the first frame on."""
         parts = []
         evaluated = needs_evaluation(found_again(self._source))
         size = _EVALUATED_CHUNK if evaluated else _CHUNK
@@ -281,9 +282,10 @@ class MotionJob(SteppedJob):
             yield Progress(start / len(frames), "Reading motion")
             rig, action, some = found_again(self._source), self._action(name), frames[start : start + size]
             if evaluated:
-                parts.append(evaluated_frames(bpy.data.scenes[self._scene], action, rig, some))
+                motion = evaluated_frames(bpy.data.scenes[self._scene], action, rig, some)
             else:
-                parts.append(posed_at(action, rig, some))
+                motion = posed_at(action, rig, some)
+            parts.append(with_object(motion, action, rig, some, first))
         turns, heads = (np.concatenate([getattr(part, what) for part in parts]) for what in ("turns", "heads"))
         return Motion(parts[0].skeleton, turns, heads)
 
@@ -364,7 +366,7 @@ def _notes(
                 f"Bones without a pair that are not at rest turn all that hangs on them: {listed(turned)} of "
                 f'"{target.name}". Clear their pose (Pose > Clear Transform) unless that is wanted.'
             )
-    whole = [action.name for action in actions if object_curves(action, source)]
-    if whole:
-        notes.append(f'{listed(whole)} moves the object "{source.name}" as a whole, too. That was left out.')
+    growing = [action.name for action in actions if grows(action, source)]
+    if growing:
+        notes.append(f'{listed(growing)} changes the size of the object "{source.name}", too. That was left out.')
     return notes

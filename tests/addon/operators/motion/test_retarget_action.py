@@ -115,6 +115,54 @@ def test_what_constraints_do_to_the_source_is_carried_too():
     assert worst(source, target, (1, 6, 21)) < 2e-3
 
 
+@pytest.mark.parametrize("constrained", [False, True])
+@pytest.mark.parametrize("keying", ["AUTO", "REDUCED"])
+def test_what_moves_the_object_moves_the_body(keying, constrained):
+    """As where an importer made the root bone the object; the target stands elsewhere, and stays where it is."""
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed", rolls=0.4)
+    add_action(source)
+    if constrained:
+        source.pose.bones["head"].constraints.new("LIMIT_ROTATION")
+    source.rotation_mode = "ZYX"
+    for frame, place, turn in ((1, (0.5, 0, 0), 0.3), (11, (0.5, -1, 0), 0.3), (21, (0.8, -2, 0), 1.2)):
+        source.location, source.rotation_euler = place, (0, 0, turn)
+        source.keyframe_insert("location", frame=frame)
+        source.keyframe_insert("rotation_euler", frame=frame)
+    target.matrix_world = Matrix.Translation((0.5, 0, 0)) @ Matrix.Rotation(0.3, 4, "Z")
+    bpy.context.view_layer.update()
+    before = target.matrix_world.copy()
+    carry(source="A", target="B", keying=keying)
+    assert target.matrix_world == before
+    # Between sparse keys a body that turns about its hips goes another way than one that turns about its object.
+    assert worst(source, target, (1, 11, 21)) < 5e-3
+    assert worst(source, target, (6,)) < 0.02
+    assert worst(source, target, (16,)) < (0.1 if keying == "AUTO" and not constrained else 0.02)
+    still = made.names[[origin == frozenset(["hand.R"]) for origin in made.origins].index(True)]
+    curves = curves_of(target.animation_data.action)
+    assert len(curves[f'pose.bones["{still}"].rotation_quaternion', 0].keyframe_points) == 1
+
+
+def test_an_object_that_stays_and_one_that_grows():
+    """Curves that stay at a value give no keys, and what scales the object is left out and said."""
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source)
+    for frame in range(1, 22):
+        source.keyframe_insert("location", frame=frame)
+        source.keyframe_insert("rotation_euler", frame=frame)
+    carry(source="A", target="B")
+    counts = {len(curve.keyframe_points) for curve in curves_of(bpy.data.actions["Wave B"]).values()}
+    assert max(counts) == 3
+    report = bpy.context.scene.hiermatch_retarget.report
+    assert "the size of the object" not in report.notes
+    for frame, size in ((1, 2), (21, 3)):
+        source.scale = (size, size, size)
+        source.keyframe_insert("scale", frame=frame)
+    carry(source="A", target="B")
+    assert '"Wave" changes the size of the object "A", too. That was left out.' in report.notes
+
+
 def test_all_actions_go_to_several_targets_and_strips_are_copied():
     source, _ = add_person("A")
     targets = [add_person(name, "renamed")[0] for name in ("B", "C")]

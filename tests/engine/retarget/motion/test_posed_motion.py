@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from engine import Motion, RigError, Skeleton, local_transforms, posed_motion
+from tests.shapes import rotation
 
 
 @pytest.fixture
@@ -65,3 +66,15 @@ def test_what_is_no_motion_of_the_skeleton_is_refused(limb):
         Motion(limb[0], np.tile(np.eye(3), (2, 4, 1, 1)), np.zeros((2, 4, 3)))
     with pytest.raises(RigError, match="not finite"):
         Motion(limb[0], np.tile(np.eye(3), (2, 3, 1, 1)), np.full((2, 3, 3), np.nan))
+
+
+def test_moved_as_a_whole_ends_of_bones_move_with_it_and_bones_turn():
+    skeleton = Skeleton(np.array([-1, 0]), np.array([[0.0, 0, 0], [0, 0, 1]]), np.array([[0.0, 0, 1], [0, 0, 3]]))
+    turns = np.stack([[np.eye(3), rotation([0, 1, 0], 0.4)], [rotation([1, 0, 0], 0.2)] * 2])
+    motion = Motion(skeleton, turns, np.tile(skeleton.heads, (2, 1, 1)))
+    transforms = np.tile(np.eye(4), (2, 1, 1))
+    transforms[1, :3, :3], transforms[1, :3, 3] = 2 * rotation([0, 0, 1], 0.7), (1, 2, 3)
+    moved = motion.moved(transforms)
+    np.testing.assert_allclose(moved.turns[0], motion.turns[0])
+    np.testing.assert_allclose(moved.heads[1], motion.heads[1] @ transforms[1, :3, :3].T + (1, 2, 3))
+    np.testing.assert_allclose(moved.turns[1], rotation([0, 0, 1], 0.7) @ motion.turns[1], atol=1e-12)
