@@ -136,8 +136,8 @@ def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
         One or two, see `two_answers`.
     """
     settings = coarse[0].pair.settings
-    points = min(settings.points, _SCREEN_POINTS if settings.dense else _DECISION_POINTS)
-    sizes = level_sizes(len(coarse[0].matching.assignment), points)
+    known = len(coarse[0].matching.assignment)
+    sizes = level_sizes(known, max(known, min(settings.points, _SCREEN_POINTS if settings.dense else _DECISION_POINTS)))
     screen = [size for size in sizes if size <= _SCREEN_POINTS] or sizes[:1]
     further = sizes[len(screen) :]
     leads: list[_Lead] = []

@@ -35,3 +35,11 @@ def test_the_better_answer_of_either_orientation_is_chosen(shapes, dense, follow
     keeping, mirroring = run(choose_steps(coarse[:followed]))
     assert keeping.orientation > 0.3
     assert mirroring.orientation < -0.3
+
+
+@pytest.mark.parametrize("dense", [False, True])
+def test_more_coarse_points_than_are_screened_are_all_kept(shapes, dense):
+    settings = replace(SPARSE, points=30, coarse_points=23, coarse_candidates=24, node_limit=2000, dense=dense)
+    answers = run(choose_steps(run(coarse_steps(Pair(*shapes, settings)))[:1]))
+    assert all(len(level.assignment) >= 23 for answer in answers for level in answer.levels)
+    assert answers[0].orientation > 0.3
