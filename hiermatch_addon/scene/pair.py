@@ -311,14 +311,23 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
         )
     if not obj.visible_get(view_layer=view_layer):
         raise ObjectError(f'"{obj.name}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).')
-    if obj.mode != "OBJECT":
-        raise ObjectError(f'"{obj.name}" is in {_title(obj.mode)} Mode. Switch to Object Mode first.')
+    _check_mode(obj)
     if not len(mesh_of(obj).polygons):
         raise ObjectError(f'"{obj.name}" has no faces. A surface is needed, not only vertices or edges.')
     scale = np.linalg.norm(np.array(obj.matrix_world)[:3, :3], axis=0)
     flat = [axis for axis, length in zip("XYZ", scale, strict=True) if not length > 0]
     if flat:
         raise ObjectError(f'"{obj.name}" has a scale of zero on {" and ".join(flat)}. Set its scale to 1 (Alt+S).')
+
+
+def _check_mode(obj: bpy.types.Object) -> None:
+    """Make sure that neither a mesh object nor another one with its mesh is being edited or painted."""
+    if obj.mode != "OBJECT":
+        raise ObjectError(f'"{obj.name}" is in {_title(obj.mode)} Mode. Switch to Object Mode first.')
+    if mesh_of(obj).is_editmode:
+        raise ObjectError(
+            f'"{obj.name}" shares its mesh with an object in Edit Mode. Switch to Object Mode there first.'
+        )
 
 
 def is_own(side: Side) -> bool:

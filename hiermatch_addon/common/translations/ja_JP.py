@@ -1937,6 +1937,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is in {1} Mode. Switch to Object Mode first.': (
         "「{0}」は{1}モードです。先にオブジェクトモードに切り替えてください。"
     ),
+    '"{0}" shares its mesh with an object in Edit Mode. Switch to Object Mode there first.': (
+        "「{0}」は編集モードのオブジェクトとメッシュを共有しています。先にそちらをオブジェクトモードに切り替えてください。"
+    ),
     '"{0}" has no faces. A surface is needed, not only vertices or edges.': (
         "「{0}」には面がありません。頂点や辺だけでなく、面が必要です。"
     ),

@@ -1615,6 +1615,9 @@ MESSAGES: Final[dict[str, str]] = {
         "“{0}”已在视图中禁用。请在大纲视图中点击名称旁的屏幕图标启用它。"
     ),
     '"{0}" is in {1} Mode. Switch to Object Mode first.': "“{0}”处于 {1} 模式。请先切换到物体模式。",
+    '"{0}" shares its mesh with an object in Edit Mode. Switch to Object Mode there first.': (
+        "“{0}”与处于编辑模式的物体共用网格。请先在那里切换到物体模式。"
+    ),
     '"{0}" has no faces. A surface is needed, not only vertices or edges.': "“{0}”没有面。需要表面，而不只是顶点或边。",
     '"{0}" has a scale of zero on {1}. Set its scale to 1 (Alt+S).': (
         "“{0}”在 {1} 上的缩放为零。请将缩放设为 1（Alt+S）。"

@@ -179,6 +179,16 @@ class TestCheck:
             check(pair)
         bpy.ops.object.mode_set(mode="OBJECT")
 
+    def test_a_mesh_that_is_edited_through_another_object(self, pair):
+        twin = pair[0].copy()
+        bpy.context.collection.objects.link(twin)
+        select(twin, active=twin)
+        bpy.ops.object.mode_set(mode="EDIT")
+        with pytest.raises(ObjectError, match='"Source" shares its mesh with an object in Edit Mode'):
+            check(pair)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        check(pair)
+
     def test_no_faces(self, pair):
         data = bpy.data.meshes.new("Wire")
         data.from_pydata([(0, 0, 0), (1, 0, 0)], [(0, 1)], [])
