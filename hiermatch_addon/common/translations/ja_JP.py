@@ -1439,6 +1439,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Following shape keys": "シェイプキーに従わせています",
     '"{0}" follows {1} of "{2}".': '"{0}"は"{2}"の{1}に従います。',
+    '{0} of "{1}" could not be bound to "{2}". Bind it by hand.': (
+        '"{1}"の{0}を"{2}"にバインドできませんでした。手動でバインドしてください。'
+    ),
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (
         '"{0}"のドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'

@@ -1193,6 +1193,7 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Following shape keys": "正在跟随形态键",
     '"{0}" follows {1} of "{2}".': '"{0}" 跟随 "{2}" 的 {1}。',
+    '{0} of "{1}" could not be bound to "{2}". Bind it by hand.': '"{1}" 的 {0} 无法绑定到 "{2}"。请手动绑定。',
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (
         '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'

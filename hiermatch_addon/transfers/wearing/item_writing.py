@@ -16,6 +16,7 @@ from ...scene.deform_layer import write_weights
 from ...scene.garment_shape_io import write_shape
 from ...scene.garments import fitted_copy
 from ...scene.mesh_io import add_colors
+from ...scene.modifier_bindings import bind_again
 from ...scene.shape_key_io import KeySettings, add_keys, key_positions, keys_of, shape_key_names
 
 if TYPE_CHECKING:
@@ -90,6 +91,9 @@ def write_copy(
             changed.object = armature
     if armature is not None:
         bind(copy, armature, item)
+    loose = bind_again(context, copy, target)
+    if loose:
+        notes.append(f'{listed(loose)} of "{copy.name}" could not be bound to "{target.name}". Bind it by hand.')
     return copy, notes
 
 

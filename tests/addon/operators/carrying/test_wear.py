@@ -41,6 +41,26 @@ def test_items_are_fitted_as_copies_and_again_in_place(dressed_pair):
     assert coat.name == "Coat"
 
 
+def test_a_surface_deform_is_bound_to_the_other_body(dressed_pair):
+    source, target, shirt, _ = dressed_pair
+    modifier = shirt.modifiers.new("Follow", "SURFACE_DEFORM")
+    modifier.target = source
+    with bpy.context.temp_override(object=shirt, active_object=shirt):
+        bpy.ops.object.surfacedeform_bind(modifier="Follow")
+    assert wear("Shirt") == {"FINISHED"}
+    copy = fitted("Shirt")
+    assert copy.modifiers["Follow"].target == target
+    assert copy.modifiers["Follow"].is_bound
+    before = positions(copy)
+    for vertex in target.data.vertices:
+        vertex.co.z += 0.5
+    target.data.update()
+    bpy.context.view_layer.update()
+    mesh = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    moved = np.array([vertex.co for vertex in mesh.vertices]) - before
+    assert np.abs(np.abs(moved).max(axis=1) - 0.5).max() < 0.05
+
+
 def test_a_shape_key_on_the_original(dressed_pair):
     _, target, shirt, _ = dressed_pair
     assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
