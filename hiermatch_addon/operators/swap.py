@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import bpy
@@ -11,8 +12,10 @@ from ..common.access import mesh_of
 from ..common.translated_text import translated
 from ..properties.panel_state import pick, picked, state_of
 from ..properties.steering_lists import steered_pair
+from ..properties.summary import remember
 from ..scene.character import parts_of
 from ..storage.halves import find_common
+from ..storage.stored_match import StoredMatch
 from ..storage.writing import change_kept
 
 if TYPE_CHECKING:
@@ -62,5 +65,6 @@ def _set_swapped(summary: HIERMATCH_PG_summary, half: Half, partner: Half) -> No
         if all(mesh_of(part).library is None for part in parts_of(side.obj)):
             change_kept(side.obj, side.prefix, swapped=swapped)
     if (summary.prefix, summary.key) == (half.prefix, half.key):
-        summary.swapped = swapped
-        summary.source, summary.target = half.obj.name, partner.obj.name
+        source, target = (partner, half) if swapped else (half, partner)
+        stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=swapped)
+        remember(summary, stored, (source.obj.name, target.obj.name), half.prefix, summary.seconds)

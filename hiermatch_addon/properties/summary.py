@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -35,7 +36,9 @@ def remember(
     seconds : float
         How long the match took; zero if that is not known.
     """
-    answer = stored.answer
+    answer, quality, notes = stored.answer, stored.answer.quality, stored.notes
+    if stored.swapped:
+        quality, notes = quality and quality.reverse, tuple(map(_exchanged, notes))
     summary.points = len(answer.point_distortion)
     summary.source, summary.target = names[::-1] if stored.swapped else names
     summary.swapped = stored.swapped
@@ -44,12 +47,17 @@ def remember(
     summary.proven, summary.gap = answer.proven, answer.gap
     summary.orientation = answer.orientation
     summary.answers, summary.answer = "\n".join(answer.name for answer in stored.answers), stored.chosen
-    summary.stretch = answer.quality.distortion if answer.quality else 0.0
-    summary.verdict = answer.quality.sentence if answer.quality else ""
-    summary.confidence = answer.quality.confidence if answer.quality else 0.0
+    summary.stretch = quality.distortion if quality else 0.0
+    summary.verdict = quality.sentence if quality else ""
+    summary.confidence = quality.confidence if quality else 0.0
     summary.seconds = seconds
-    summary.notes = "\n".join(stored.notes)
+    summary.notes = "\n".join(notes)
     summary.prefix, summary.key = prefix, stored.key
+
+
+def _exchanged(note: str) -> str:
+    """Call the source in a note the target, and the target the source."""
+    return re.sub(r"\b(source|target)\b", lambda found: "target" if found[0] == "source" else "source", note)
 
 
 def pick_named(scene: bpy.types.Scene, source: str, target: str) -> None:

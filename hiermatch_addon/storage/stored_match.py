@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...engine import DIRECT, MIRRORED
+from ...engine import DIRECT, MIRRORED, exchanged_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -130,6 +130,13 @@ class Quality:
         known = {field.name: getattr(quality, field.name) for field in fields(cls)}
         plain: dict[str, Any] = {n: v if v is None or isinstance(v, (str, int)) else float(v) for n, v in known.items()}
         return cls(**plain)
+
+    @property
+    def reverse(self) -> Quality:
+        """The same with source and target exchanged."""
+        shares = self.coverage, self.source_coverage
+        sentence = exchanged_sentence(self.sentence, shares)
+        return replace(self, source_coverage=shares[0], coverage=shares[1], sentence=sentence)
 
     def to_plain(self) -> dict[str, Any]:
         """Return what is known."""
