@@ -173,6 +173,25 @@ def test_drivers_by_bones_point_to_the_armature_of_the_target():
     assert (place.id, place.bone_target) == (theirs, "neck")
 
 
+def test_drivers_by_what_the_target_lacks_still_point_to_the_source(pair):
+    source, target = pair
+    source["Much"] = 0.5
+    driver = source.data.shape_keys.key_blocks["Swell"].driver_add("value").driver
+    driver.expression = "much"
+    variable = driver.variables.new()
+    variable.name = "much"
+    variable.targets[0].id, variable.targets[0].data_path = source, '["Much"]'
+    for owner, value in ((source, 0.5), (target, 0.8)):
+        assert carry() == {"FINISHED"}
+        place = target.data.shape_keys.animation_data.drivers[0].driver.variables[0].targets[0]
+        assert place.id == owner
+        notes = bpy.context.scene.hiermatch_retarget.report.notes
+        assert (f'still point to "{source.name}"' in notes) == (owner == source)
+        bpy.context.view_layer.update()
+        assert target.data.shape_keys.key_blocks["Swell"].value == pytest.approx(value)
+        target["Much"] = 0.8
+
+
 @pytest.mark.parametrize("scale", [(1, 2, 0.5), (-1, 1, 1)])
 def test_offsets_are_those_of_the_world(pair, scale):
     source, target = pair
