@@ -99,7 +99,7 @@ def advice_on(
             )
         if shares[own] > _PARTNERED:
             return (
-                f'"{names[own]}" looks like a part of "{names[other]}": name what it lacks under Leave Out, and match '
-                "again."
+                f'"{names[own]}" looks like a part of "{names[other]}": if the match is wrong, name what it lacks '
+                "under Leave Out, and match again."
             )
     return ""

@@ -306,8 +306,8 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」は{1}か所の端が開いており、「{2}」の衣服のように見えます。代わりに「着せる」で合わせるか、こ"
         "れにない部分をもう一方のメッシュから除外してください。"
     ),
-    '"{0}" looks like a part of "{1}": name what it lacks under Leave Out, and match again.': (
-        "「{0}」は「{1}」の一部のように見えます。これにない部分を「除外」で指定して、もう一度マッチングしてください。"
+    '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
+        "「{0}」は「{1}」の一部のように見えます。マッチングが正しくない場合は、これにない部分を「除外」で指定して、もう一度マッチングしてください。"
     ),
     "Match": "マッチング",
     (

@@ -256,8 +256,8 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" is open at {1} ends and looks like a garment for "{2}": fit it with Wear instead, or leave '
         "out of the other mesh what it lacks."
     ): "“{0}”有 {1} 处开口，看起来像是“{2}”的衣服：请改用“穿戴”使其贴合，或在另一个网格中排除它所没有的部分。",
-    '"{0}" looks like a part of "{1}": name what it lacks under Leave Out, and match again.': (
-        "“{0}”看起来像是“{1}”的一部分：请在“排除”中指定它所没有的部分，然后重新匹配。"
+    '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
+        "“{0}”看起来像是“{1}”的一部分：如果匹配有误，请在“排除”中指定它所没有的部分，然后重新匹配。"
     ),
     "Match": "匹配",
     (
