@@ -2220,10 +2220,10 @@ MESSAGES: Final[dict[str, str]] = {
         "{0}の密なマップがメッシュの属性から削除されています。もう一度マッチングしてください。"
     ),
     (
-        '"{0}" shares its mesh with other objects, whose weights would change with its own. Give it its own mesh '
-        "first (Object > Relations > Make Single User > Object & Data)."
+        '"{0}" shares its mesh with other objects, which would change with it. Give it its own mesh first '
+        "(Object > Relations > Make Single User > Object & Data)."
     ): (
-        "「{0}」はほかのオブジェクトとメッシュを共有しており、それらのウェイトも変わってしまいます。先に独立"
+        "「{0}」はほかのオブジェクトとメッシュを共有しており、それらも変わってしまいます。先に独立"
         "させてください（オブジェクト > 関係 > シングルユーザー化 > オブジェクトとデータ）。"
     ),
     '"{0}" is in Edit Mode. Switch to Object Mode first.': (
@@ -2318,14 +2318,6 @@ MESSAGES: Final[dict[str, str]] = {
     "the pose": "ポーズ",
     "1 UV map": "1個のUVマップ",
     '"{0}" has no attribute "{1}". Check the Names.': "「{0}」に属性「{1}」はありません。名前を確認してください。",
-    (
-        'The mesh "{0}" of "{1}" is shared with other objects, which would get the shape keys as well. Make it a '
-        "single user first (Object > Relations > Make Single User > Object & Data)."
-    ): (
-        "「{1}」のメッシュ「{0}」はほかのオブジェクトと共有されており、それらにもシェイプキーが付いてしまいま"
-        "す。先にシングルユーザー化してください（オブジェクト > 関係 > シングルユーザー化 > オブジェクトとデ"
-        "ータ）。"
-    ),
     'The shape keys of "{0}" are absolute. Turn Relative on in its Shape Keys panel, or remove them.': (
         "「{0}」のシェイプキーは絶対値です。シェイプキーパネルで相対をオンにするか、削除してください。"
     ),

@@ -1815,9 +1815,9 @@ MESSAGES: Final[dict[str, str]] = {
         "{0} 的稠密映射已从网格属性中移除。请重新匹配。"
     ),
     (
-        '"{0}" shares its mesh with other objects, whose weights would change with its own. Give it its own mesh '
-        "first (Object > Relations > Make Single User > Object & Data)."
-    ): "“{0}”与其他物体共用网格，它们的权重也会随之改变。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
+        '"{0}" shares its mesh with other objects, which would change with it. Give it its own mesh first '
+        "(Object > Relations > Make Single User > Object & Data)."
+    ): "“{0}”与其他物体共用网格，它们也会随之改变。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
     '"{0}" is in Edit Mode. Switch to Object Mode first.': "“{0}”处于编辑模式。请先切换到物体模式。",
     (
         '"{0}" has no armature, so there is no rig to fit. Give it an Armature modifier with its armature, or '
@@ -1883,10 +1883,6 @@ MESSAGES: Final[dict[str, str]] = {
     "the pose": "姿态",
     "1 UV map": "1 个 UV 贴图",
     '"{0}" has no attribute "{1}". Check the Names.': "“{0}”没有属性“{1}”。请检查名称。",
-    (
-        'The mesh "{0}" of "{1}" is shared with other objects, which would get the shape keys as well. Make it a '
-        "single user first (Object > Relations > Make Single User > Object & Data)."
-    ): "“{1}”的网格“{0}”与其他物体共用，它们也会得到形态键。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
     'The shape keys of "{0}" are absolute. Turn Relative on in its Shape Keys panel, or remove them.': (
         "“{0}”的形态键是绝对的。请在形态键面板中启用相对，或将其移除。"
     ),

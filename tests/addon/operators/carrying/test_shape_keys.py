@@ -308,7 +308,7 @@ def test_bad_input_changes_nothing(pair):
     with pytest.raises(RuntimeError, match="is its basis"):
         carry(key_choice="ACTIVE")
     sharer = bpy.data.objects.new("Sharer", target.data)
-    with pytest.raises(RuntimeError, match="shared with other objects"):
+    with pytest.raises(RuntimeError, match="shares its mesh"):
         carry()
     bpy.data.objects.remove(sharer)
     assert names(target) == []
