@@ -300,11 +300,12 @@ MESSAGES: Final[dict[str, str]] = {
     "Confidence {0}: {1}": "信頼度{0}：{1}",
     "Confidence {0}: {1} Note: {2}": "信頼度{0}：{1}注意：{2}",
     (
-        '"{0}" is open at {1} ends and looks like a garment for "{2}": fit it with Wear instead, or leave '
-        "out of the other mesh what it lacks."
+        '"{0}" is open at {1} ends and looks like a garment for "{2}": if it is one, fit it with Wear '
+        "instead; if not, and the match is wrong, leave out of the other mesh what it lacks."
     ): (
-        "「{0}」は{1}か所の端が開いており、「{2}」の衣服のように見えます。代わりに「着せる」で合わせるか、こ"
-        "れにない部分をもう一方のメッシュから除外してください。"
+        "「{0}」は{1}か所の端が開いており、「{2}」の衣服のように見えます。衣服なら、代わりに「着せる」で合"
+        "わせてください。そうでなく、マッチングが正しくない場合は、これにない部分をもう一方のメッシュから除外してくださ"
+        "い。"
     ),
     '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
         "「{0}」は「{1}」の一部のように見えます。マッチングが正しくない場合は、これにない部分を「除外」で指定して、もう一度マッチングしてください。"

@@ -253,9 +253,12 @@ MESSAGES: Final[dict[str, str]] = {
     "Confidence {0}: {1}": "置信度 {0}：{1}",
     "Confidence {0}: {1} Note: {2}": "置信度 {0}：{1}注意：{2}",
     (
-        '"{0}" is open at {1} ends and looks like a garment for "{2}": fit it with Wear instead, or leave '
-        "out of the other mesh what it lacks."
-    ): "“{0}”有 {1} 处开口，看起来像是“{2}”的衣服：请改用“穿戴”使其贴合，或在另一个网格中排除它所没有的部分。",
+        '"{0}" is open at {1} ends and looks like a garment for "{2}": if it is one, fit it with Wear '
+        "instead; if not, and the match is wrong, leave out of the other mesh what it lacks."
+    ): (
+        "“{0}”有 {1} 处开口，看起来像是“{2}”的衣服：如果是，请改用“穿戴”使其贴合；如果不是且匹配有误，请在另一个网格"
+        "中排除它所没有的部分。"
+    ),
     '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
         "“{0}”看起来像是“{1}”的一部分：如果匹配有误，请在“排除”中指定它所没有的部分，然后重新匹配。"
     ),
