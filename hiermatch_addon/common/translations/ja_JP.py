@@ -532,7 +532,7 @@ MESSAGES: Final[dict[str, str]] = {
     "No landmark was added, so there is nothing new to match by": (
         "ランドマークが加わっていないので、新しくマッチングする手がかりはありません"
     ),
-    "Matching again with {0} landmarks": "{0}個のランドマークでもう一度マッチングしています",
+    "Matching again with {0}": "{0}でもう一度マッチングしています",
     "What the landmark is called; double-click to change it": "ランドマークの名前。ダブルクリックで変更できます",
     (
         "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
@@ -1895,7 +1895,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Wrote {0} regions on both meshes as vertex groups": "両メッシュに{0}個の領域を頂点グループとして書き込みました",
     'Exported the match of "{0}" and "{1}" to "{2}"': "「{0}」と「{1}」の対応を「{2}」に書き出しました",
     'Imported the match of "{0}" and "{1}" from "{2}"': "「{0}」と「{1}」の対応を「{2}」から読み込みました",
-    "Added {0} landmarks on the other side": "反対側に{0}個のランドマークを追加しました",
+    "Added {0} on the other side": "反対側に{0}を追加しました",
     "Cleared {0}": "{0}をクリアしました",
     "Setup: {0}": "設定：{0}",
     'Made "{0}" symmetric in {1} s: {2}': "「{0}」を{1}秒で対称にしました：{2}",
@@ -2128,10 +2128,9 @@ MESSAGES: Final[dict[str, str]] = {
         "ランドマーク{0}：「{2}」の頂点{1}は「{4}」の頂点{3}です"
     ),
     "Removed landmark {0}": "ランドマーク{0}を削除しました",
-    "Removed {0} landmarks": "{0}個のランドマークを削除しました",
     "Locked {0} as landmark {1}": "{0}をランドマーク{1}としてロックしました",
-    'Saved {0} landmarks to "{1}"': "{0}個のランドマークを「{1}」に保存しました",
-    'Loaded {0} landmarks from "{1}"': "{0}個のランドマークを「{1}」から読み込みました",
+    'Saved {0} to "{1}"': "{0}を「{1}」に保存しました",
+    'Loaded {0} from "{1}"': "{0}を「{1}」から読み込みました",
     (
         '"{0}" has other vertices or faces than when the landmarks were saved. They were put on the vertices '
         "where they had been."
@@ -2447,6 +2446,8 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} of "{1}" run where the target has no faces, and were left out.': (
         "「{1}」の{0}はターゲットに面のない場所を通るため、除外しました。"
     ),
+    "1 landmark": "1個のランドマーク",
+    "{0} landmarks": "{0}個のランドマーク",
     "1 line": "1本の線",
     "{0} lines": "{0}本の線",
     '"{0}" is moved by {1} as well as by "{2}". Only the latter was fitted.': (

@@ -448,7 +448,7 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} ({1} of {2}): click on it on "{3}"    S: leave out': "{0}（{1}/{2}）：请在“{3}”上点击    S：跳过",
     'Click on "{0}" first, or press S to leave this place out.': "请先点击“{0}”，或按 S 跳过此处。",
     "No landmark was added, so there is nothing new to match by": "没有添加地标，因此没有新的匹配依据",
-    "Matching again with {0} landmarks": "正在用 {0} 个地标重新匹配",
+    "Matching again with {0}": "正在用 {0}重新匹配",
     "What the landmark is called; double-click to change it": "地标的名称；双击可更改",
     (
         "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
@@ -1586,7 +1586,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Wrote {0} regions on both meshes as vertex groups": "已在两个网格上把 {0} 个区域写为顶点组",
     'Exported the match of "{0}" and "{1}" to "{2}"': "已将“{0}”和“{1}”的匹配导出到“{2}”",
     'Imported the match of "{0}" and "{1}" from "{2}"': "已从“{2}”导入“{0}”和“{1}”的匹配",
-    "Added {0} landmarks on the other side": "已在另一侧添加 {0} 个地标",
+    "Added {0} on the other side": "已在另一侧添加 {0}",
     "Cleared {0}": "已清除 {0}",
     "Setup: {0}": "设置：{0}",
     'Made "{0}" symmetric in {1} s: {2}': "在 {1} 秒内使“{0}”对称：{2}",
@@ -1747,10 +1747,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Click on "{0}" or on "{1}".': "请点击“{0}”或“{1}”。",
     'Landmark {0}: vertex {1} of "{2}" is vertex {3} of "{4}"': "地标 {0}：“{2}”的顶点 {1} 对应“{4}”的顶点 {3}",
     "Removed landmark {0}": "已移除地标 {0}",
-    "Removed {0} landmarks": "已移除 {0} 个地标",
     "Locked {0} as landmark {1}": "已将 {0} 锁定为地标 {1}",
-    'Saved {0} landmarks to "{1}"': "已将 {0} 个地标保存到“{1}”",
-    'Loaded {0} landmarks from "{1}"': "已从“{1}”加载 {0} 个地标",
+    'Saved {0} to "{1}"': "已将 {0}保存到“{1}”",
+    'Loaded {0} from "{1}"': "已从“{1}”加载 {0}",
     (
         '"{0}" has other vertices or faces than when the landmarks were saved. They were put on the vertices '
         "where they had been."
@@ -1981,6 +1980,8 @@ MESSAGES: Final[dict[str, str]] = {
         "导入的匹配没有稠密映射：只写入了它的点，没有颜色和畸变。"
     ),
     '{0} of "{1}" run where the target has no faces, and were left out.': "“{1}”的{0}经过目标没有面的地方，已排除。",
+    "1 landmark": "1 个地标",
+    "{0} landmarks": "{0} 个地标",
     "1 line": "1 条线",
     "{0} lines": "{0} 条线",
     '"{0}" is moved by {1} as well as by "{2}". Only the latter was fitted.': (
