@@ -2271,6 +2271,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "「{1}」の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。"
     ),
+    '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
+        "「{1}」の{0}には有限の数でない値があるため、省かれました。値を修正してください。"
+    ),
     'Locked shape keys of "{0}" were left alone: {1}.': (
         "「{0}」のロックされたシェイプキーはそのままにしました：{1}。"
     ),

@@ -1850,6 +1850,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "“{1}”的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。"
     ),
+    '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
+        "“{1}”的{0}含有不是有限数的值，因此被略去。请修复这些值。"
+    ),
     'Locked shape keys of "{0}" were left alone: {1}.': "“{0}”被锁定的形态键保持不变：{1}。",
     'Locked vertex groups of "{0}" were left alone: {1}.': "“{0}”被锁定的顶点组保持不变：{1}。",
     '"{0}" has no weights for the bones of "{1}" yet. Transfer the weights as well.': (

@@ -192,6 +192,14 @@ def test_drivers_by_what_the_target_lacks_still_point_to_the_source(pair):
         target["Much"] = 0.8
 
 
+def test_a_key_without_finite_numbers_is_left_out_alone(pair):
+    source, target = pair
+    source.data.shape_keys.key_blocks["Swell"].data[3].co.x = float("nan")
+    assert carry() == {"FINISHED"}
+    assert names(target) == ["Basis", "Lift"]
+    assert '"Swell" of "Source" was left out' in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 @pytest.mark.parametrize("scale", [(1, 2, 0.5), (-1, 1, 1)])
 def test_offsets_are_those_of_the_world(pair, scale):
     source, target = pair
