@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -36,9 +35,7 @@ def remember(
     seconds : float
         How long the match took; zero if that is not known.
     """
-    answer, quality, notes = stored.answer, stored.answer.quality, stored.notes
-    if stored.swapped:
-        quality, notes = quality and quality.reverse, tuple(map(_exchanged, notes))
+    answer, (quality, notes) = stored.answer, stored.told
     summary.points = len(answer.point_distortion)
     summary.source, summary.target = names[::-1] if stored.swapped else names
     summary.swapped = stored.swapped
@@ -53,11 +50,6 @@ def remember(
     summary.seconds = seconds
     summary.notes = "\n".join(notes)
     summary.prefix, summary.key = prefix, stored.key
-
-
-def _exchanged(note: str) -> str:
-    """Call the source in a note the target, and the target the source."""
-    return re.sub(r"\b(source|target)\b", lambda found: "target" if found[0] == "source" else "source", note)
 
 
 def pick_named(scene: bpy.types.Scene, source: str, target: str) -> None:
