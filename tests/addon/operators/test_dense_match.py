@@ -333,6 +333,16 @@ class TestSwap:
             assert (state.summary.verdict, state.summary.notes) == (said, note.format(holed))
             assert find_maps(state.source, state.target).quality.sentence == said
 
+    def test_what_is_picked_the_other_way_round_is_called_so(self, dense_pair):
+        source, target = dense_pair
+        assert bpy.ops.hiermatch.transfer_uvs(source="Target", target="Source") == {"FINISHED"}
+        state = bpy.context.scene.hiermatch
+        assert (state.source, state.target) == (target, source)
+        assert (summary().source, summary().target, summary().swapped) == ("Target", "Source", True)
+        assert summary().seconds > 0
+        state.target, state.source = target, source
+        assert (summary().source, summary().target, summary().swapped) == ("Source", "Target", False)
+
     def test_flipping_and_swapping_do_not_disturb_one_another(self, dense_pair):
         bpy.ops.hiermatch.swap()
         flip()
