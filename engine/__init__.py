@@ -2,7 +2,7 @@
 """The engine of HierMatch: NumPy and SciPy only, no Blender."""
 
 from .dense.densify import densify, densify_steps
-from .dense.quality import DenseMatch, MatchQuality
+from .dense.quality import DenseMatch, MatchQuality, exchanged_sentence
 from .geometry.geodesics import GeodesicSolver
 from .geometry.voronoi_labels import nearest_regions
 from .hierarchical.settings import SETUPS, MatchSettings
@@ -141,6 +141,7 @@ __all__ = [
     "distortion_after",
     "ends_at_joint",
     "evened_frames",
+    "exchanged_sentence",
     "find_symmetry",
     "find_symmetry_steps",
     "fit_rig",

@@ -287,6 +287,21 @@ def overlap_sentence(shares: tuple[float, float], *, credible: bool) -> str:
     return f"The shapes overlap: {shares[0]:.0%} of the source and {shares[1]:.0%} of the target have a partner."
 
 
+def exchanged_sentence(sentence: str, shares: tuple[float, float]) -> str:
+    """Say what a sentence on two maps says with source and target exchanged.
+
+    Parameters
+    ----------
+    sentence : str
+        That of a `MatchQuality`.
+    shares : tuple of float
+        What part of the new source and of the new target has a partner.
+    """
+    if "overlap" in sentence:
+        return overlap_sentence(shares, credible=True)
+    return _missing(*shares) if "the source" in sentence or "the target" in sentence else sentence
+
+
 def _log_stretch(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints) -> Floats:
     """Logarithm of mapped over original length of each edge, both in units of sqrt(area), (e,)."""
     first, second = source.edges.T

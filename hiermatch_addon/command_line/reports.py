@@ -95,7 +95,7 @@ class Report:
 
     def add_match(self, stored: StoredMatch) -> None:
         """Say what was found."""
-        answer = stored.answer
+        answer, (quality, notes) = stored.answer, stored.told
         self.match = {
             "points": len(answer.point_distortion),
             "distortion": answer.distortion,
@@ -106,9 +106,9 @@ class Report:
             "answer": answer.name,
             "alternatives": [other.name for other in stored.answers[1:]],
             "refined": answer.refined,
-            "quality": None if answer.quality is None else dict(vars(answer.quality)),
+            "quality": None if quality is None else dict(vars(quality)),
         }
-        self.add_notes(stored.notes)
+        self.add_notes(notes)
 
     def add_carried(self, carried: Sequence[Carried]) -> None:
         """Say what was carried over."""

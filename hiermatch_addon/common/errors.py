@@ -5,11 +5,15 @@ from __future__ import annotations
 
 from ...engine import HierMatchError
 
-__all__ = ["DoubtfulMatchError", "NothingToCarryError", "ObjectError"]
+__all__ = ["DoubtfulMatchError", "NothingToCarryError", "ObjectError", "SharedMeshError"]
 
 
 class ObjectError(HierMatchError):
     """An object that cannot be matched or written to as it stands; the message says why and what to do."""
+
+
+class SharedMeshError(ObjectError):
+    """A mesh of several objects, all of which would change with the one that is written to."""
 
 
 class DoubtfulMatchError(ObjectError):

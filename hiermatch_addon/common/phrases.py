@@ -17,6 +17,7 @@ _THINGS: Final = {
     "color attribute": ("1 color attribute", "{0} color attributes"),
     "driver": ("1 driver", "{0} drivers"),
     "item": ("1 item", "{0} items"),
+    "landmark": ("1 landmark", "{0} landmarks"),
     "line": ("1 line", "{0} lines"),
     "material": ("1 material", "{0} materials"),
     "note": ("1 note", "{0} notes"),

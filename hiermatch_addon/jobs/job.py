@@ -398,7 +398,7 @@ class MatchJob(SteppedJob):
 def _check_points(obj: Side, settings: MatchSettings) -> None:
     """Make sure that there are vertices enough: a dense match takes fewer points by itself, where these are not."""
     count, points = vertex_count(obj), settings.points
-    if (settings.coarse_points if settings.dense else points) > count:
+    if (min(settings.coarse_points, points) if settings.dense else points) > count:
         raise ObjectError(
             f'"{obj.name}" has {count} vertices, too few for {points} Points. Set Points to {count} or fewer, '
             "or subdivide the mesh."

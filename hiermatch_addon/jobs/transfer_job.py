@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...engine import HierMatchError, Progress, fit_rig_steps, within
 from ..common.access import view_layer_of
-from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError
+from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError, SharedMeshError
 from ..properties.preferences import shape_memory
 from ..scene.armatures import read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, whole
@@ -134,12 +134,14 @@ class _Leg:
         Raises
         ------
         HierMatchError
-            If something cannot be, or, of optional kinds, none can.
+            If something cannot be, or, of optional kinds, none can; or if the target shares its mesh.
         """
         errors = []
         for transfer in made:
             try:
                 transfer.read(context, source, target)
+            except SharedMeshError:  # what is carried in part would be of no use, and is soon carried as a whole
+                raise
             except HierMatchError as error:
                 errors.append((transfer.label, error))
             else:

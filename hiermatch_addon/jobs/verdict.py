@@ -94,12 +94,13 @@ def advice_on(
         ends = open_ends(meshes[own])
         if ends >= _ENDS_OF_GARMENT and ends > open_ends(meshes[other]):
             return (
-                f'"{names[own]}" is open at {ends} ends and looks like a garment for "{names[other]}": fit it with '
-                "Wear instead, or leave out of the other mesh what it lacks."
+                f'"{names[own]}" is open at {ends} ends and looks like a garment for "{names[other]}": if it is '
+                "one, fit it with Wear instead; if not, and the match is wrong, leave out of the other mesh what it "
+                "lacks."
             )
         if shares[own] > _PARTNERED:
             return (
-                f'"{names[own]}" looks like a part of "{names[other]}": name what it lacks under Leave Out, and match '
-                "again."
+                f'"{names[own]}" looks like a part of "{names[other]}": if the match is wrong, name what it lacks '
+                "under Leave Out, and match again."
             )
     return ""

@@ -18,7 +18,6 @@ from ..storage.writing import change_kept
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-    from ..properties.properties import HIERMATCH_PG_summary
     from ..storage.halves import Half
 
 __all__ = ["HIERMATCH_OT_swap"]
@@ -51,16 +50,12 @@ class HIERMATCH_OT_swap(bpy.types.Operator):
         state.exclude_source, state.exclude_target = state.exclude_target, state.exclude_source
         pair = steered_pair(cast("bpy.types.Scene", context.scene)) if all(picked(state)) else None
         for half, partner in find_common(*pair) if pair else ():
-            _set_swapped(state.summary, half, partner)
+            _keep_swapped(half, partner)
         return {"FINISHED"}
 
 
-def _set_swapped(summary: HIERMATCH_PG_summary, half: Half, partner: Half) -> None:
-    """Call the first of the two sides of a match the source from now on."""
-    swapped = half.role == "target"
+def _keep_swapped(half: Half, partner: Half) -> None:
+    """Call the first of the two sides of a match the source from now on, also when another answer is written."""
     for side in (half, partner):
         if all(mesh_of(part).library is None for part in parts_of(side.obj)):
-            change_kept(side.obj, side.prefix, swapped=swapped)
-    if (summary.prefix, summary.key) == (half.prefix, half.key):
-        summary.swapped = swapped
-        summary.source, summary.target = half.obj.name, partner.obj.name
+            change_kept(side.obj, side.prefix, swapped=half.role == "target")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -35,7 +36,7 @@ def remember(
     seconds : float
         How long the match took; zero if that is not known.
     """
-    answer = stored.answer
+    answer, (quality, notes) = stored.answer, stored.told
     summary.points = len(answer.point_distortion)
     summary.source, summary.target = names[::-1] if stored.swapped else names
     summary.swapped = stored.swapped
@@ -44,11 +45,11 @@ def remember(
     summary.proven, summary.gap = answer.proven, answer.gap
     summary.orientation = answer.orientation
     summary.answers, summary.answer = "\n".join(answer.name for answer in stored.answers), stored.chosen
-    summary.stretch = answer.quality.distortion if answer.quality else 0.0
-    summary.verdict = answer.quality.sentence if answer.quality else ""
-    summary.confidence = answer.quality.confidence if answer.quality else 0.0
+    summary.stretch = quality.distortion if quality else 0.0
+    summary.verdict = quality.sentence if quality else ""
+    summary.confidence = quality.confidence if quality else 0.0
     summary.seconds = seconds
-    summary.notes = "\n".join(stored.notes)
+    summary.notes = "\n".join(notes)
     summary.prefix, summary.key = prefix, stored.key
 
 
@@ -71,12 +72,15 @@ def pick_named(scene: bpy.types.Scene, source: str, target: str) -> None:
 def remember_common(scene: bpy.types.Scene) -> None:
     """Fill a scene's summary with the match of the two meshes that its panels are about, such as after appending them.
 
-    If they carry none, or the summary tells of it already, it stays as it is.
+    It calls source and target what they do.  If they carry none, or it tells of it already, it stays as it is.
     """
     summary, halves = summary_of(scene), common_match(scene)
-    if halves is None or (halves[0].key, halves[0].prefix) == (summary.key, summary.prefix):
+    if halves is None:
         return
-    source, target = halves if halves[0].role == "source" else halves[::-1]
-    stored = StoredMatch.from_plain(source.kept, target.kept)
-    remember(summary, stored, (source.obj.name, target.obj.name), source.prefix, 0.0)
+    swapped, same = halves[0].role == "target", (halves[0].key, halves[0].prefix) == (summary.key, summary.prefix)
+    if same and swapped == summary.swapped:
+        return
+    source, target = halves[::-1] if swapped else halves
+    stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=swapped)
+    remember(summary, stored, (source.obj.name, target.obj.name), source.prefix, summary.seconds if same else 0.0)
     summary.stale = source.staleness() or target.staleness()

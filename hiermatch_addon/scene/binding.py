@@ -79,10 +79,11 @@ def bind(
     for part in parts_of(target):
         modifier: Any = next((one for one in part.modifiers if getattr(one, "object", None) == armature), None)
         if modifier is None:
+            place = _place_among([one.type for one in part.modifiers])
             modifier = part.modifiers.new("Armature", "ARMATURE")
             _take_settings(modifier, armature_modifier(model), part)
             modifier.object = armature
-            part.modifiers.move(len(part.modifiers) - 1, 0)
+            part.modifiers.move(len(part.modifiers) - 1, place)
         for other in moving_armatures(part)[:2]:
             if other != armature and (kept is None or other in kept):
                 others.setdefault(other.name, []).append(part.name)
@@ -195,6 +196,13 @@ def _is_replaced(
     return (
         other is not None and other.type == "ARMATURE" and other != armature and kept is not None and other not in kept
     )
+
+
+def _place_among(kinds: list[str]) -> int:
+    """Say before which modifier an Armature modifier belongs: where one is, else first, but after what mirrors."""
+    if "ARMATURE" in kinds:
+        return kinds.index("ARMATURE")
+    return max((number + 1 for number, kind in enumerate(kinds) if kind == "MIRROR"), default=0)
 
 
 def _take_settings(modifier: Any, model: Any, target: bpy.types.Object) -> None:  # noqa: ANN401 - Armature modifiers

@@ -15,7 +15,7 @@ from scipy.sparse import csc_array, csr_array
 
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
-from .pair import check_writable
+from .pair import check_own_mesh, check_writable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,12 +35,7 @@ def check_weights_writable(obj: bpy.types.Object) -> None:
         If its mesh is another file's, belongs to other objects too, or is being edited.
     """
     check_writable(obj)
-    mesh = mesh_of(obj)
-    if mesh.users - int(mesh.use_fake_user) > 1:
-        raise ObjectError(
-            f'"{obj.name}" shares its mesh with other objects, whose weights would change with its own. Give it its '
-            "own mesh first (Object > Relations > Make Single User > Object & Data)."
-        )
+    check_own_mesh(obj)
     if obj.mode == "EDIT":
         raise ObjectError(f'"{obj.name}" is in Edit Mode. Switch to Object Mode first.')
 

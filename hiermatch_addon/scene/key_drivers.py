@@ -49,7 +49,8 @@ def copy_key_drivers(
     count : int
         How many drivers were copied.
     kept : set of str
-        Names of the things of the source's that they still point to: those without a counterpart.
+        Names of the things of the source's that they still point to: those without a counterpart that has what is
+        read.
     """
     animation = source.animation_data
     if animation is None:
@@ -62,8 +63,9 @@ def copy_key_drivers(
         count += 1
         for variable in copied.driver.variables:
             for place in variable.targets:
-                if place.id in places:
-                    place.id = places[place.id]
+                other = places.get(place.id)
+                if other is not None and _can_be_read(variable.type, place, other):
+                    place.id = other
                 elif place.id is not None and place.id.id_type != "SCENE":
                     kept.add(place.id.name)
     return count, kept

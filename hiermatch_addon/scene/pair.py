@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ..common.access import mesh_of, view_layer_of
-from ..common.errors import ObjectError
+from ..common.errors import ObjectError, SharedMeshError
 from ..common.phrases import listed
 from .character import Character, armatures_above, joined, parts_of, side_of
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "active_side",
     "check_object",
+    "check_own_mesh",
     "check_pair",
     "check_side",
     "check_writable",
@@ -355,6 +356,22 @@ def check_writable(obj: bpy.types.Object) -> None:
         raise ObjectError(
             f'"{obj.name}" is a library override and cannot be written to. Make object and data local first '
             "(Object > Relations > Make Local)."
+        )
+
+
+def check_own_mesh(obj: bpy.types.Object) -> None:
+    """Make sure that no other object has the same mesh.
+
+    Raises
+    ------
+    SharedMeshError
+        If one has.
+    """
+    mesh = mesh_of(obj)
+    if mesh.users - int(mesh.use_fake_user) > 1:
+        raise SharedMeshError(
+            f'"{obj.name}" shares its mesh with other objects, which would change with it. Give it its own mesh first '
+            "(Object > Relations > Make Single User > Object & Data)."
         )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from .character import parts_of
+from .pair import check_own_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -183,11 +184,7 @@ def check_keys_writable(obj: bpy.types.Object, names: Sequence[str], *, absolute
         If they cannot.
     """
     mesh, keys = mesh_of(obj), keys_of(obj)
-    if mesh.users - int(mesh.use_fake_user) > 1:
-        raise ObjectError(
-            f'The mesh "{mesh.name}" of "{obj.name}" is shared with other objects, which would get the shape keys as '
-            "well. Make it a single user first (Object > Relations > Make Single User > Object & Data)."
-        )
+    check_own_mesh(obj)
     if keys is None:
         return
     if not keys.use_relative and not absolute:

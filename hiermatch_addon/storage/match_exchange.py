@@ -31,6 +31,8 @@ _SPARSE = "The imported match has no dense map: only its points were written, wi
 def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
     """Take the match that two objects carry with one another; what was matched as the source comes first.
 
+    It is called `swapped` if that is the `other` one here.
+
     Parameters
     ----------
     one, other : bpy.types.Object or Character
@@ -54,7 +56,7 @@ def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
     for half in (source, target):
         if stale := half.staleness():
             raise ObjectError(stale)
-    stored = StoredMatch.from_plain(source.kept, target.kept)
+    stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=source is not found[0][0])
     shown, *others = read_all_maps(source.obj, target.obj, source.prefix, len(stored.answers))
     return MatchFile(stored, (vertex_count(source.obj), vertex_count(target.obj)), shown, tuple(others))
 

@@ -39,7 +39,8 @@ class FoundMaps:
     use_modifiers : bool
         Whether the meshes were matched as shape keys and modifiers show them.
     quality : Quality or None
-        How far they can be trusted, as it was measured when the match was made; None if that is not known.
+        How far they can be trusted, in the same order, as it was measured when the match was made; None if that is not
+        known.
     """
 
     source: Half
@@ -85,9 +86,10 @@ def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
     maps = StoredMaps.read(first.obj, second.obj, map_name(first.prefix))
     if maps is None:
         raise ObjectError(f"The dense map of {pair} was removed from the attributes of a mesh. Match them again.")
-    kept = maps if first is halves[0] else maps.reverse
-    answer = stored.answer
-    return FoundMaps(*halves, kept, answer.refined, stored.written.use_modifiers, answer.quality)
+    answer, quality = stored.answer, stored.answer.quality
+    if first is not halves[0]:
+        maps, quality = maps.reverse, quality and quality.reverse
+    return FoundMaps(*halves, maps, answer.refined, stored.written.use_modifiers, quality)
 
 
 def stored_map(context: bpy.types.Context, source: Side, target: Side, prefix: str = "") -> MapPair:

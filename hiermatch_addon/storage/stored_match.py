@@ -8,12 +8,13 @@ that no renaming, saving or undoing changes.  The dense maps are kept beside it,
 from __future__ import annotations
 
 import hashlib
+import re
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...engine import DIRECT, MIRRORED
+from ...engine import DIRECT, MIRRORED, exchanged_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -130,6 +131,13 @@ class Quality:
         known = {field.name: getattr(quality, field.name) for field in fields(cls)}
         plain: dict[str, Any] = {n: v if v is None or isinstance(v, (str, int)) else float(v) for n, v in known.items()}
         return cls(**plain)
+
+    @property
+    def reverse(self) -> Quality:
+        """The same with source and target exchanged."""
+        shares = self.coverage, self.source_coverage
+        sentence = exchanged_sentence(self.sentence, shares)
+        return replace(self, source_coverage=shares[0], coverage=shares[1], sentence=sentence)
 
     def to_plain(self) -> dict[str, Any]:
         """Return what is known."""
@@ -277,6 +285,13 @@ class StoredMatch:
         quality = self.answers[0].quality
         return None if quality is None else quality.margin
 
+    @property
+    def told(self) -> tuple[Quality | None, tuple[str, ...]]:
+        """How far the answer that is written can be trusted, and the notes, as source and target are called now."""
+        if not self.swapped:
+            return self.answer.quality, self.notes
+        return self.answer.quality and self.answer.quality.reverse, tuple(map(_exchanged, self.notes))
+
     def with_answer(self, answer: Answer) -> StoredMatch:
         """Return the same with another answer in the place of the one that is written."""
         answers = list(self.answers)
@@ -339,3 +354,8 @@ class StoredMatch:
             swapped=source.get("swapped", False),
             left_out=tuple(int(number) for number in source.get("left_out", "").split()),
         )
+
+
+def _exchanged(note: str) -> str:
+    """Call the source in a note the target, and the target the source."""
+    return re.sub(r"\b(source|target)\b", lambda found: "target" if found[0] == "source" else "source", note)

@@ -95,8 +95,9 @@ class AttributeTransfer:
         self._notes.extend(choice.notes)
         for layout in choice.layouts:
             self._values[layout] = np.concatenate([_read_part(mesh, layout) for mesh in meshes])
-        if self._settings.materials and any(len(part.material_slots) for part in parts_of(source)):
-            self._materials = _read_materials(source)[1]
+        if self._settings.materials:
+            materials, numbers = _read_materials(source)
+            self._materials = numbers if any(materials) else None  # faces keep theirs where nothing comes instead
         if self._settings.normals and any(mesh.has_custom_normals for mesh in meshes):
             self._normals = np.concatenate(
                 [read_corner_normals(mesh_of(part), _linear_part(context, part)) for part in parts_of(source)]

@@ -38,6 +38,7 @@ from ..scene.shape_key_io import (
     read_offsets,
     shape_key_names,
 )
+from .finite_values import without_broken
 
 if TYPE_CHECKING:
     import bpy
@@ -79,10 +80,13 @@ class ShapeKeyTransfer:
         for part in parts_of(target):
             self._read_target(context, source, part, chosen)
         names = [name for name in chosen if any(name in written for written in self._written)]
-        models = {name: cast("bpy.types.Key", keys_of(key_holder(source, name))) for name in names}
-        self._keys = tuple(KeySettings.of(keys.key_blocks[name], names) for name, keys in models.items())
         # To world space, where the two surfaces are compared, and back into the target's.
-        self._offsets = np.concatenate([_read_part(context, part, names) for part in parts_of(source)], axis=1)
+        offsets = np.concatenate([_read_part(context, part, names) for part in parts_of(source)], axis=1)
+        found = dict(zip(names, offsets, strict=True))
+        self._notes += without_broken(found, source)
+        models = {name: cast("bpy.types.Key", keys_of(key_holder(source, name))) for name in found}
+        self._keys = tuple(KeySettings.of(keys.key_blocks[name], names) for name, keys in models.items())
+        self._offsets = np.array(list(found.values())).reshape(-1, *offsets.shape[1:])
 
     def _read_target(
         self, context: bpy.types.Context, source: Side, target: bpy.types.Object, chosen: list[str]

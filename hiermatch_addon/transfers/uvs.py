@@ -20,6 +20,7 @@ from ..scene.attribute_io import (
     write_seams,
 )
 from ..scene.character import corner_ranges, edge_ranges, parts_of, read_faces
+from .finite_values import without_broken
 
 if TYPE_CHECKING:
     import bpy
@@ -64,6 +65,7 @@ class UVTransfer:
             self._notes += [_taken(part, name) for part in taken]
             if not taken:
                 self._layers[name] = np.concatenate([_read_layer(mesh, name) for mesh in meshes])
+        self._notes += without_broken(self._layers, source)
         for part in parts_of(target):
             count = len({layer.name for layer in mesh_of(part).uv_layers} | self._layers.keys())
             if count > _MOST_LAYERS:

@@ -77,9 +77,9 @@ class WeightTransfer:
 
     def read(self, _context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the weights of both, and make sure that the target's can be written."""
+        chosen = chosen_groups(source, self._settings.groups)
         for part in parts_of(target):
             check_weights_writable(part)
-        chosen = chosen_groups(source, self._settings.groups)
         written = {name for part in parts_of(target) for name in written_names(part)}
         taken = [name for name in chosen if name in written]
         if taken:

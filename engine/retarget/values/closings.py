@@ -57,6 +57,10 @@ _DOUBTED = 0.1
 _UNLIKE = 2.0
 """By what factor an opening may be wider or narrower than most are beside the source's: more is an error of the map."""
 
+_LOST = 1e-6
+"""Part of the size of the target up to which the width of openings is lost: the map brings both sides to one place, as
+where the target lacks what the key closes."""
+
 _MOST = 0.5
 """Part of its way by which a place may go farther or less far at most."""
 
@@ -273,6 +277,8 @@ class _Ways:
         between = csr_array(closing.between @ images)
         apart = between @ self._vertices
         widths = np.maximum(np.linalg.norm(apart, axis=1), _TINY)
+        if np.median(widths) <= _LOST * np.ptp(self._vertices, axis=0).max():
+            return np.zeros(len(ways))
         grown = np.log(widths / closing.widths)
         usual = float(np.median(grown))
         alike = np.flatnonzero(np.abs(grown - usual) <= np.log(_UNLIKE))

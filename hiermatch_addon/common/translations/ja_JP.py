@@ -300,14 +300,15 @@ MESSAGES: Final[dict[str, str]] = {
     "Confidence {0}: {1}": "信頼度{0}：{1}",
     "Confidence {0}: {1} Note: {2}": "信頼度{0}：{1}注意：{2}",
     (
-        '"{0}" is open at {1} ends and looks like a garment for "{2}": fit it with Wear instead, or leave '
-        "out of the other mesh what it lacks."
+        '"{0}" is open at {1} ends and looks like a garment for "{2}": if it is one, fit it with Wear '
+        "instead; if not, and the match is wrong, leave out of the other mesh what it lacks."
     ): (
-        "「{0}」は{1}か所の端が開いており、「{2}」の衣服のように見えます。代わりに「着せる」で合わせるか、こ"
-        "れにない部分をもう一方のメッシュから除外してください。"
+        "「{0}」は{1}か所の端が開いており、「{2}」の衣服のように見えます。衣服なら、代わりに「着せる」で合"
+        "わせてください。そうでなく、マッチングが正しくない場合は、これにない部分をもう一方のメッシュから除外してくださ"
+        "い。"
     ),
-    '"{0}" looks like a part of "{1}": name what it lacks under Leave Out, and match again.': (
-        "「{0}」は「{1}」の一部のように見えます。これにない部分を「除外」で指定して、もう一度マッチングしてください。"
+    '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
+        "「{0}」は「{1}」の一部のように見えます。マッチングが正しくない場合は、これにない部分を「除外」で指定して、もう一度マッチングしてください。"
     ),
     "Match": "マッチング",
     (
@@ -531,7 +532,7 @@ MESSAGES: Final[dict[str, str]] = {
     "No landmark was added, so there is nothing new to match by": (
         "ランドマークが加わっていないので、新しくマッチングする手がかりはありません"
     ),
-    "Matching again with {0} landmarks": "{0}個のランドマークでもう一度マッチングしています",
+    "Matching again with {0}": "{0}でもう一度マッチングしています",
     "What the landmark is called; double-click to change it": "ランドマークの名前。ダブルクリックで変更できます",
     (
         "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
@@ -1897,7 +1898,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Wrote {0} regions on both meshes as vertex groups": "両メッシュに{0}個の領域を頂点グループとして書き込みました",
     'Exported the match of "{0}" and "{1}" to "{2}"': "「{0}」と「{1}」の対応を「{2}」に書き出しました",
     'Imported the match of "{0}" and "{1}" from "{2}"': "「{0}」と「{1}」の対応を「{2}」から読み込みました",
-    "Added {0} landmarks on the other side": "反対側に{0}個のランドマークを追加しました",
+    "Added {0} on the other side": "反対側に{0}を追加しました",
     "Cleared {0}": "{0}をクリアしました",
     "Setup: {0}": "設定：{0}",
     'Made "{0}" symmetric in {1} s: {2}': "「{0}」を{1}秒で対称にしました：{2}",
@@ -2133,10 +2134,9 @@ MESSAGES: Final[dict[str, str]] = {
         "ランドマーク{0}：「{2}」の頂点{1}は「{4}」の頂点{3}です"
     ),
     "Removed landmark {0}": "ランドマーク{0}を削除しました",
-    "Removed {0} landmarks": "{0}個のランドマークを削除しました",
     "Locked {0} as landmark {1}": "{0}をランドマーク{1}としてロックしました",
-    'Saved {0} landmarks to "{1}"': "{0}個のランドマークを「{1}」に保存しました",
-    'Loaded {0} landmarks from "{1}"': "{0}個のランドマークを「{1}」から読み込みました",
+    'Saved {0} to "{1}"': "{0}を「{1}」に保存しました",
+    'Loaded {0} from "{1}"': "{0}を「{1}」から読み込みました",
     (
         '"{0}" has other vertices or faces than when the landmarks were saved. They were put on the vertices '
         "where they had been."
@@ -2226,10 +2226,10 @@ MESSAGES: Final[dict[str, str]] = {
         "{0}の密なマップがメッシュの属性から削除されています。もう一度マッチングしてください。"
     ),
     (
-        '"{0}" shares its mesh with other objects, whose weights would change with its own. Give it its own mesh '
-        "first (Object > Relations > Make Single User > Object & Data)."
+        '"{0}" shares its mesh with other objects, which would change with it. Give it its own mesh first '
+        "(Object > Relations > Make Single User > Object & Data)."
     ): (
-        "「{0}」はほかのオブジェクトとメッシュを共有しており、それらのウェイトも変わってしまいます。先に独立"
+        "「{0}」はほかのオブジェクトとメッシュを共有しており、それらも変わってしまいます。先に独立"
         "させてください（オブジェクト > 関係 > シングルユーザー化 > オブジェクトとデータ）。"
     ),
     '"{0}" is in Edit Mode. Switch to Object Mode first.': (
@@ -2276,6 +2276,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "「{1}」の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。"
+    ),
+    '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
+        "「{1}」の{0}には有限の数でない値があるため、省かれました。値を修正してください。"
     ),
     'Locked shape keys of "{0}" were left alone: {1}.': (
         "「{0}」のロックされたシェイプキーはそのままにしました：{1}。"
@@ -2324,14 +2327,6 @@ MESSAGES: Final[dict[str, str]] = {
     "the pose": "ポーズ",
     "1 UV map": "1個のUVマップ",
     '"{0}" has no attribute "{1}". Check the Names.': "「{0}」に属性「{1}」はありません。名前を確認してください。",
-    (
-        'The mesh "{0}" of "{1}" is shared with other objects, which would get the shape keys as well. Make it a '
-        "single user first (Object > Relations > Make Single User > Object & Data)."
-    ): (
-        "「{1}」のメッシュ「{0}」はほかのオブジェクトと共有されており、それらにもシェイプキーが付いてしまいま"
-        "す。先にシングルユーザー化してください（オブジェクト > 関係 > シングルユーザー化 > オブジェクトとデ"
-        "ータ）。"
-    ),
     'The shape keys of "{0}" are absolute. Turn Relative on in its Shape Keys panel, or remove them.': (
         "「{0}」のシェイプキーは絶対値です。シェイプキーパネルで相対をオンにするか、削除してください。"
     ),
@@ -2460,6 +2455,8 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} of "{1}" run where the target has no faces, and were left out.': (
         "「{1}」の{0}はターゲットに面のない場所を通るため、除外しました。"
     ),
+    "1 landmark": "1個のランドマーク",
+    "{0} landmarks": "{0}個のランドマーク",
     "1 line": "1本の線",
     "{0} lines": "{0}本の線",
     '"{0}" is moved by {1} as well as by "{2}". Only the latter was fitted.': (

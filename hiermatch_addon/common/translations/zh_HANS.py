@@ -253,11 +253,14 @@ MESSAGES: Final[dict[str, str]] = {
     "Confidence {0}: {1}": "置信度 {0}：{1}",
     "Confidence {0}: {1} Note: {2}": "置信度 {0}：{1}注意：{2}",
     (
-        '"{0}" is open at {1} ends and looks like a garment for "{2}": fit it with Wear instead, or leave '
-        "out of the other mesh what it lacks."
-    ): "“{0}”有 {1} 处开口，看起来像是“{2}”的衣服：请改用“穿戴”使其贴合，或在另一个网格中排除它所没有的部分。",
-    '"{0}" looks like a part of "{1}": name what it lacks under Leave Out, and match again.': (
-        "“{0}”看起来像是“{1}”的一部分：请在“排除”中指定它所没有的部分，然后重新匹配。"
+        '"{0}" is open at {1} ends and looks like a garment for "{2}": if it is one, fit it with Wear '
+        "instead; if not, and the match is wrong, leave out of the other mesh what it lacks."
+    ): (
+        "“{0}”有 {1} 处开口，看起来像是“{2}”的衣服：如果是，请改用“穿戴”使其贴合；如果不是且匹配有误，请在另一个网格"
+        "中排除它所没有的部分。"
+    ),
+    '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
+        "“{0}”看起来像是“{1}”的一部分：如果匹配有误，请在“排除”中指定它所没有的部分，然后重新匹配。"
     ),
     "Match": "匹配",
     (
@@ -445,7 +448,7 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} ({1} of {2}): click on it on "{3}"    S: leave out': "{0}（{1}/{2}）：请在“{3}”上点击    S：跳过",
     'Click on "{0}" first, or press S to leave this place out.': "请先点击“{0}”，或按 S 跳过此处。",
     "No landmark was added, so there is nothing new to match by": "没有添加地标，因此没有新的匹配依据",
-    "Matching again with {0} landmarks": "正在用 {0} 个地标重新匹配",
+    "Matching again with {0}": "正在用 {0}重新匹配",
     "What the landmark is called; double-click to change it": "地标的名称；双击可更改",
     (
         "Click on a place of one mesh and then on the corresponding place of the other, pair by pair; Enter or Esc "
@@ -1586,7 +1589,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Wrote {0} regions on both meshes as vertex groups": "已在两个网格上把 {0} 个区域写为顶点组",
     'Exported the match of "{0}" and "{1}" to "{2}"': "已将“{0}”和“{1}”的匹配导出到“{2}”",
     'Imported the match of "{0}" and "{1}" from "{2}"': "已从“{2}”导入“{0}”和“{1}”的匹配",
-    "Added {0} landmarks on the other side": "已在另一侧添加 {0} 个地标",
+    "Added {0} on the other side": "已在另一侧添加 {0}",
     "Cleared {0}": "已清除 {0}",
     "Setup: {0}": "设置：{0}",
     'Made "{0}" symmetric in {1} s: {2}': "在 {1} 秒内使“{0}”对称：{2}",
@@ -1750,10 +1753,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Click on "{0}" or on "{1}".': "请点击“{0}”或“{1}”。",
     'Landmark {0}: vertex {1} of "{2}" is vertex {3} of "{4}"': "地标 {0}：“{2}”的顶点 {1} 对应“{4}”的顶点 {3}",
     "Removed landmark {0}": "已移除地标 {0}",
-    "Removed {0} landmarks": "已移除 {0} 个地标",
     "Locked {0} as landmark {1}": "已将 {0} 锁定为地标 {1}",
-    'Saved {0} landmarks to "{1}"': "已将 {0} 个地标保存到“{1}”",
-    'Loaded {0} landmarks from "{1}"': "已从“{1}”加载 {0} 个地标",
+    'Saved {0} to "{1}"': "已将 {0}保存到“{1}”",
+    'Loaded {0} from "{1}"': "已从“{1}”加载 {0}",
     (
         '"{0}" has other vertices or faces than when the landmarks were saved. They were put on the vertices '
         "where they had been."
@@ -1821,9 +1823,9 @@ MESSAGES: Final[dict[str, str]] = {
         "{0} 的稠密映射已从网格属性中移除。请重新匹配。"
     ),
     (
-        '"{0}" shares its mesh with other objects, whose weights would change with its own. Give it its own mesh '
-        "first (Object > Relations > Make Single User > Object & Data)."
-    ): "“{0}”与其他物体共用网格，它们的权重也会随之改变。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
+        '"{0}" shares its mesh with other objects, which would change with it. Give it its own mesh first '
+        "(Object > Relations > Make Single User > Object & Data)."
+    ): "“{0}”与其他物体共用网格，它们也会随之改变。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
     '"{0}" is in Edit Mode. Switch to Object Mode first.': "“{0}”处于编辑模式。请先切换到物体模式。",
     (
         '"{0}" has no armature, so there is no rig to fit. Give it an Armature modifier with its armature, or '
@@ -1853,6 +1855,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "“{1}”的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。"
+    ),
+    '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
+        "“{1}”的{0}含有不是有限数的值，因此被略去。请修复这些值。"
     ),
     'Locked shape keys of "{0}" were left alone: {1}.': "“{0}”被锁定的形态键保持不变：{1}。",
     'Locked vertex groups of "{0}" were left alone: {1}.': "“{0}”被锁定的顶点组保持不变：{1}。",
@@ -1889,10 +1894,6 @@ MESSAGES: Final[dict[str, str]] = {
     "the pose": "姿态",
     "1 UV map": "1 个 UV 贴图",
     '"{0}" has no attribute "{1}". Check the Names.': "“{0}”没有属性“{1}”。请检查名称。",
-    (
-        'The mesh "{0}" of "{1}" is shared with other objects, which would get the shape keys as well. Make it a '
-        "single user first (Object > Relations > Make Single User > Object & Data)."
-    ): "“{1}”的网格“{0}”与其他物体共用，它们也会得到形态键。请先使其独立（物体 > 关系 > 使其独立化 > 物体和数据）。",
     'The shape keys of "{0}" are absolute. Turn Relative on in its Shape Keys panel, or remove them.': (
         "“{0}”的形态键是绝对的。请在形态键面板中启用相对，或将其移除。"
     ),
@@ -1988,6 +1989,8 @@ MESSAGES: Final[dict[str, str]] = {
         "导入的匹配没有稠密映射：只写入了它的点，没有颜色和畸变。"
     ),
     '{0} of "{1}" run where the target has no faces, and were left out.': "“{1}”的{0}经过目标没有面的地方，已排除。",
+    "1 landmark": "1 个地标",
+    "{0} landmarks": "{0} 个地标",
     "1 line": "1 条线",
     "{0} lines": "{0} 条线",
     '"{0}" is moved by {1} as well as by "{2}". Only the latter was fitted.': (

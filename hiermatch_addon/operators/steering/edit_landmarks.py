@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...common.errors import ObjectError
+from ...common.phrases import counted
 from ...properties.steering_properties import steering_of
 from ...storage.landmarks import clear_landmarks, find_landmarks, remove_landmark, select_on_side, switch_landmark
 from .landmark_operator import LandmarkOperator
@@ -67,7 +68,7 @@ class HIERMATCH_OT_clear_landmarks(LandmarkOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
-        return f"Removed {clear_landmarks(source, target)} landmarks"
+        return f"Removed {counted(clear_landmarks(source, target), 'landmark')}"
 
 
 class HIERMATCH_OT_switch_landmark(_OneLandmark, bpy.types.Operator):

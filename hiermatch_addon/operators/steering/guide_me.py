@@ -9,6 +9,7 @@ import bpy
 
 from ...common.access import view_layer_of
 from ...common.errors import ObjectError
+from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.running import start_soon
 from ...properties.panel_state import state_of
@@ -95,7 +96,7 @@ class Guide(LandmarkClicks):
         options = {name: getattr(state, name) for name in OPTION_NAMES}
         source, target = (name_of(view_layer_of(context), side) for side in self._found())
         start_soon(context, "hiermatch.match", **options, source=source, target=target)
-        self.report({"INFO"}, translated(f"Matching again with {self._added} landmarks"))
+        self.report({"INFO"}, translated(f"Matching again with {counted(self._added, 'landmark')}"))
 
 
 class HIERMATCH_OT_guide_me(Guide, bpy.types.Operator):

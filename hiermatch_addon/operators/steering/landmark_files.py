@@ -10,6 +10,7 @@ import bpy
 
 from ...common.errors import ObjectError
 from ...common.file_writing import read_text, write_whole
+from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.running import can_start
 from ...storage.landmark_files import landmarks_from_text, landmarks_to_text
@@ -51,7 +52,7 @@ class HIERMATCH_OT_save_landmarks(_LandmarkFile, bpy.types.Operator):
         if not landmarks:
             raise ObjectError(f'"{source.name}" and "{target.name}" have no landmarks in common. Add some first.')
         write_whole(path, landmarks_to_text(source, target, landmarks).encode("utf8"))
-        return f'Saved {len(landmarks)} landmarks to "{path.name}"'
+        return f'Saved {counted(len(landmarks), "landmark")} to "{path.name}"'
 
 
 class HIERMATCH_OT_load_landmarks(_LandmarkFile, bpy.types.Operator):
@@ -81,4 +82,4 @@ class HIERMATCH_OT_load_landmarks(_LandmarkFile, bpy.types.Operator):
             rename_landmark(source, target, added.number, read.name)
         for note in notes:
             self.report({"WARNING"}, translated(note))
-        return f'Loaded {len(landmarks)} landmarks from "{path.name}"'
+        return f'Loaded {counted(len(landmarks), "landmark")} from "{path.name}"'

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import bpy
 
 from ...common.access import view_layer_of
+from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.job_operator import JobOperator
 from ...jobs.landmark_mirroring import MirrorJob
@@ -59,5 +60,5 @@ class HIERMATCH_OT_mirror_landmarks(JobOperator, bpy.types.Operator):
                     "their match"
                 ),
             )
-        self.report({"INFO"}, translated(f"Added {len(added)} landmarks on the other side"))
+        self.report({"INFO"}, translated(f"Added {counted(len(added), 'landmark')} on the other side"))
         return {"FINISHED"}

@@ -15,6 +15,7 @@ import bpy
 import pytest
 from hiermatch.engine.repair.cleaning_notes import CleaningCounts, cleaning_notes
 from hiermatch.hiermatch_addon.common import translated_text, translations
+from hiermatch.hiermatch_addon.common.phrases import counted
 from hiermatch.hiermatch_addon.common.translated_text import translated
 from hiermatch.hiermatch_addon.common.translations import LANGUAGES
 from hiermatch.hiermatch_addon.panels.panel_text import wrap_text
@@ -33,6 +34,7 @@ SENTENCES = {
     "DoubtfulMatchError",
     "NothingToCarryError",
     "ObjectError",
+    "SharedMeshError",
     "report",
     "Progress",
     "translated",
@@ -285,6 +287,11 @@ class TestSentencesWithGaps:
             said == "「Walking Cat」に引き継ぎました：リグ「Rig」（ボーン24本）、24個の頂点グループ、1個のシェイプキー"
         )
         assert translated("24 bones, some of them small") == "24 bones, some of them small"
+
+    def test_one_thing_and_several_things_are_counted(self):
+        assert translated(f"Removed {counted(1, 'landmark')}") == "1個のランドマークを削除しました"
+        said = translated(f"Added {counted(2, 'landmark')} on the other side")
+        assert said == "反対側に2個のランドマークを追加しました"
 
     def test_everything_that_cleaning_tells_is_translated(self):
         for fault in fields(CleaningCounts):

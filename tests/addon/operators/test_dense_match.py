@@ -9,8 +9,9 @@ import pytest
 from hiermatch import engine
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.scene import mesh_io
-from hiermatch.hiermatch_addon.storage.stored_map import stored_map
+from hiermatch.hiermatch_addon.storage.stored_map import find_maps, stored_map
 from hiermatch.hiermatch_addon.storage.views import colors
+from hiermatch.hiermatch_addon.storage.writing import change_kept, kept
 
 from tests.addon.scenes import (
     DENSE,
@@ -314,6 +315,33 @@ class TestSwap:
         assert same_maps(maps_of(state.source, state.target), maps_of(*dense_pair).reverse)
         assert bpy.ops.hiermatch.swap() == {"FINISHED"}
         assert snapshot() == before
+
+    def test_what_is_said_of_one_of_them_is_said_of_the_same_one(self, dense_pair):
+        source = dense_pair[0]
+        answers, note = kept(source, "HM")["answers"], "The {} had 2 small holes: they were closed for matching."
+        missing = "parts of one shape seem to be missing on the other."
+        sentence = f"Only 60% of the target is reached: {missing}"
+        answers["direct"]["quality"] |= {"coverage": 0.6, "source_coverage": 1.0, "sentence": sentence}
+        change_kept(source, "HM", answers=answers, notes=note.format("target"))
+        bpy.ops.hiermatch.swap()
+        for said, holed in (
+            (f"Only 60% of the target is reached: {missing}", "target"),
+            (f"Only 60% of the source has a partner: {missing}", "source"),
+        ):
+            bpy.ops.hiermatch.swap()
+            state = bpy.context.scene.hiermatch
+            assert (state.summary.verdict, state.summary.notes) == (said, note.format(holed))
+            assert find_maps(state.source, state.target).quality.sentence == said
+
+    def test_what_is_picked_the_other_way_round_is_called_so(self, dense_pair):
+        source, target = dense_pair
+        assert bpy.ops.hiermatch.transfer_uvs(source="Target", target="Source") == {"FINISHED"}
+        state = bpy.context.scene.hiermatch
+        assert (state.source, state.target) == (target, source)
+        assert (summary().source, summary().target, summary().swapped) == ("Target", "Source", True)
+        assert summary().seconds > 0
+        state.target, state.source = target, source
+        assert (summary().source, summary().target, summary().swapped) == ("Source", "Target", False)
 
     def test_flipping_and_swapping_do_not_disturb_one_another(self, dense_pair):
         bpy.ops.hiermatch.swap()

@@ -237,6 +237,17 @@ ERRORS = {
 }
 
 
+def test_a_cube_is_matched_by_as_many_points_as_it_has():
+    for name in ("Source", "Target"):
+        bpy.ops.mesh.primitive_cube_add()
+        bpy.context.object.name = name
+    count = len(bpy.context.object.data.vertices)
+    options = {"coarse_points": 10, "coarse_candidates": 20, "dense": True}
+    with pytest.raises(RuntimeError, match=f"Set Points to {count} or fewer"):
+        match(source="Source", target="Target", points=64, **options)
+    assert match(source="Source", target="Target", points=count, **options) == {"FINISHED"}
+
+
 @pytest.mark.parametrize("error", ERRORS)
 def test_errors_are_told_and_change_nothing(pair, error):
     prepare, message = ERRORS[error]

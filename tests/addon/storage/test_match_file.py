@@ -93,6 +93,7 @@ def test_it_fits_meshes_with_other_names_and_poses(dense_pair, exported):
 def test_the_order_of_the_two_is_the_match_s(dense_pair):
     source, target = dense_pair
     assert collect_match(target, source).stored.names == ("Source", "Target")
+    assert [collect_match(*pair).stored.swapped for pair in ((source, target), (target, source))] == [False, True]
 
 
 def test_it_says_when_it_fits_the_other_way_round(dense_pair, exported):

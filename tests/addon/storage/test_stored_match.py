@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine import MatchQuality, SurfacePoints, TriangleMesh
+from hiermatch.engine.dense.quality import overlap_sentence
 from hiermatch.hiermatch_addon.scene.mesh_io import topology
 from hiermatch.hiermatch_addon.storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 
@@ -148,3 +149,20 @@ def test_all_of_the_engines_verdict_is_kept():
         0.9, 0.1, 0.8, 0.01, None, 0.7, "Good.", source_coverage=0.6, likeness=12.5, pieces_alone=0.2
     )
     assert vars(Quality.from_plain(Quality.of(verdict).to_plain())) == vars(verdict)
+
+
+def said(shares):
+    return overlap_sentence(shares, credible=True)
+
+
+def test_what_is_told_of_a_swapped_match_is_told_of_the_same_mesh():
+    holes = "The {} had 3 small holes: they were closed for matching."
+    match = stored(answers=1, notes=(holes.format("source"), "Nothing of any mesh."))
+    quality = replace(match.answer.quality, source_coverage=0.5, coverage=1.0, sentence=said((0.5, 1.0)))
+    match = match.with_answer(replace(match.answer, quality=quality))
+    assert match.told == (quality, match.notes)
+    seen, notes = replace(match, swapped=True).told
+    assert (seen.source_coverage, seen.coverage) == (1.0, 0.5)
+    assert seen.sentence == said((1.0, 0.5)) != quality.sentence
+    assert seen.confidence == quality.confidence
+    assert notes == (holes.format("target"), "Nothing of any mesh.")

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import TriangleMesh
 from engine.dense.missing_parts import with_partner
-from engine.dense.quality import assess_maps, map_confidence, overlap_sentence, with_pieces
+from engine.dense.quality import assess_maps, exchanged_sentence, map_confidence, overlap_sentence, with_pieces
 from tests.bodies import mirrored_body
 from tests.engine.dense.test_missing_parts import at, cut_square, nearest_on, without_cap
 from tests.shapes import creature, icosphere, permuted, plane, rotation
@@ -257,3 +257,16 @@ def test_pieces_that_are_less_to_be_trusted_than_the_main_part_count_as_well(bal
     less = with_pieces(quality, 0.0, 0.6)
     assert less.confidence == pytest.approx(0.6 * quality.confidence)
     assert with_pieces(quality, 0.0, 5.0).confidence <= 1
+
+
+@pytest.mark.parametrize("shares", [(1, 0.5), (0.5, 0.6), (0.96, 0.7), (1, 0.99)])
+def test_of_exchanged_shapes_the_other_one_is_said_to_lack_something(shares):
+    said, other = (overlap_sentence(given, credible=True) for given in (shares, shares[::-1]))
+    assert said != other
+    assert exchanged_sentence(said, shares[::-1]) == other
+    assert exchanged_sentence(other, shares) == said
+
+
+def test_what_is_said_of_both_shapes_stays(ball):
+    for said in (by_index(ball, ball).sentence, overlap_sentence((0.5, 0.6), credible=False)):
+        assert exchanged_sentence(said, (0.6, 0.5)) == said

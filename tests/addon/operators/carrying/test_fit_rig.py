@@ -9,6 +9,7 @@ from hiermatch.engine.runtime.progress import run
 from hiermatch.hiermatch_addon.jobs.transfer import Passage
 from hiermatch.hiermatch_addon.operators.checking.rig_operator import meant_armature
 from hiermatch.hiermatch_addon.scene.armatures import find_armature, moving_armatures, read_rig, read_skeleton
+from hiermatch.hiermatch_addon.scene.binding import bind
 from hiermatch.hiermatch_addon.scene.character import side_of
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.transfers.options.rig import RigSettings
@@ -139,6 +140,24 @@ def test_no_vertex_moves_when_the_target_is_bound():
     pose(made, 1.0, {"head": (0.5, 0, 0)})
     assert np.abs(shown(target) - before).max() > 0.1
     assert armature.pose.bones["head"].matrix_basis == Matrix()
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("SUBSURF", "ARMATURE SUBSURF"),
+        ("MIRROR SUBSURF", "MIRROR ARMATURE SUBSURF"),
+        ("WELD MIRROR ARMATURE SOLIDIFY MIRROR", "WELD MIRROR ARMATURE ARMATURE SOLIDIFY MIRROR"),
+    ],
+)
+def test_the_modifier_stands_where_armatures_do(before, after):
+    source, armature = add_rigged()
+    target, _ = add_target(source)
+    for kind in before.split():
+        target.modifiers.new(kind.title(), kind)
+    bind(target, armature, source)
+    assert [modifier.type for modifier in target.modifiers] == after.split()
+    assert next(one for one in target.modifiers if one.type == "ARMATURE").object == armature
 
 
 def test_the_source_in_a_pose_with_animation_is_no_hindrance():

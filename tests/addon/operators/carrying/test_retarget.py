@@ -151,6 +151,21 @@ def test_kinds_that_the_source_lacks_are_noted(pair):
     assert "vertex groups" in bpy.context.scene.hiermatch_retarget.report.done
 
 
+def test_a_target_that_shares_its_mesh_gets_all_or_nothing(pair):
+    source, target = pair
+    sharer = bpy.data.objects.new("Sharer", target.data)
+    before = snapshot()
+    with pytest.raises(RuntimeError, match=r"shares its mesh.*Make Single User"):
+        bpy.ops.hiermatch.retarget(source="Source", target="Target")
+    assert snapshot() == before
+    bpy.data.objects.remove(sharer)
+    sharer = bpy.data.objects.new("Sharer", target.data)
+    source.vertex_groups.clear()
+    source.shape_key_clear()
+    assert bpy.ops.hiermatch.retarget(source="Source", target="Target", use_rig=False) == {"FINISHED"}
+    assert target.data.uv_layers.keys() == ["Layout"]
+
+
 def test_nothing_to_carry_at_all_is_an_error():
     source, target = add_rigged_pair()
     source.modifiers.clear()

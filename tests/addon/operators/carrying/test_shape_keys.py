@@ -190,6 +190,33 @@ def test_drivers_by_bones_point_to_the_armature_of_the_target():
     assert (place.id, place.bone_target) == (theirs, "neck")
 
 
+def test_drivers_by_what_the_target_lacks_still_point_to_the_source(pair):
+    source, target = pair
+    source["Much"] = 0.5
+    driver = source.data.shape_keys.key_blocks["Swell"].driver_add("value").driver
+    driver.expression = "much"
+    variable = driver.variables.new()
+    variable.name = "much"
+    variable.targets[0].id, variable.targets[0].data_path = source, '["Much"]'
+    for owner, value in ((source, 0.5), (target, 0.8)):
+        assert carry() == {"FINISHED"}
+        place = target.data.shape_keys.animation_data.drivers[0].driver.variables[0].targets[0]
+        assert place.id == owner
+        notes = bpy.context.scene.hiermatch_retarget.report.notes
+        assert (f'still point to "{source.name}"' in notes) == (owner == source)
+        bpy.context.view_layer.update()
+        assert target.data.shape_keys.key_blocks["Swell"].value == pytest.approx(value)
+        target["Much"] = 0.8
+
+
+def test_a_key_without_finite_numbers_is_left_out_alone(pair):
+    source, target = pair
+    source.data.shape_keys.key_blocks["Swell"].data[3].co.x = float("nan")
+    assert carry() == {"FINISHED"}
+    assert names(target) == ["Basis", "Lift"]
+    assert '"Swell" of "Source" was left out' in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 @pytest.mark.parametrize("scale", [(1, 2, 0.5), (-1, 1, 1)])
 def test_offsets_are_those_of_the_world(pair, scale):
     source, target = pair
@@ -306,7 +333,7 @@ def test_bad_input_changes_nothing(pair):
     with pytest.raises(RuntimeError, match="is its basis"):
         carry(key_choice="ACTIVE")
     sharer = bpy.data.objects.new("Sharer", target.data)
-    with pytest.raises(RuntimeError, match="shared with other objects"):
+    with pytest.raises(RuntimeError, match="shares its mesh"):
         carry()
     bpy.data.objects.remove(sharer)
     assert names(target) == []

@@ -121,6 +121,15 @@ def test_only_some(pair):
     assert "Along" not in names
 
 
+def test_empty_slots_take_no_material_away(pair):
+    source, target = pair
+    source.data.materials.append(None)
+    target.data.materials.append(bpy.data.materials.new("Own"))
+    assert carry() == {"FINISHED"}
+    assert "material" not in bpy.context.scene.hiermatch_retarget.report.done
+    assert [slot.name for slot in target.material_slots] == ["Own"]
+
+
 def test_materials_are_added_to_the_slots_once(pair):
     source, target = pair
     skin, cloth, metal = (bpy.data.materials.new(name) for name in ("Skin", "Cloth", "Metal"))

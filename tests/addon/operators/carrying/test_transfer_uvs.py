@@ -137,6 +137,16 @@ def test_a_layer_of_the_same_name_is_replaced(pair):
     np.testing.assert_array_equal(read_attribute(target.data, "Mine"), mine)
 
 
+def test_a_layer_without_finite_numbers_is_left_out_alone(pair):
+    source, target = pair
+    broken = names(source)[0]
+    source.data.uv_layers.new(name="Whole")
+    source.data.uv_layers[broken].data[3].uv.x = float("nan")
+    assert carry() == {"FINISHED"}
+    assert names(target) == [name for name in names(source) if name != broken]
+    assert f'"{broken}" of "Source" was left out' in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 def test_a_name_that_is_something_else_is_left_out(pair):
     target = pair[1]
     target.data.attributes.new("UVMap", "INT", "POINT")

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from engine import MatchError, SurfaceMap, TriangleMesh, closings_kept_steps, run
+from engine import MatchError, SurfaceMap, SurfacePoints, TriangleMesh, closings_kept_steps, run
 from engine.repair.surface_nets import surface_net
 
 WIDTH, DEPTH, STEP = 0.5, 0.2, 0.05
@@ -106,6 +106,14 @@ def test_keys_that_close_nothing_stay_as_they_are(head, blink):
     flat = -0.9 * head[0].vertices * [0, 0, 1]  # brings skin together, with the head between
     keys = np.stack([-blink, 0.3 * blink, flat, 0 * blink])
     np.testing.assert_array_equal(run(closings_kept_steps(head[0], keys, maps, target, keys)), keys)
+
+
+def test_on_a_head_without_the_opening_keys_stay_as_they_are(head, blink):
+    mesh = head[0]
+    corners = np.tile(mesh.triangles[0], (mesh.vertex_count, 1))
+    lost = SurfacePoints.from_corners(mesh, corners, np.tile([1.0, 0.0, 0.0], (mesh.vertex_count, 1)))
+    maps = SurfaceMap.from_points(mesh, lost), SurfaceMap.identity(mesh)
+    np.testing.assert_array_equal(run(closings_kept_steps(mesh, [blink], maps, mesh, [blink]))[0], blink)
 
 
 def test_what_comes_together_out_of_sight_stays_as_it_is():
