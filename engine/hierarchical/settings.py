@@ -6,8 +6,11 @@ The add-on's properties mirror these fields by name, label, description and rang
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, cast
+
+import numpy as np
 
 from ..runtime.errors import SettingsError
 
@@ -35,19 +38,31 @@ class CheckedSettings:
     Raises
     ------
     SettingsError
-        If a number is out of its range, or a word none of its choices.
+        If a number is out of its range, or a value none of its choices, or of another type.
     """
 
     def __post_init__(self) -> None:
         for own in fields(self):
             value, about = getattr(self, own.name), own.metadata
             if "choices" in about:
-                if value not in about["choices"]:
+                if value not in list(about["choices"]):
                     raise SettingsError(f"{about['label']} is {value!r}, but must be one of {list(about['choices'])}.")
-            elif "minimum" in about and not about["minimum"] <= value <= about["maximum"]:
-                raise SettingsError(
-                    f"{about['label']} is {value}, but must lie between {about['minimum']} and {about['maximum']}."
-                )
+            elif "minimum" in about:
+                _check_number(value, about, whole=isinstance(own.default, int))
+            elif "label" in about and not isinstance(value, (bool, np.bool_)):
+                raise SettingsError(f"{about['label']} is {value!r}, but must be True or False.")
+
+
+def _check_number(value: object, about: Mapping[str, Any], *, whole: bool) -> None:
+    """Raise a `SettingsError` if a value is no number within its range, or should be `whole` and is not."""
+    kinds = (int, np.integer) if whole else (int, float, np.integer, np.floating)
+    if isinstance(value, bool) or not isinstance(value, kinds):
+        wanted = "a whole number" if whole else "a number"
+        raise SettingsError(f"{about['label']} is {value!r}, but must be {wanted}.")
+    if not about["minimum"] <= cast("Any", value) <= about["maximum"]:
+        raise SettingsError(
+            f"{about['label']} is {value}, but must lie between {about['minimum']} and {about['maximum']}."
+        )
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools
 from ..runtime.background import can_go_beside
-from ..runtime.errors import MatchError
+from ..runtime.errors import MatchError, MeshError, SettingsError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, at_once, within
 from ..runtime.worker import call_helpers
@@ -111,11 +111,14 @@ def match_steps(
     MatchError
         If a surface has too few vertices for the points that were asked for, landmarks cannot be used, or vertices are
         excluded from a `Shape`, which was made with or without them.
+    MeshError, SettingsError
+        If a surface is given by arrays, or the settings by a dictionary.
 
     References
     ----------
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
     """
+    _check_types((source, target), settings)
     settings = settings or MatchSettings()
     task = MatchTask(settings, landmarks)
     call_helpers()
@@ -134,6 +137,18 @@ def match_steps(
 
 
 match = at_once(match_steps)
+
+
+def _check_types(surfaces: tuple[object, object], settings: object) -> None:
+    """Raise an error if what should be surfaces are arrays, or the settings a dictionary."""
+    for surface, name in zip(surfaces, ("source", "target"), strict=True):
+        if isinstance(surface, (tuple, list, np.ndarray)):
+            raise MeshError(
+                f"The {name} is of the type {type(surface).__name__}. Make a mesh of its vertices and triangles first: "
+                "TriangleMesh(vertices, triangles)."
+            )
+    if isinstance(settings, dict):
+        raise SettingsError("The settings are a dictionary. Make settings of it first: MatchSettings(**settings).")
 
 
 def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float) -> Steps[MatchResult]:

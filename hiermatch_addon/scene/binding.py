@@ -77,13 +77,8 @@ def bind(
     others: dict[str, list[str]] = {}
     parents: dict[str, list[str]] = {}
     for part in parts_of(target):
-        modifier: Any = next((one for one in part.modifiers if getattr(one, "object", None) == armature), None)
-        if modifier is None:
-            place = _place_among([one.type for one in part.modifiers])
-            modifier = part.modifiers.new("Armature", "ARMATURE")
-            _take_settings(modifier, armature_modifier(model), part)
-            modifier.object = armature
-            part.modifiers.move(len(part.modifiers) - 1, place)
+        if not any(getattr(one, "object", None) == armature for one in part.modifiers):
+            _add_modifier(part, armature, armature_modifier(model))
         for other in moving_armatures(part)[:2]:
             if other != armature and (kept is None or other in kept):
                 others.setdefault(other.name, []).append(part.name)
@@ -196,6 +191,18 @@ def _is_replaced(
     return (
         other is not None and other.type == "ARMATURE" and other != armature and kept is not None and other not in kept
     )
+
+
+def _add_modifier(part: bpy.types.Object, armature: bpy.types.Object, model: Any) -> None:  # noqa: ANN401 - see below
+    """Let an armature move a part as a modifier says; one whose own armature was deleted is used again."""
+    modifiers: Any = part.modifiers
+    left = next((one for one in modifiers if one.type == "ARMATURE" and one.object is None), None)
+    if left is None:
+        place = _place_among([one.type for one in modifiers])
+        left = modifiers.new("Armature", "ARMATURE")
+        modifiers.move(len(modifiers) - 1, place)
+    _take_settings(left, model, part)
+    left.object = armature
 
 
 def _place_among(kinds: list[str]) -> int:

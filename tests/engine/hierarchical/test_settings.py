@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from dataclasses import fields
 
+import numpy as np
 import pytest
 
 from engine import MatchSettings, SettingsError
@@ -47,3 +48,24 @@ def test_the_four_setups_of_the_paper_are_valid_and_different():
 def test_fewer_candidates_than_coarse_points_are_refused():
     with pytest.raises(SettingsError, match="at least as many Coarse Candidates"):
         MatchSettings(coarse_points=12, coarse_candidates=11)
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"points": 64.5}, "Points is 64.5, but must be a whole number"),
+        ({"points": "64"}, "Points is '64', but must be a whole number"),
+        ({"samples": True}, "Samples is True, but must be a whole number"),
+        ({"linear_weight": "1"}, "Descriptor Weight is '1', but must be a number"),
+        ({"dense": "yes"}, "Dense Map is 'yes', but must be True or False"),
+        ({"metric": ["geodesic"]}, "Metric is .*, but must be one of"),
+    ],
+)
+def test_values_of_another_type_are_refused(values, said):
+    with pytest.raises(SettingsError, match=said):
+        MatchSettings(**values)
+
+
+def test_numbers_of_numpy_are_numbers():
+    made = MatchSettings(points=np.int64(20), linear_weight=np.float32(0.5), quadratic_weight=2, dense=np.isnan(1.0))
+    assert (made.points, made.linear_weight, made.dense) == (20, 0.5, False)

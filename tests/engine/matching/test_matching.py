@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import MatchError, MatchSettings, Shape, TriangleMesh, match, match_steps
+from engine import MatchError, MatchSettings, MeshError, SettingsError, Shape, TriangleMesh, match, match_steps
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
 from tests.shapes import creature, icosphere, permuted, rotation
@@ -219,6 +219,14 @@ def test_more_points_than_vertices_are_refused_in_words(bodies):
     ball = TriangleMesh(*icosphere(2))
     with pytest.raises(MatchError, match="target has only 42 vertices"):
         match(bodies[0], ball, replace(QUICK, points=43))
+
+
+def test_arrays_in_the_place_of_meshes_and_a_dictionary_of_settings_are_refused_in_words(bodies):
+    arrays = bodies[1].vertices, bodies[1].triangles
+    with pytest.raises(MeshError, match=r"target is of the type tuple.*TriangleMesh\(vertices, triangles\)"):
+        match(bodies[0], arrays)
+    with pytest.raises(SettingsError, match=r"MatchSettings\(\*\*settings\)"):
+        match(*bodies[:2], {"points": 40})
 
 
 def test_few_points_on_tiny_meshes_work():

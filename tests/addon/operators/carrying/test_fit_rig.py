@@ -123,6 +123,18 @@ def test_rolls_turn_with_the_bones():
             assert (got.inverted() @ matrix).to_quaternion().angle < 0.1, name
 
 
+def test_a_modifier_whose_armature_was_deleted_is_used_again():
+    source, _ = add_rigged()
+    target, joints = add_target(source)
+    made, _ = fit(source, target)
+    target.modifiers.new("Smooth", "SMOOTH")
+    bpy.data.objects.remove(made)
+    made, _ = fit(source, target)
+    assert [modifier.type for modifier in target.modifiers] == ["ARMATURE", "SMOOTH"]
+    assert target.modifiers[0].object == made
+    assert missed(made, joints) < 0.02
+
+
 def test_no_vertex_moves_when_the_target_is_bound():
     source, armature = add_rigged()
     source.modifiers["Armature"].use_deform_preserve_volume = True
@@ -154,7 +166,9 @@ def test_the_modifier_stands_where_armatures_do(before, after):
     source, armature = add_rigged()
     target, _ = add_target(source)
     for kind in before.split():
-        target.modifiers.new(kind.title(), kind)
+        modifier = target.modifiers.new(kind.title(), kind)
+        if kind == "ARMATURE":
+            modifier.object = armature.copy()
     bind(target, armature, source)
     assert [modifier.type for modifier in target.modifiers] == after.split()
     assert next(one for one in target.modifiers if one.type == "ARMATURE").object == armature
