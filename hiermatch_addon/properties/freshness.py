@@ -14,7 +14,7 @@ from bpy.app.handlers import persistent
 
 from ..common.access import mesh_of
 from ..common.redraw import redraw_sidebars
-from ..storage.halves import find_carriers
+from ..storage.halves import MIRRORED, find_carriers, is_mirrored
 from ..storage.landmark_layer import has_landmarks
 from ..storage.writing import is_marked
 from .panel_state import summary_of
@@ -28,9 +28,6 @@ __all__ = ["refresh", "start_watching", "stop_watching"]
 
 _DELAY = 0.3
 """Seconds from an edit to the look at it, so that many edits in a row cost one look."""
-
-_negative: dict[int, bool] = {}
-"""Of each object with a match that has moved, by its number in this session: whether it was mirrored the last time."""
 
 _PLAYING_DELAY = 1.0
 """Seconds until the next try while an animation plays, which must not stutter."""
@@ -110,13 +107,10 @@ def _is_ours(mesh: bpy.types.Mesh) -> bool:
 
 
 def _turned_over(obj: bpy.types.Object) -> bool:
-    """Return whether an object with a match may have been mirrored since it moved before."""
-    if obj.type != "MESH" or not _is_ours(mesh_of(obj)):
+    """Return whether an object with a match was mirrored since it was matched, or may have been turned back."""
+    if obj.type != "MESH" or not is_marked(mesh_of(obj)):
         return False
-    negative = obj.matrix_world.is_negative
-    known = _negative.get(obj.session_uid)
-    _negative[obj.session_uid] = negative
-    return known is not negative
+    return is_mirrored(obj) or any(MIRRORED in summary_of(scene).stale for scene in bpy.data.scenes)
 
 
 @persistent  # type: ignore[untyped-decorator]

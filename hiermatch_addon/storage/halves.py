@@ -18,7 +18,20 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side, SideReference
 
-__all__ = ["Half", "find_again", "find_carriers", "find_common", "find_half", "find_keyed", "moved_by_us"]
+__all__ = [
+    "MIRRORED",
+    "Half",
+    "find_again",
+    "find_carriers",
+    "find_common",
+    "find_half",
+    "find_keyed",
+    "is_mirrored",
+    "moved_by_us",
+]
+
+MIRRORED = "it was mirrored"
+"""Why a match is out of date one of whose meshes has been turned over by a negative scale since."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +86,20 @@ class Half:
         if not self.has_same_faces():
             change = "it has other vertices or faces"
         elif (then := self.kept.get("positions")) not in (None, "", now := positions_of(self.obj)):
-            change = "it was mirrored" if then.split()[0] == now.split()[0] else "its vertices were moved"
+            change = MIRRORED if then.split()[0] == now.split()[0] else "its vertices were moved"
         else:
             return ""
         return f'The match is out of date: "{self.obj.name}" was edited since ({change}). Match again.'
+
+
+def is_mirrored(obj: bpy.types.Object) -> bool:
+    """Tell whether an object is mirrored and was not when it was matched, or the other way round."""
+    for prefix in _prefixes(obj):
+        kept = _kept(obj, prefix)
+        then = str(kept.get("positions") or "").split()
+        if then and (str(kept.get("part", 0)) in then[1:]) != obj.matrix_world.is_negative:
+            return True
+    return False
 
 
 def find_half(obj: Side, prefix: str = "") -> Half:

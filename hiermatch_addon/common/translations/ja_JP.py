@@ -1726,6 +1726,15 @@ MESSAGES: Final[dict[str, str]] = {
         "マップを改良するためのランドマークがありません。少なくとも一組の頂点を指定してください。"
     ),
     "Fitting the surfaces": "表面を合わせています",
+    "The match exchanges left and right, and would turn clothes inside out. Use another answer of the match, "
+    "or match the bodies again.": (
+        "マッチングは左右を入れ替えており、服が裏返しになります。マッチングの別の解を使うか、もう一度マッチングしてください。"
+    ),
+    "The match exchanges left and right, so bones would turn the wrong way. Use another answer of the match, "
+    "or match the bodies again.": (
+        "マッチングは左右を入れ替えており、ボーンが逆向きに回転します。マッチングの別の解を使うか、もう一度マッチングして"
+        "ください。"
+    ),
     "No bone moves the main part of the source. Give it weights, or choose another source.": (
         "ソースの主要な部分を動かすボーンがありません。ウェイトを与えるか、別のソースを選んでください。"
     ),
@@ -2005,6 +2014,7 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "it has other vertices or faces": "頂点か面が異なります",
     "its vertices were moved": "頂点が動かされました",
+    "it was mirrored": "ミラーされました",
     'The match is out of date: "{0}" was deleted, cleared or matched anew. Match again.': (
         "マッチングが古くなっています。「{0}」が削除、クリア、または再マッチングされました。もう一度マッチン"
         "グしてください。"

@@ -1430,6 +1430,12 @@ MESSAGES: Final[dict[str, str]] = {
         "没有可用来改善映射的地标。请至少指定一对顶点。"
     ),
     "Fitting the surfaces": "正在拟合表面",
+    "The match exchanges left and right, and would turn clothes inside out. Use another answer of the match, "
+    "or match the bodies again.": ("匹配交换了左右，会使衣物内外翻转。请使用匹配的另一个解，或重新匹配两个身体。"),
+    "The match exchanges left and right, so bones would turn the wrong way. Use another answer of the match, "
+    "or match the bodies again.": (
+        "匹配交换了左右，骨骼会朝错误的方向旋转。请使用匹配的另一个解，或重新匹配两个身体。"
+    ),
     "No bone moves the main part of the source. Give it weights, or choose another source.": (
         "没有骨骼带动源的主要部分。请为其添加权重，或选择其他源。"
     ),
@@ -1662,6 +1668,7 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "it has other vertices or faces": "顶点或面不同",
     "its vertices were moved": "顶点被移动",
+    "it was mirrored": "它被镜像",
     'The match is out of date: "{0}" was deleted, cleared or matched anew. Match again.': (
         "匹配已过期：“{0}”已被删除、清除或重新匹配。请重新匹配。"
     ),

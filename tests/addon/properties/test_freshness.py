@@ -243,6 +243,22 @@ class TestWatching:
         freshness._look()  # noqa: SLF001
         assert '"Target" was deleted' in summary().stale
 
+    def test_mirroring_an_object_and_back_is_looked_at_and_then_moving_it_is_not(self, quiet):
+        mirror(quiet[1])
+        assert waiting()
+        freshness._look()  # noqa: SLF001
+        assert "it was mirrored" in summary().stale
+        settle()
+        quiet[1].scale.x = 1
+        bpy.context.view_layer.update()
+        assert waiting()
+        freshness._look()  # noqa: SLF001
+        assert not summary().stale
+        settle()
+        quiet[1].location.x = 7
+        bpy.context.view_layer.update()
+        assert not waiting()
+
     def test_posing_moving_and_selecting_cost_nothing(self, quiet):
         bpy.ops.object.armature_add()
         rig = bpy.context.object
