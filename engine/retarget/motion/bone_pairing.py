@@ -139,7 +139,7 @@ def pair_bones(
     RigError
         If the arrays do not fit together, or the rig was fitted across a map to the mirror image.
     """
-    if rig.mirrored:
+    if rig.handedness < 0:
         raise RigError(
             "The match exchanges left and right, so bones would turn the wrong way. Use another answer of the match, "
             "or match the bodies again."

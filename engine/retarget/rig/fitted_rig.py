@@ -54,9 +54,9 @@ class FittedRig:
         return f"<FittedRig: {len(self.scales)} bones, {len(self.posed)} vertices>"
 
     @property
-    def mirrored(self) -> bool:
-        """Whether the source comes to lie as if seen in a mirror, its left side on the right."""
-        return bool((np.linalg.det(self.rotations) < 0).any())
+    def handedness(self) -> float:
+        """-1 if the source comes to lie as if seen in a mirror, its left side on the right, else 1."""
+        return -1.0 if (np.linalg.det(self.rotations) < 0).any() else 1.0
 
     @property
     def heads(self) -> Floats:

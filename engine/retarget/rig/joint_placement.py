@@ -96,8 +96,7 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
     for place, bone in np.argwhere(carriers.of_places > 0):
         placed[place] += carriers.of_places[place, bone] * _carried(rig, bone, points[place])
     upright = standing(rig, source, frames)
-    handedness = -1.0 if rig.mirrored else 1.0
-    turns = nearest_orthogonal(np.einsum("bc,cij->bij", carriers.of_turns, rig.rotations), handedness)
+    turns = nearest_orthogonal(np.einsum("bc,cij->bij", carriers.of_turns, rig.rotations), rig.handedness)
     for bone in np.flatnonzero(carriers.anchors >= 0):
         turns[bone] = upright
         placed[carriers.places[bone]] = _rooted(rig, source, upright, bone, carriers.anchors[bone])
@@ -133,11 +132,10 @@ def standing(rig: FittedRig, source: TriangleMesh, frames: Floats | None = None)
     (3, 3) array of float
         The nearest of the frames, or the median rotation of all bones if none is near.
     """
-    masses = moved_areas(rig, source)
-    handedness = -1.0 if rig.mirrored else 1.0
+    masses, handedness = moved_areas(rig, source), rig.handedness
     shares = _median_shares(rig.rotations, masses, handedness)
     middle = nearest_orthogonal(np.einsum("b,bij->ij", shares, rig.rotations)[None], handedness)[0]
-    if rig.mirrored and frames is not None:
+    if handedness < 0 and frames is not None:
         frames = np.concatenate([frames @ reflection for reflection in _REFLECTIONS])
     return nearest_frame(middle, frames, NEAR_FRAME)
 

@@ -155,9 +155,7 @@ def bone_frames(rig: FittedRig, otherwise: LocalFrames) -> LocalFrames:
     moved = total > 0
     blended = (weights @ rig.rotations.reshape(-1, 9)).reshape(-1, 3, 3)
     scales = np.divide(weights @ rig.scales, total, out=otherwise.scales.copy(), where=moved)
-    rotations = np.where(
-        moved[:, None, None], nearest_orthogonal(blended, -1.0 if rig.mirrored else 1.0), otherwise.rotations
-    )
+    rotations = np.where(moved[:, None, None], nearest_orthogonal(blended, rig.handedness), otherwise.rotations)
     return LocalFrames(rotations, scales, otherwise.overall)
 
 

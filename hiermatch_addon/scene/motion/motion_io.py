@@ -42,6 +42,7 @@ __all__ = [
     "rotation_channel",
     "set_pose",
     "turned_above",
+    "turned_at",
     "with_object",
     "write_action",
 ]
@@ -138,7 +139,7 @@ def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKey
     times: dict[str, dict[float, tuple[str, str]]] = {}
     cycles: dict[str, dict[str, Any]] = {}
     extrapolations: dict[str, str] = {}
-    whole = ((OBJECT, channel, curve) for channel, curve in object_curves(action, armature) if channel != "scale")
+    whole = ((OBJECT, channel, curve) for channel, curve in _moving_curves(action, armature))
     for bone, _, curve in chain(bone_curves(action, armature), whole):
         keys = times.setdefault(bone, {})
         for point in curve.keyframe_points:
@@ -190,11 +191,23 @@ def with_object(
 
     What an action does to its size is left out.
     """
-    curves = [found for found in object_curves(action, armature) if found[0] != "scale"]
+    curves = _moving_curves(action, armature)
     if not curves:
         return motion
     basis = _basis(armature, curves, np.append(first, frames))
     return motion.moved(np.linalg.inv(basis[0]) @ basis[1:])
+
+
+def turned_at(action: bpy.types.Action, armature: bpy.types.Object, frame: float) -> NDArray[np.float64]:
+    """Return how an action has an object turned in the world at a frame, (3, 3), without its scale."""
+    basis = Matrix(_basis(armature, _moving_curves(action, armature), np.array([frame]))[0].tolist())
+    now = armature.matrix_world @ armature.matrix_basis.inverted_safe() @ basis
+    return np.array(now.to_quaternion().to_matrix(), np.float64)
+
+
+def _moving_curves(action: bpy.types.Action, armature: bpy.types.Object) -> list[tuple[str, Any]]:
+    """Curves that move or turn the object as a whole, with their channels."""
+    return [found for found in object_curves(action, armature) if found[0] != "scale"]
 
 
 def grows(action: bpy.types.Action, armature: bpy.types.Object) -> bool:

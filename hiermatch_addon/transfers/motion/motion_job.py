@@ -29,6 +29,7 @@ from ...scene.motion.motion_io import (
     read_keys,
     set_pose,
     turned_above,
+    turned_at,
     with_object,
     write_action,
 )
@@ -223,9 +224,9 @@ class MotionJob(SteppedJob):
 
     def _pose_steps(self, pairings: list[BonePairing]) -> Steps[None]:
         """Carry the pose of the moment over."""
-        motion = current_motion(found_again(self._source))
+        motion, turn = current_motion(found_again(self._source)), object_rotation(found_again(self._source))
         for link, pairing in zip(self._targets, pairings, strict=True):
-            steps = self._transfer_steps(motion, pairing, link, MotionSettings(hands=self._plan.settings.hands))
+            steps = _transfer_steps(motion, turn, pairing, link, MotionSettings(hands=self._plan.settings.hands))
             found = self._poses[link.name] = yield from steps
             steered = yield from steered_steps(link, found)
             if steered is not None:
@@ -242,13 +243,14 @@ class MotionJob(SteppedJob):
         frames = sparse_frames(keys) if sparse else np.arange(first, last + 1)
         sampled = (frames[:, None] + np.array([-SIDE_STEP, 0, SIDE_STEP])).ravel() if sparse else frames
         motion = yield from within(self._reading_steps(name, sampled, first), 0.0, 0.5)
+        turn = turned_at(self._action(name), found_again(self._source), first)
         settings = self._plan.settings
         if sparse:
             settings = MotionSettings(stride=settings.stride, in_place=settings.in_place, rate=settings.rate)
         count = len(self._targets)
         for number, (link, pairing) in enumerate(zip(self._targets, pairings, strict=True)):
             start, end = (0.5 + 0.5 * (number + step) / count for step in range(2))
-            found = yield from within(self._transfer_steps(motion, pairing, link, settings), start, end)
+            found = yield from within(_transfer_steps(motion, turn, pairing, link, settings), start, end)
             rigs = found_again(self._source), found_again(link)
             channels = bone_channels(rigs[1], found)
             if link.name not in self._steered:
@@ -289,13 +291,14 @@ class MotionJob(SteppedJob):
         turns, heads = (np.concatenate([getattr(part, what) for part in parts]) for what in ("turns", "heads"))
         return Motion(parts[0].skeleton, turns, heads)
 
-    def _transfer_steps(
-        self, motion: Motion, pairing: BonePairing, link: SideReference, settings: MotionSettings
-    ) -> Steps[TransferredMotion]:
-        """Compute the motion of one target."""
-        rigs = found_again(self._source), found_again(link)
-        ups = np.array([object_rotation(rig)[2] for rig in rigs])  # the world's z axis in their spaces
-        return (yield from transfer_motion_steps(motion, pairing, own_skeleton(rigs[1]), settings, ups=ups))
+
+def _transfer_steps(
+    motion: Motion, turn: NDArray[np.float64], pairing: BonePairing, link: SideReference, settings: MotionSettings
+) -> Steps[TransferredMotion]:
+    """Compute the motion of one target from that of a source which is turned so in the world, (3, 3)."""
+    rig = found_again(link)
+    ups = np.array([turn[2], object_rotation(rig)[2]])  # the world's z axis in their spaces
+    return (yield from transfer_motion_steps(motion, pairing, own_skeleton(rig), settings, ups=ups))
 
 
 def _said(made: dict[str, bpy.types.Action]) -> str:

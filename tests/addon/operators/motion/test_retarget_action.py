@@ -143,6 +143,24 @@ def test_what_moves_the_object_moves_the_body(keying, constrained):
     assert len(curves[f'pose.bones["{still}"].rotation_quaternion', 0].keyframe_points) == 1
 
 
+def test_it_does_not_matter_how_the_object_stands_at_the_moment():
+    """What falls over is on the ground in the first frame, whatever frame is shown."""
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed", hanging=True)
+    add_action(source)
+    for frame, turn in ((1, 0.0), (21, 1.5)):
+        source.rotation_euler = (turn, 0, 0)
+        source.keyframe_insert("rotation_euler", frame=frame)
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    values = []
+    for frame in (1, 21):
+        bpy.context.scene.frame_set(frame)
+        carry(source="A", target="B", keying="ALL")
+        curves = curves_of(target.animation_data.action)
+        values.append([[point.co[1] for point in curve.keyframe_points] for _, curve in sorted(curves.items())])
+    np.testing.assert_allclose(values[0], values[1], atol=1e-5)
+
+
 def test_an_object_that_stays_and_one_that_grows():
     """Curves that stay at a value give no keys, and what scales the object is left out and said."""
     source, _ = add_person("A")

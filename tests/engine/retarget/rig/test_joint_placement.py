@@ -229,7 +229,7 @@ def test_seen_in_a_mirror_joints_and_normals_are_mirrored(body):
     direct = fitted(body, linear, translations)
     mirrored = fitted(body, flip @ linear, translations @ flip.T)
     mirrored = replace(mirrored, registered=direct.registered @ flip.T)
-    assert mirrored.mirrored
+    assert mirrored.handedness == -1
     placed, seen = (place_joints(rig, body, normals()) for rig in (direct, mirrored))
     for ends, others in ((placed.heads, seen.heads), (placed.tails, seen.tails), (placed.normals, seen.normals)):
         np.testing.assert_allclose(others, ends @ flip.T, atol=1e-9)
