@@ -12,7 +12,7 @@ from ..common.access import view_layer_of
 from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError, SharedMeshError
 from ..properties.preferences import shape_memory
 from ..scene.armatures import read_rig
-from ..scene.character import SideReference, positions_of, read_surface, topology_of, whole
+from ..scene.character import SideReference, parts_of, positions_of, read_surface, topology_of, whole
 from ..scene.pair import check_pair, check_side, is_own
 from ..storage.halves import find_common
 from ..storage.linked_matches import keep_linked, kept_linked
@@ -122,6 +122,7 @@ class _Leg:
             self.match = MatchJob(context, source, target, _with_maps(options.match), writes=written)
             self.prefix = options.match.prefix
         self.mesh = read_surface(target, context.evaluated_depsgraph_get(), use_modifiers=False)
+        self.is_half = _is_half(target)
         self.state = _state(target)
         self.transfers: list[Transfer] = []
         self.left_out: list[TransferReport] = []
@@ -166,6 +167,11 @@ def carry_fresh_match(source: Side, target: Side, prefix: str) -> bool:
 def _with_maps(options: JobOptions) -> JobOptions:
     """Return the options of a match that things can be carried across: dense, and of the meshes' own vertices."""
     return replace(options, use_modifiers=False, settings=replace(options.settings, dense=True))
+
+
+def _is_half(side: Side) -> bool:
+    """Tell whether a Mirror modifier completes a part of a side: meshes are matched without it."""
+    return any(modifier.type == "MIRROR" and modifier.show_viewport for p in parts_of(side) for modifier in p.modifiers)
 
 
 def _state(side: Side) -> tuple[str, str]:
@@ -224,6 +230,7 @@ class TransferJob(SteppedJob):
             check_pair(view_layer, source, target, writes=(False, writes))
         self._source, self._source_name, self._source_state = SideReference.of(source), source.name, _state(source)
         self._mesh: TriangleMesh = read_surface(source, depsgraph, use_modifiers=False)
+        self._is_half = _is_half(source)
         every = whole(source)
         self._whole = self._mesh if every == source else read_surface(every, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []
@@ -351,7 +358,8 @@ class TransferJob(SteppedJob):
         """
         if leg.quality is None:
             return
-        advice = advice_on(leg.quality, (self._source_name, leg.name), (leg.source, leg.mesh))
+        names, meshes, halves = (self._source_name, leg.name), (leg.source, leg.mesh), (self._is_half, leg.is_half)
+        advice = advice_on(leg.quality, names, meshes, halves=halves)
         verdict = leg.verdict = Verdict.of(leg.quality, advice)
         if verdict.doubtful and not (self._accepted or self._options.asks):
             raise DoubtfulMatchError(

@@ -17,6 +17,9 @@ __all__ = ["ANSWERS", "DOUBTFUL", "Verdict", "advice_on"]
 DOUBTFUL: Final = 0.3
 """Below this confidence nothing is carried across a match unless the user wants it: more of it is wrong than right."""
 
+_GOOD = 0.7
+"""Confidence from which on the panel calls a match good."""
+
 _ENDS_OF_GARMENT = 2
 """A skirt has two open ends, trousers three, a shirt four; a bust or half a body is open where it was cut, once."""
 
@@ -69,7 +72,11 @@ class Verdict:
 
 
 def advice_on(
-    quality: Quality | MatchQuality, names: tuple[str, str], meshes: tuple[TriangleMesh, TriangleMesh]
+    quality: Quality | MatchQuality,
+    names: tuple[str, str],
+    meshes: tuple[TriangleMesh, TriangleMesh],
+    *,
+    halves: tuple[bool, bool] = (False, False),
 ) -> str:
     """Say what to do if one of two matched meshes looks like a garment for the other, or like a part of it.
 
@@ -81,12 +88,20 @@ def advice_on(
         What source and target are called.
     meshes : tuple of TriangleMesh
         The two.
+    halves : tuple of bool
+        Whether a Mirror modifier completes them, which is not applied.
 
     Returns
     -------
     str
         A sentence; empty if they look like two whole bodies.
     """
+    half = next((name for name, is_half in zip(names, halves, strict=True) if is_half), None)
+    if half is not None and quality.confidence < _GOOD:
+        return (
+            f'"{half}" has a Mirror modifier, and was matched as the half that it is: if the match is wrong, apply the '
+            "modifier, and match again."
+        )
     shares = (quality.source_coverage, quality.coverage)
     for own, other in ((0, 1), (1, 0)):
         if shares[other] >= _MISSED:

@@ -307,6 +307,11 @@ MESSAGES: Final[dict[str, str]] = {
         "わせてください。そうでなく、マッチングが正しくない場合は、これにない部分をもう一方のメッシュから除外してくださ"
         "い。"
     ),
+    '"{0}" has a Mirror modifier, and was matched as the half that it is: if the match is wrong, apply the modifier, '
+    "and match again.": (
+        "「{0}」にはミラーモディファイアーがあり、半分のままマッチングされました。マッチングが正しくない場合は、モディファイアーを"
+        "適用して、もう一度マッチングしてください。"
+    ),
     '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
         "「{0}」は「{1}」の一部のように見えます。マッチングが正しくない場合は、これにない部分を「除外」で指定して、もう一度マッチングしてください。"
     ),

@@ -259,6 +259,10 @@ MESSAGES: Final[dict[str, str]] = {
         "“{0}”有 {1} 处开口，看起来像是“{2}”的衣服：如果是，请改用“穿戴”使其贴合；如果不是且匹配有误，请在另一个网格"
         "中排除它所没有的部分。"
     ),
+    '"{0}" has a Mirror modifier, and was matched as the half that it is: if the match is wrong, apply the modifier, '
+    "and match again.": (
+        "“{0}”带有镜像修改器，是按它现有的一半进行匹配的：如果匹配有误，请应用该修改器，然后重新匹配。"
+    ),
     '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
         "“{0}”看起来像是“{1}”的一部分：如果匹配有误，请在“排除”中指定它所没有的部分，然后重新匹配。"
     ),

@@ -36,6 +36,13 @@ def test_a_part_without_ends_is_to_be_left_out():
     assert not advice_on(replace(WHOLE, coverage=0.5, source_coverage=0.6), ("Bust", "Body"), (BALL, BALL))
 
 
+def test_a_half_under_a_mirror_modifier_is_said_to_be_one_unless_the_match_is_good():
+    doubtful = replace(WHOLE, confidence=0.4, coverage=0.5)
+    said = advice_on(doubtful, ("Man", "Half"), (BALL, TUBE), halves=(False, True))
+    assert said.startswith('"Half" has a Mirror modifier')
+    assert not advice_on(WHOLE, ("Man", "Half"), (BALL, TUBE), halves=(False, True))
+
+
 def test_doubt_begins_below_the_limit():
     for confidence in (0.0, DOUBTFUL - 0.01, DOUBTFUL, 1.0):
         verdict = Verdict.of(replace(WHOLE, confidence=confidence), "Mind the gap.")

@@ -38,6 +38,14 @@ def test_a_script_fails_and_nothing_changes(operator):
     assert snapshot() == before
 
 
+@pytest.mark.parametrize("which", [0, 1])
+def test_of_a_half_under_a_mirror_modifier_it_is_said_what_to_do(doubtful, monkeypatch, which):
+    monkeypatch.setattr(verdict, "_GOOD", 1.1)
+    doubtful[which].modifiers.new("Mirror", "MIRROR")
+    with pytest.raises(RuntimeError, match=f'"{doubtful[which].name}" has a Mirror modifier, .* apply the modifier'):
+        carry()
+
+
 def test_who_accepts_it_gets_it_with_a_warning(doubtful):
     assert carry(accept_doubtful=True) == {"FINISHED"}
     assert "Layout" in doubtful[1].data.uv_layers
