@@ -284,12 +284,12 @@ class MotionJob(SteppedJob):
             yield Progress(start / len(frames), "Reading motion")
             rig, action, some = found_again(self._source), self._action(name), frames[start : start + size]
             if evaluated:
-                motion = evaluated_frames(bpy.data.scenes[self._scene], action, rig, some)
+                parts.append(evaluated_frames(bpy.data.scenes[self._scene], action, rig, some))
             else:
-                motion = posed_at(action, rig, some)
-            parts.append(with_object(motion, action, rig, some, first))
+                parts.append(posed_at(action, rig, some))
         turns, heads = (np.concatenate([getattr(part, what) for part in parts]) for what in ("turns", "heads"))
-        return Motion(parts[0].skeleton, turns, heads)
+        motion = Motion(parts[0].skeleton, turns, heads)
+        return with_object(motion, self._action(name), found_again(self._source), frames, first)
 
 
 def _transfer_steps(
