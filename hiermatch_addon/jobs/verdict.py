@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from ...engine import MatchQuality, TriangleMesh
     from ..storage.stored_match import Quality
 
-__all__ = ["ANSWERS", "DOUBTFUL", "Verdict", "advice_on"]
+__all__ = ["ANSWERS", "DOUBTFUL", "GOOD", "Verdict", "advice_on"]
 
 DOUBTFUL: Final = 0.3
 """Below this confidence nothing is carried across a match unless the user wants it: more of it is wrong than right."""
 
-_GOOD = 0.7
-"""Confidence from which on the panel calls a match good."""
+GOOD: Final = 0.7
+"""Confidence from which on a match is called good."""
 
 _ENDS_OF_GARMENT = 2
 """A skirt has two open ends, trousers three, a shirt four; a bust or half a body is open where it was cut, once."""
@@ -97,7 +97,7 @@ def advice_on(
         A sentence; empty if they look like two whole bodies.
     """
     half = next((name for name, is_half in zip(names, halves, strict=True) if is_half), None)
-    if half is not None and quality.confidence < _GOOD:
+    if half is not None and quality.confidence < GOOD:
         return (
             f'"{half}" has a Mirror modifier, and was matched as the half that it is: if the match is wrong, apply the '
             "modifier, and match again."

@@ -9,7 +9,7 @@ import bpy
 
 from ..common.access import layout_of, view_layer_of
 from ..common.translated_text import translated
-from ..jobs.verdict import DOUBTFUL
+from ..jobs.verdict import DOUBTFUL, GOOD
 from ..properties.panel_state import picked, state_of
 from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
@@ -39,7 +39,7 @@ _CLEAR_ORIENTATION = 0.3
 _EXPLAINED_WIDTH = 40
 """Letters in a line of a sentence under Advanced: about what a usual sidebar holds."""
 
-_CONFIDENCE: Final = ((0.7, "good"), (0.5, "fair"), (DOUBTFUL, "look closely"), (0.0, "do not trust it"))
+_CONFIDENCE: Final = ((GOOD, "good"), (0.5, "fair"), (DOUBTFUL, "look closely"), (0.0, "do not trust it"))
 """From which confidence on it is called so."""
 
 _STRETCH: Final = ((0.5, "very much"), (0.2, "much, the builds differ"), (0.1, "some"), (0.0, "little"))

@@ -22,10 +22,9 @@ __all__ = ["bind_again"]
 _BINDING = {
     "SURFACE_DEFORM": ("is_bound", "surfacedeform_bind"),
     "CORRECTIVE_SMOOTH": ("is_bind", "correctivesmooth_bind"),
-    "LAPLACIANDEFORM": ("is_bind", "laplaciandeform_bind"),
 }
 """For each type of modifier the member that says whether it is bound, and the operator that binds it, or takes that
-back."""
+back.  Laplacian Deform is none of them, as Blender 5.0.1 crashes when a script unbinds one."""
 
 
 def bind_again(context: bpy.types.Context, obj: bpy.types.Object, body: Side) -> list[str]:

@@ -47,8 +47,7 @@ __all__ = [
     "write_action",
 ]
 
-_ROTATIONS = {"QUATERNION": ("rotation_quaternion", 4), "AXIS_ANGLE": ("rotation_axis_angle", 4)}
-_EULER = ("rotation_euler", 3)
+_ROTATIONS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -347,4 +346,4 @@ def turned_above(armature: bpy.types.Object, moved: Collection[str]) -> list[str
 
 def rotation_channel(mode: str) -> str:
     """Return the channel in which a bone of such a rotation mode keeps its rotation."""
-    return _ROTATIONS.get(mode, _EULER)[0]
+    return _ROTATIONS.get(mode, "rotation_euler")

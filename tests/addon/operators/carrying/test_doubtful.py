@@ -40,7 +40,7 @@ def test_a_script_fails_and_nothing_changes(operator):
 
 @pytest.mark.parametrize("which", [0, 1])
 def test_of_a_half_under_a_mirror_modifier_it_is_said_what_to_do(doubtful, monkeypatch, which):
-    monkeypatch.setattr(verdict, "_GOOD", 1.1)
+    monkeypatch.setattr(verdict, "GOOD", 1.1)
     doubtful[which].modifiers.new("Mirror", "MIRROR")
     with pytest.raises(RuntimeError, match=f'"{doubtful[which].name}" has a Mirror modifier, .* apply the modifier'):
         carry()
