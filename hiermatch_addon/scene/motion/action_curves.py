@@ -140,7 +140,7 @@ def renamed_paths(
 def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterator[tuple[str, Any]]:
     """Go through the curves of an action that move the object itself, unless muted: channel, and the curve.
 
-    Curves that stay at one value, as importers write them, move nothing.
+    Curves that stay at one value move nothing.
     """
     for curve in _curves(action, slot_for(action, armature)):
         if curve.data_path in _OF_OBJECTS and _is_heard(curve):

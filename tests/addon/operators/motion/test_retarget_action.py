@@ -118,7 +118,7 @@ def test_what_constraints_do_to_the_source_is_carried_too():
 @pytest.mark.parametrize("constrained", [False, True])
 @pytest.mark.parametrize("keying", ["AUTO", "REDUCED"])
 def test_what_moves_the_object_moves_the_body(keying, constrained):
-    """As where an importer made the root bone the object; the target stands elsewhere, and stays where it is."""
+    """The target stands elsewhere, and stays where it is."""
     source, _ = add_person("A")
     target, made = add_person("B", "renamed", rolls=0.4)
     add_action(source)
