@@ -283,6 +283,7 @@ def _leave_animation(copy: bpy.types.Object) -> None:
     if len(drivers) == len(animation.drivers):
         copy.animation_data_clear()
         return
+    animation.use_tweak_mode = False  # in which the action could not be taken away
     animation.action = None
     for track in list(animation.nla_tracks):
         animation.nla_tracks.remove(track)

@@ -9,6 +9,7 @@ import bpy
 from mathutils import Matrix
 
 from .armatures import armature_of
+from .motion.action_curves import assign_action, lent_action
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -97,25 +98,22 @@ def keep_pose(
     old = kept_pose(armature, kind)
     if old is not None:
         bpy.data.actions.remove(old)  # another one of that name is the user's own
-    animation: Any = armature.animation_data or armature.animation_data_create()
-    before = animation.action, getattr(animation, "action_slot", None)
     action: Any = bpy.data.actions.new(name)
     action.use_fake_user = True
     action[_MARKER], action[_KIND] = armature.name, kind
-    animation.action = action
     pose = cast("bpy.types.Pose", armature.pose)
-    for bone_name, basis in bases.items():
-        bone = pose.bones[bone_name]
-        stood = {channel: list(getattr(bone, channel)) for channel in _CHANNELS}
-        bone.matrix_basis = basis
-        rotation = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
-        for channel in ("location", rotation.get(bone.rotation_mode, "rotation_euler"), "scale"):
-            bone.keyframe_insert(channel, frame=1, group=bone_name)
-        if not show:
-            for channel, value in stood.items():
-                setattr(bone, channel, value)
-    if not show or before[0] is not None:
-        animation.action = before[0]
-        if before[0] is not None and before[1] is not None:
-            animation.action_slot = before[1]
+    with lent_action(armature) as animation:
+        animation.action = action
+        for bone_name, basis in bases.items():
+            bone = pose.bones[bone_name]
+            stood = {channel: list(getattr(bone, channel)) for channel in _CHANNELS}
+            bone.matrix_basis = basis
+            rotation = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
+            for channel in ("location", rotation.get(bone.rotation_mode, "rotation_euler"), "scale"):
+                bone.keyframe_insert(channel, frame=1, group=bone_name)
+            if not show:
+                for channel, value in stood.items():
+                    setattr(bone, channel, value)
+    if show and animation.action is None:
+        assign_action(armature, action)
     return action

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -20,6 +21,7 @@ __all__ = [
     "assign_action",
     "bone_curves",
     "frame_range",
+    "lent_action",
     "named_action",
     "object_curves",
     "played_action",
@@ -95,11 +97,14 @@ def slot_for(action: bpy.types.Action, armature: bpy.types.Object) -> Any:  # no
 
 
 def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterator[tuple[str, str, Any]]:
-    """Go through the curves of an action that move bones of an armature, unless muted: bone, channel, and the curve."""
+    """Go through the curves of an action that move bones of an armature, unless muted: bone, channel, and the curve.
+
+    Curves without keys that no modifier gives values move nothing.
+    """
     bones = armature_of(armature).bones
     for curve in _curves(action, slot_for(action, armature)):
         found = _BONE.match(curve.data_path)
-        if found is not None and _is_heard(curve):
+        if found is not None and _is_heard(curve) and not curve.is_empty:
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
@@ -152,6 +157,27 @@ def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Itera
 def _is_heard(curve: Any) -> bool:  # noqa: ANN401 - Blender's types differ
     """Tell whether a curve is muted neither by itself nor with its group."""
     return not curve.mute and not (curve.group is not None and curve.group.mute)
+
+
+@contextmanager
+def lent_action(armature: bpy.types.Object) -> Iterator[Any]:
+    """Lend the animation of an armature, with an action that can be changed, and give it back as it was.
+
+    While a strip is tweaked in the NLA editor, its action is held.
+    """
+    animation: Any = armature.animation_data or armature.animation_data_create()
+    tweaked = animation.use_tweak_mode
+    if tweaked:
+        animation.use_tweak_mode = False
+    before = animation.action, getattr(animation, "action_slot", None), animation.use_nla
+    try:
+        yield animation
+    finally:
+        animation.action, animation.use_nla = before[0], before[2]
+        if before[0] is not None and before[1] is not None:
+            animation.action_slot = before[1]
+        if tweaked:
+            animation.use_tweak_mode = True
 
 
 def assign_action(armature: bpy.types.Object, action: bpy.types.Action) -> None:

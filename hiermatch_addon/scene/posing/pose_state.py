@@ -35,6 +35,8 @@ def put_aside(armature: bpy.types.Object, why: str) -> None:
     bring_back(armature)
     owner: Any = armature
     animation: Any = armature.animation_data or armature.animation_data_create()
+    tweaked = animation.use_tweak_mode
+    animation.use_tweak_mode = False  # in which the action could not be taken away
     slot = getattr(animation, "action_slot", None)
     bones = cast("bpy.types.Pose", armature.pose).bones
     held = [(bone.name, one.name) for bone in bones for one in bone.constraints if not one.mute]
@@ -43,6 +45,7 @@ def put_aside(armature: bpy.types.Object, why: str) -> None:
             "why": why,
             "slot": slot.identifier if slot is not None else "",
             "nla": animation.use_nla,
+            "tweaked": tweaked,
             "position": armature_of(armature).pose_position,
             "pose": {bone.name: [list(getattr(bone, channel)) for channel in _CHANNELS] for bone in bones},
             "held": held,
@@ -69,6 +72,7 @@ def bring_back(armature: bpy.types.Object) -> None:
     if state["slot"] and animation.action is not None and state["slot"] in animation.action.slots:
         animation.action_slot = animation.action.slots[state["slot"]]
     animation.use_nla, owner.data.pose_position = state["nla"], state["position"]
+    animation.use_tweak_mode = state.get("tweaked", False)
     bones = cast("bpy.types.Pose", armature.pose).bones
     for name, values in state["pose"].items():
         if name in bones:

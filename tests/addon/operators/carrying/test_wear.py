@@ -246,6 +246,9 @@ def test_drivers_of_modifiers_come_along_and_nothing_else_that_moves_an_item(dre
     modifier = shirt.modifiers.new("Thick", "SOLIDIFY")
     modifier.thickness = 0.01
     shirt.keyframe_insert("location", frame=1)
+    animation = shirt.animation_data
+    strip, animation.action = animation.nla_tracks.new().strips.new("Strip", 1, animation.action), None
+    strip.select, animation.nla_tracks.active, animation.use_tweak_mode = True, animation.nla_tracks[0], True
     paths = {'modifiers["Thick"].thickness': (source, '["tailor"]'), 'modifiers["Thick"].offset': (shirt, '["size"]')}
     for path, (leader, read) in {**paths, "hide_render": (source, '["tailor"]')}.items():
         driver = shirt.driver_add(path).driver
@@ -257,6 +260,8 @@ def test_drivers_of_modifiers_come_along_and_nothing_else_that_moves_an_item(dre
     read = {curve.data_path: curve.driver.variables[0].targets[0].id for curve in copy.animation_data.drivers}
     assert read == {'modifiers["Thick"].thickness': target, 'modifiers["Thick"].offset': copy}
     assert copy.animation_data.action is None
+    assert not copy.animation_data.nla_tracks
+    assert animation.use_tweak_mode
     assert len(shirt.animation_data.drivers) == 3
     del target["tailor"]
     assert wear("Shirt") == {"FINISHED"}

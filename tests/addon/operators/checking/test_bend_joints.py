@@ -92,6 +92,23 @@ def test_bones_and_action_that_are_gone_meanwhile_are_no_matter(rigged):
     assert [marker.name for marker in bpy.context.scene.timeline_markers] == ["Jump"]
 
 
+def test_a_strip_that_is_tweaked_is_tweaked_again(rigged):
+    obj, armature = rigged
+    animation = armature.animation_data
+    track = animation.nla_tracks.new()
+    track.strips.new("Strip", 31, bpy.data.actions.new("Nod")).select = True
+    animation.nla_tracks.active = track
+    animation.use_tweak_mode = True
+    before = state(armature)
+    assert before["action"] == "Nod"
+    assert bpy.ops.hiermatch.test_poses(target=obj.name) == {"FINISHED"}
+    assert bpy.ops.hiermatch.test_poses(target=obj.name, remove=True) == {"FINISHED"}
+    assert state(armature) == before
+    assert animation.use_tweak_mode
+    animation.use_tweak_mode = False
+    assert animation.action.name == "Walk"
+
+
 def test_without_a_rig_it_says_what_to_do():
     add_blob("Ball")
     with pytest.raises(RuntimeError, match='"Ball" has no armature'):
