@@ -1197,6 +1197,9 @@ MESSAGES: Final[dict[str, str]] = {
         'コンストレイントが"{1}"の{0}を拘束しているため、新しいモーションに従わないことがあります。見るにはミュー'
         "トしてください。"
     ),
+    'Drivers turn {0} of "{1}", which therefore do not follow the new motion. Mute them to see it.': (
+        'ドライバーが"{1}"の{0}を回転させているため、新しいモーションに従いません。見るにはミュートしてください。'
+    ),
     'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
     "Clear Transform) unless that is wanted.": (
         'ペアがなく、レストポーズでもないボーンが、付いているものをすべて回転させています: "{1}"の{0}。意図したもので'
@@ -1261,6 +1264,16 @@ MESSAGES: Final[dict[str, str]] = {
     "(Object > Library Override > Make).": (
         'アーマチュア"{0}"は編集できないライブラリオーバーライドです。先に編集可能にしてください(オブジェクト > '
         "ライブラリオーバーライド > 作成)。"
+    ),
+    'A strip of "{0}" is being tweaked in the NLA editor, which holds its action. Leave the tweak mode there first '
+    "(Tab).": (
+        '"{0}"のストリップがNLAエディターで調整中のため、アクションが固定されています。先に調整モードを終了してくださ'
+        "い(Tab)。"
+    ),
+    'The armature "{0}" is switched off in the view layer "{1}", so Blender does not move it. Link it to the scene, or '
+    "enable it and its collection in the Outliner.": (
+        'アーマチュア"{0}"はビューレイヤー"{1}"で無効になっているため、Blenderは動かしません。シーンにリンクするか、ア'
+        "ウトライナーでアーマチュアとそのコレクションを有効にしてください。"
     ),
     '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
         '"{0}"にはアーマチュアのボーンのウェイトがありません。リグを持つソースを選んでください。'

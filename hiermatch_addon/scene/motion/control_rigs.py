@@ -27,6 +27,7 @@ __all__ = [
     "candidates_of",
     "carriers",
     "chosen_controls",
+    "driven_bones",
     "tried_controls",
     "with_carrier",
     "worth_trying",
@@ -89,7 +90,7 @@ def candidates_of(armature: bpy.types.Object, bones: Sequence[str]) -> Candidate
     pose = cast("bpy.types.Pose", armature.pose).bones
     if not any(_is_held(pose[name]) for name in bones):
         return None
-    driven = _driven(armature)
+    driven = driven_bones(armature)
     above = {name: leaders_of(armature, name) for name in bones}
     free = [
         name
@@ -269,8 +270,8 @@ def _is_free(bone: bpy.types.PoseBone) -> bool:
     return not any(cast("Any", bone.lock_rotation)) and not _is_held(bone)
 
 
-def _driven(armature: bpy.types.Object) -> set[str]:
-    """Names of bones whose rotations drivers move."""
+def driven_bones(armature: bpy.types.Object) -> set[str]:
+    """Return the names of bones whose rotations drivers move."""
     found = (_ROTATION.match(curve.data_path) for curve in _drivers(armature))
     return {bpy.utils.unescape_identifier(match["bone"]) for match in found if match is not None}
 
@@ -322,7 +323,7 @@ def _values(armature: bpy.types.Object, key: tuple[str, str]) -> tuple[Switch, S
 
 def _drivers(armature: bpy.types.Object) -> list[Any]:
     found = (armature.animation_data, armature_of(armature).animation_data)
-    return [curve for animation in found if animation is not None for curve in animation.drivers]
+    return [curve for animation in found if animation is not None for curve in animation.drivers if not curve.mute]
 
 
 def _turns(follower: tuple[float, float]) -> bool:

@@ -17,6 +17,7 @@ from .action_curves import (
     assign_action,
     bone_curves,
     frame_range,
+    lent_action,
     object_curves,
     played_action,
     slot_for,
@@ -66,6 +67,8 @@ class ActionKeys:
         For each bone that has one the settings of the modifier that repeats its curves.
     extrapolations : dict
         For each bone how its curves go on beyond the keys.
+    modified : bool
+        Whether more than keys and cycles says how a curve goes, such as a Noise modifier.
     """
 
     frames: NDArray[np.float64]
@@ -73,6 +76,7 @@ class ActionKeys:
     interpolations: dict[str, list[tuple[str, str]]]
     cycles: dict[str, dict[str, Any]]
     extrapolations: dict[str, str]
+    modified: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,18 +142,22 @@ def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKey
     times: dict[str, dict[float, tuple[str, str]]] = {}
     cycles: dict[str, dict[str, Any]] = {}
     extrapolations: dict[str, str] = {}
+    modified = False
     whole = ((OBJECT, channel, curve) for channel, curve in _moving_curves(action, armature))
     for bone, _, curve in chain(bone_curves(action, armature), whole):
         keys = times.setdefault(bone, {})
         for point in curve.keyframe_points:
             keys.setdefault(float(point.co[0]), (point.interpolation, point.easing))
         extrapolations.setdefault(bone, curve.extrapolation)
-        for modifier in curve.modifiers:
-            if modifier.type == "CYCLES" and not modifier.mute:
+        live = [modifier for modifier in curve.modifiers if not modifier.mute]
+        modified |= any(modifier.type != "CYCLES" for modifier in live)
+        for modifier in live:
+            if modifier.type == "CYCLES":
                 cycles.setdefault(bone, {name: getattr(modifier, name) for name in _CYCLE})
     frames = {bone: np.array(sorted(keys), np.float64) for bone, keys in times.items()}
     curved = {bone: [times[bone][float(frame)] for frame in found] for bone, found in frames.items()}
-    return ActionKeys(np.array(frame_range(action, armature), np.float64), frames, curved, cycles, extrapolations)
+    ends = np.array(frame_range(action, armature), np.float64)
+    return ActionKeys(ends, frames, curved, cycles, extrapolations, modified)
 
 
 def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]) -> Motion:
@@ -225,25 +233,21 @@ def evaluated_frames(
     scene: bpy.types.Scene, action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]
 ) -> Motion:
     """Let Blender play an action at frames (f,), with all constraints and drivers, and leave everything as it was."""
-    animation: Any = armature.animation_data or armature.animation_data_create()
-    before = animation.action, getattr(animation, "action_slot", None), animation.use_nla
     frame, part = scene.frame_current, scene.frame_subframe
     bones = cast("bpy.types.Pose", armature.pose).bones
     bases = [bone.matrix_basis.copy() for bone in bones]
     posed = np.empty((len(frames), len(bones), 4, 4))
     slot = slot_for(action, armature)
     try:
-        animation.use_nla = False
-        animation.action = action
-        if slot is not None:
-            animation.action_slot = slot
-        for number, time in enumerate(frames):
-            scene.frame_set(int(np.floor(time)), subframe=float(time - np.floor(time)))
-            posed[number] = [bone.matrix for bone in bones]
+        with lent_action(armature) as animation:
+            animation.use_nla = False
+            animation.action = action
+            if slot is not None:
+                animation.action_slot = slot
+            for number, time in enumerate(frames):
+                scene.frame_set(int(np.floor(time)), subframe=float(time - np.floor(time)))
+                posed[number] = [bone.matrix for bone in bones]
     finally:
-        animation.action, animation.use_nla = before[0], before[2]
-        if before[0] is not None and before[1] is not None:
-            animation.action_slot = before[1]
         scene.frame_set(frame, subframe=part)
         for bone, basis in zip(bones, bases, strict=True):
             bone.matrix_basis = basis

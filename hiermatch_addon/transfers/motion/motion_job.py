@@ -20,6 +20,7 @@ from ...jobs.transfer_job import Carried
 from ...properties.bone_pairs import pairing_of, rows_of
 from ...scene.armatures import armature_of
 from ...scene.character import SideReference
+from ...scene.motion.control_rigs import driven_bones
 from ...scene.motion.motion_io import (
     current_motion,
     evaluated_frames,
@@ -34,7 +35,15 @@ from ...scene.motion.motion_io import (
     write_action,
 )
 from ...scene.motion.nla_strips import copy_strips
-from ...scene.motion.rigs import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of, two_rigs
+from ...scene.motion.rigs import (
+    check_armature,
+    check_evaluated,
+    object_rotation,
+    own_skeleton,
+    rest_matrices,
+    rig_of,
+    two_rigs,
+)
 from .action_keys import SIDE_STEP, baked_keys, bone_channels, sparse_frames, sparse_keys
 from .bone_pairs import pairing_job
 from .steered_rig import found_again, is_steered, steered_steps
@@ -106,6 +115,8 @@ class MotionJob(SteppedJob):
         named: dict[bpy.types.Object, Side] = {}
         for target in targets:  # of several meshes of one rig the first
             named.setdefault(two_rigs(source, target, written=True)[1], target)
+        for rig in (rig_of(source), *named):
+            check_evaluated(rig, view_layer_of(context))
         self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in named]
         scene = cast("bpy.types.Scene", context.scene)
         self._scene, self._view_layer = scene.name, view_layer_of(context)
@@ -268,12 +279,12 @@ class MotionJob(SteppedJob):
 
     def _is_sparse(self, keys: ActionKeys, count: float) -> bool:
         """Tell whether the target gets keys where the source has them."""
-        plan = self._plan
-        if plan.settings.feet or plan.settings.hands or plan.keys in {"ALL", "REDUCED"}:
+        plan, found = self._plan, len(sparse_frames(keys))
+        if plan.settings.feet or plan.settings.hands or plan.keys in {"ALL", "REDUCED"} or not found:
             return False
         if plan.keys == "SOURCE":
             return True
-        return len(sparse_frames(keys)) < _FEW * count and not needs_evaluation(found_again(self._source))
+        return found < _FEW * count and not keys.modified and not needs_evaluation(found_again(self._source))
 
     def _reading_steps(self, name: str, frames: NDArray[np.float64], first: float) -> Steps[Motion]:
         """Read the source's poses in frames (f,), some at a time, and the way of its object from the first frame on."""
@@ -361,6 +372,12 @@ def _notes(
         notes.append(
             f'Constraints hold {listed(held)} of "{target.name}", so they may not follow the new motion. Mute them to '
             "see it."
+        )
+    driven = driven_bones(target)
+    if turned_so := [name for name in dict.fromkeys(moved) if name in driven]:
+        notes.append(
+            f'Drivers turn {listed(turned_so)} of "{target.name}", which therefore do not follow the new motion. Mute '
+            "them to see it."
         )
     if played:
         turned = turned_above(target, moved)

@@ -541,3 +541,108 @@ def rename_refused(name, said):
     with pytest.raises(RuntimeError, match=said):
         bpy.ops.hiermatch.rename_bones(target=name, names="UNREAL")
     return list(bpy.data.objects[name].data.bones.keys()) == before
+
+
+def switch_off(armature):
+    """Put a character into a collection that the view layer leaves out."""
+    collection = bpy.data.collections.new("Aside")
+    bpy.context.scene.collection.children.link(collection)
+    for obj in (armature, *armature.children):
+        bpy.context.scene.collection.objects.unlink(obj)
+        collection.objects.link(obj)
+    bpy.context.view_layer.layer_collection.children["Aside"].exclude = True
+
+
+@pytest.mark.parametrize("which", ["A", "B"])
+@pytest.mark.parametrize("operator", ["retarget_action", "retarget_pose"])
+def test_one_that_blender_does_not_pose_is_named(which, operator):
+    """All its poses would look the same, and so would what is made of them."""
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    assert bpy.ops.hiermatch.pair_bones(source="A", target="B") == {"FINISHED"}
+    switch_off(bpy.data.objects[which])
+    before = snapshot(target)
+    with pytest.raises(RuntimeError, match=f'The armature "{which}" is switched off in the view layer "ViewLayer"'):
+        getattr(bpy.ops.hiermatch, operator)(source="A", target="B")
+    assert snapshot(target) == before
+
+
+def tweak(armature, action):
+    """Let an armature tweak a strip of an action."""
+    animation = armature.animation_data or armature.animation_data_create()
+    animation.action = None
+    track = animation.nla_tracks.new()
+    track.strips.new("Strip", 31, action).select = True
+    animation.nla_tracks.active = track
+    animation.use_tweak_mode = True
+    assert animation.action == action
+
+
+def test_an_action_that_is_tweaked_is_carried_and_goes_on_being_tweaked():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    source.pose.bones["neck"].constraints.new("LIMIT_ROTATION")
+    tweak(source, action)
+    assert carry(source="A", target="B", action="Wave") == {"FINISHED"}
+    assert target.animation_data.action.name == "Wave B"
+    assert target.animation_data.action.frame_range[:] == action.frame_range[:]
+    animation = source.animation_data
+    assert animation.use_tweak_mode
+    assert animation.action == action
+    assert animation.use_nla
+    animation.use_tweak_mode = False
+    assert animation.action is None
+
+
+@pytest.mark.parametrize("operator", ["retarget_action", "retarget_pose"])
+def test_a_target_whose_strip_is_tweaked_is_named(operator):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    tweak(target, add_action(source))
+    before = snapshot(target)
+    with pytest.raises(RuntimeError, match='A strip of "B" is being tweaked in the NLA editor'):
+        getattr(bpy.ops.hiermatch, operator)(source="A", target="B")
+    assert snapshot(target) == before
+
+
+def test_curves_without_keys_move_nothing():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    action = add_action(source)
+    for curve in curves_of(action).values():
+        while len(curve.keyframe_points):
+            curve.keyframe_points.remove(curve.keyframe_points[0])
+    with pytest.raises(RuntimeError, match='The action "Wave" moves no bone of "A"'):
+        carry(source="A", target="B", action="Wave")
+    next(iter(curves_of(action).values())).modifiers.new("FNGENERATOR")
+    assert carry(source="A", target="B", action="Wave", keying="SOURCE") == {"FINISHED"}
+
+
+def test_what_modifiers_do_between_keys_is_carried_too():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    for (path, index), curve in curves_of(action).items():
+        if "thigh.R" in path and index == 1:
+            noise = curve.modifiers.new("NOISE")
+            noise.strength, noise.scale = 0.5, 3
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert worst(source, target, range(1, 22, 2)) < 2e-3
+
+
+def test_bones_that_drivers_turn_are_named(capfd):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    name = bpy.context.scene.hiermatch_bone_pairs[3].target
+    driver = target.pose.bones[name].driver_add("rotation_quaternion", 1)
+    driver.driver.expression = "0.3"
+    said = f'Drivers turn "{name}" of "B"'
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert said in capfd.readouterr().out
+    driver.mute = True
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert said not in capfd.readouterr().out
