@@ -12,7 +12,7 @@ from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
 from ..properties.summary import remember
 from ..storage.match_exchange import apply_match, collect_match
-from ..storage.match_file import load_match, save_match
+from ..storage.match_file import SUFFIXES, load_match, save_match
 from .command import EXIT_CODES
 from .match import add_pair_arguments, load_pair
 from .outputs import KINDS, output_argument, save
@@ -37,7 +37,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
-    parser.add_argument("map", type=Path, metavar="MATCH", help="The .npz or .json to write.")
+    parser.add_argument("map", type=output_argument(SUFFIXES), metavar="MATCH", help="The .npz or .json to write.")
     parser.add_argument("--prefix", default="", metavar="TEXT", help="Which match; if empty, the only one.")
     add_report_options(parser)
     parser.set_defaults(run=_export)

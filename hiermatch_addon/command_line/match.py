@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -18,7 +17,7 @@ from ..scene.pair import is_own
 from ..storage import writing
 from ..storage.linked_matches import kept_linked
 from ..storage.match_exchange import collect_match
-from ..storage.match_file import save_match
+from ..storage.match_file import SUFFIXES, save_match
 from .command import EXIT_CODES, ExitCode
 from .console import Console, drive
 from .meshes import load_meshes, mesh_argument
@@ -71,7 +70,10 @@ def add_result_options(parser: argparse.ArgumentParser, what: str = "the target"
     group = parser.add_argument_group("what is written")
     add_output_option(group, what)
     group.add_argument(
-        "--map", type=Path, metavar="FILE", help="Write the correspondence into an .npz or .json as well."
+        "--map",
+        type=output_argument(SUFFIXES),
+        metavar="FILE",
+        help="Write the correspondence into an .npz or .json as well.",
     )
 
 

@@ -13,7 +13,7 @@ import bpy
 
 from ...engine import HierMatchError
 from ..common.access import mesh_of
-from ..common.file_writing import write_whole
+from ..common.file_writing import check_place, write_whole
 from ..scene.character import parts_of
 from .command import ExitCode
 from .console import Console, interruptible
@@ -182,7 +182,7 @@ def run_reported(
     parsed : argparse.Namespace
         The command's arguments.
     inputs : sequence of Path
-        The files that are read.
+        The files that are read; all others that the arguments name are written, which is made sure of first.
     console : Console
         Where to write.
     work : callable
@@ -193,6 +193,8 @@ def run_reported(
     code, error = ExitCode.DONE, ""
     try:
         with interruptible() as interruption:
+            for path in _outputs(parsed, inputs):
+                check_place(path)
             work(report)
         if parsed.strict and report.doubtful:
             code = ExitCode.DOUBTFUL
@@ -215,6 +217,13 @@ def run_reported(
         console.error(str(failure))
         return ExitCode.FAILED
     return code
+
+
+def _outputs(parsed: argparse.Namespace, inputs: Sequence[Path]) -> list[Path]:
+    """Return the files that a command is to write."""
+    named = [*getattr(parsed, "output", ()), *(getattr(parsed, name, None) for name in ("map", "write_pairs"))]
+    report = None if parsed.report in {None, "-"} else Path(parsed.report)
+    return [path for path in (*named, report) if path is not None and path not in inputs]
 
 
 def _write(where: str | None, plain: dict[str, Any], console: Console) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["beside", "read_text", "write_whole"]
+__all__ = ["beside", "check_place", "read_text", "write_whole"]
 
 
 def read_text(path: Path) -> str:
@@ -30,6 +31,26 @@ def read_text(path: Path) -> str:
         raise ObjectError(f'"{path}" cannot be read: {error.strerror}. Choose another file.') from error
     except UnicodeDecodeError as error:
         raise ObjectError(f'"{path}" is no text. Choose a file that HierMatch has written.') from error
+
+
+def check_place(path: Path) -> None:
+    """Make sure, before long work, that a file can be written, as far as can be told without writing.
+
+    Raises
+    ------
+    ObjectError
+        If not.
+    """
+    folder = next((parent for parent in path.absolute().parents if parent.exists()), path.parent)
+    if path.is_dir():
+        reason = errno.EISDIR
+    elif not folder.is_dir():
+        reason = errno.ENOTDIR
+    elif not os.access(folder, os.W_OK):
+        reason = errno.EACCES
+    else:
+        return
+    raise ObjectError(f'"{path}" cannot be written: {os.strerror(reason)}. Choose another place.')
 
 
 def write_whole(path: Path, content: bytes) -> None:

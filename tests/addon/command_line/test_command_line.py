@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 from pathlib import Path
 
 import bpy
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 from hiermatch.engine import MatchSettings, symmetry_map_steps
 from hiermatch.hiermatch_addon import command_line
-from hiermatch.hiermatch_addon.command_line import console, match, options, symmetry
+from hiermatch.hiermatch_addon.command_line import console, match, options, reports, symmetry
 from hiermatch.hiermatch_addon.command_line.meshes import MeshArgument, load_meshes, mesh_argument
 from hiermatch.hiermatch_addon.command_line.operator_errors import said_by
 from hiermatch.hiermatch_addon.command_line.outputs import save
@@ -116,6 +117,8 @@ def test_strict_tells_of_a_doubtful_match(pair, tmp_path):
         (["match", "a.obj", "b.obj", "--linear-weight=nan"], 2, "not between"),
         (["match", "a.obj", "b.obj", "--solver=magic"], 2, "none of hierarchical, flat, gmds"),
         (["match", "a.obj", "b.obj", "--output=a.txt"], 2, "does not end with"),
+        (["match", "a.obj", "b.obj", "--map=a.txt"], 2, "does not end with .npz, .json"),
+        (["export", "a.obj", "b.obj", "a.txt"], 2, "does not end with .npz, .json"),
         (["match", "a.obj", "b.obj", f"--prefix={40 * 'x'}"], 2, "longer"),
         (["match", "a.obj", "b.obj", "--poi=12"], 2, "unrecognized"),
         (["match", "a.obj", "b.obj"], 1, 'There is no file "a.obj"'),
@@ -175,8 +178,25 @@ def test_a_bug_is_reported_and_not_swallowed(pair, tmp_path, monkeypatch):
     assert "ZeroDivisionError" in report_of(tmp_path / "report.json")["error"]
 
 
-def test_outputs_that_cannot_be_written_are_told(pair, tmp_path, capsys):
+def test_outputs_that_cannot_be_written_are_told_before_the_work(pair, tmp_path, capsys, monkeypatch):
     (tmp_path / "file").touch()
+    (tmp_path / "folder.blend").mkdir()
+    monkeypatch.setattr(match, "load_pair", None)
+    places = ["file/out.blend", "file/new/out.obj", "folder.blend"]
+    wanted = [f"--output={tmp_path / name}" for name in places]
+    for written in (*wanted, f"--map={tmp_path / 'file' / 'map.npz'}", f"--report={tmp_path / 'file' / 'report.json'}"):
+        assert main(["match", *pair, written, *flags(QUICK)]) == 1
+        assert "cannot be written" in capsys.readouterr().err
+    monkeypatch.setattr(os, "access", lambda _path, _mode: False)  # as of a folder of somebody else
+    assert main(["match", *pair, f"--output={tmp_path / 'new' / 'out.blend'}", f"--report={tmp_path / 'r.json'}"]) == 1
+    assert "cannot be written" in capsys.readouterr().err
+    assert "cannot be written" in report_of(tmp_path / "r.json")["error"]
+    assert not (tmp_path / "new").exists()
+
+
+def test_outputs_that_turn_out_not_to_be_written_are_told(pair, tmp_path, capsys, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(reports, "check_place", lambda _path: None)
     for name in ("out.blend", "out.obj"):
         assert main(["match", *pair, f"--output={tmp_path / 'file' / name}", *flags(QUICK)]) == 1
         assert "cannot be written" in capsys.readouterr().err
