@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import argparse
+from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...common.file_writing import check_place
 from ..command import EXIT_CODES, ExitCode, UsageError
 from ..console import Console, interruptible
 from ..meshes import mesh_argument
@@ -84,6 +86,7 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     pairs = read_manifest(parsed.manifest, defaults, parsed.do)
     folder = parsed.work or parsed.manifest.with_name(f"{parsed.manifest.name}.hiermatch")
     ledger, shard = Ledger(folder.absolute()), parsed.shard
+    check_place(ledger.folder / "summary.csv")
     interrupted = False
     if not parsed.summary:
         pairs = take_shard(pairs, shard)
@@ -109,10 +112,11 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
 def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namespace, console: Console) -> None:
     """Run all pairs that have no report yet, or one that is not to count."""
     tasks: dict[str, tuple[Pair, list[dict[str, Any]]]] = {}
-    waiting = []
+    waiting, known = [], 0
     for pair in pairs:
         report = ledger.report_of(pair)
         if report is not None and (report["status"] == "done" or not parsed.retry_failed):
+            known += 1
             continue
         try:
             arguments, inputs = _checked_arguments(pair, parsed.check)
@@ -129,7 +133,7 @@ def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namesp
         task = Task(pair.stem, [*arguments, *told], ledger.log_path(pair))
         tasks[task.name] = (pair, inputs)
         waiting.append(task)
-    known, ended = len(pairs) - len(waiting), 0
+    before, ended = len(pairs) - len(waiting), 0
     if known:
         console.say(f"{known} of {len(pairs)} pairs are known already.")
     events = run_tasks(waiting, parsed.jobs, parsed.timeout)
@@ -141,7 +145,7 @@ def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namesp
                 _close(pair, inputs, event, ledger, console)
             elif console.is_terminal:  # elsewhere the lines about what has ended are enough
                 names = ", ".join(tasks[name][0].name for name in event)
-                console.progress((known + ended) / len(pairs), f"{known + ended} of {len(pairs)}, at {names}")
+                console.progress((before + ended) / len(pairs), f"{before + ended} of {len(pairs)}, at {names}")
     finally:
         events.close()  # type: ignore[attr-defined]  # a generator; ends the children
 
@@ -154,7 +158,7 @@ def _checked_arguments(pair: Pair, check: Callable[[list[str]], object]) -> tupl
         paths = [mesh_argument(text).path for text in (pair.source, pair.target)]
     except argparse.ArgumentTypeError as error:
         raise UsageError(str(error)) from error
-    if {Path(written) for written in (*pair.outputs, pair.map)} & set(paths):
+    if set(pair.written) & {normpath(path) for path in paths}:
         raise UsageError("it would write over its own source or target")  # and never be known as done
     return arguments, [file_state(path) for path in dict.fromkeys(paths)]
 

@@ -8,6 +8,7 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass
+from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,6 +65,11 @@ class Pair:
     outputs: tuple[str, ...]
     map: str
     options: tuple[tuple[str, str], ...]
+
+    @property
+    def written(self) -> tuple[str, ...]:
+        """All files that it writes."""
+        return (*self.outputs, *([self.map] if self.map else []))
 
     @property
     def key(self) -> str:
@@ -183,10 +189,11 @@ def _text(value: Any) -> str:  # noqa: ANN401 - whatever JSON holds
 def _pair(number: int, row: Mapping[str, str], defaults: Mapping[str, str], command: str, folder: Path) -> Pair:
     """Make a pair of a row, with the paths relative to a folder."""
     command = row.get("command") or command
-    outputs = tuple(str(folder / part.strip()) for part in row.get("output", "").split("|") if part.strip())
+    outputs = tuple(normpath(folder / part.strip()) for part in row.get("output", "").split("|") if part.strip())
     options = {name: value for name, value in defaults.items() if _operator_of(command, name) is not None}
     options |= {name: value for name, value in row.items() if name not in _FIXED and value}
-    source, target, written = (str(folder / row[name]) if row.get(name) else "" for name in ("source", "target", "map"))
+    source, target = (str(folder / row[name]) if row.get(name) else "" for name in ("source", "target"))
+    written = normpath(folder / row["map"]) if row.get("map") else ""
     named = outputs[0] if outputs else written
     name = Path(named).stem if named else f"{Path(source).stem}-{Path(target).stem}"
     return Pair(
@@ -207,7 +214,7 @@ def _check_outputs(pairs: Sequence[Pair]) -> None:
     """Make sure that no two pairs write the same, and that each has a report of its own."""
     writers: dict[str, int] = {}
     for pair in pairs:
-        for written in (*pair.outputs, *([pair.map] if pair.map else []), pair.stem):
+        for written in (*pair.written, pair.stem):
             if written in writers:
                 raise ObjectError(
                     f"Rows {writers[written]} and {pair.number} of the manifest write the same, "

@@ -205,7 +205,7 @@ def test_a_wrong_value_fails_its_own_row_only(stand_in, capsys):
         "source,target,output,points,weight_limit,command\n"
         "a.obj,target.obj,a.blend,2,,\na.obj,target.obj,b.blend,12,,\na.obj,target.obj,c.blend,,3,\n"
         "a.obj,target.obj,d.blend,,3,retarget\na.obj,,e.blend,,,\na.obj,target.obj,f.blend,,,conquer\n"
-        "a.txt,target.obj,g.blend,,,\na.obj,target.obj,target.obj,,,\n"
+        "a.txt,target.obj,g.blend,,,\na.obj,target.obj,new/../target.obj,,,\n"
     )
     code, tried = stand_in.run()
     assert (code, tried) == (4, ["a", "a"])
@@ -217,7 +217,19 @@ def test_a_wrong_value_fails_its_own_row_only(stand_in, capsys):
     assert "names no file" in errors["g"]
     assert "write over" in errors["target"]
     assert errors["b"] == errors["d"] == ""
-    assert "c: weight_limit" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "c: weight_limit" in told
+    assert "known already" not in told
+    assert stand_in.run() == (4, [])
+    assert "8 of 8 pairs are known already" in capsys.readouterr().err
+
+
+def test_a_folder_for_reports_that_cannot_be_made_is_told_before_the_work(stand_in, capsys):
+    stand_in.write(["a"])
+    (stand_in.folder / "file").touch()
+    for folder in ("file", "file/reports"):
+        assert stand_in.run(f"--work={stand_in.folder / folder}") == (1, [])
+        assert "cannot be written" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 20])
@@ -294,6 +306,7 @@ def test_json_has_options_for_all(tmp_path):
         ("", "lists no pairs"),
         ("source,target,output\na.obj,b.obj,o.blend\na.obj,c.obj,o.blend\n", "Rows 1 and 2"),
         ("source,target\na.obj,b.obj\na.obj,b.obj\n", "Rows 1 and 2"),
+        ("source,target,output\na.obj,b.obj,o.blend\na.obj,c.obj,./new/../o.blend\n", "Rows 1 and 2"),
     ],
 )
 def test_manifests_that_are_none_are_told(tmp_path, text, said):
