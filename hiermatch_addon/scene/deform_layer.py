@@ -51,9 +51,11 @@ def read_weights(obj: bpy.types.Object) -> csr_array:
     Returns
     -------
     (n, g) csr_array of float
-        For each vertex and each of `obj.vertex_groups`, in their order, the weight; without entries that are zero.
+        For each vertex and each of `obj.vertex_groups`, in their order, the weight; without entries that are zero, or
+        that some file or script has left as no number.
     """
     weights = _stored(obj)[:, : len(obj.vertex_groups)]
+    weights.data[np.isnan(weights.data)] = 0
     weights.eliminate_zeros()
     return weights
 

@@ -36,6 +36,18 @@ def test_weights_come_back_exactly(blob):
         assert found[name] == {row: weights[row, column] for row in rows.tolist()}
 
 
+def test_weights_that_are_no_numbers_count_as_none(blob):
+    weights = random_weights(len(blob.data.vertices), 2)
+    write_weights(blob, list("ab"), weights)
+    group = next(element for vertex in blob.data.vertices for element in vertex.groups if element.group == 1)
+    group.weight = float("nan")
+    read = read_weights(blob)
+    assert np.isfinite(read.data).all()
+    assert (read.toarray() != weights.toarray()).sum() == 1
+    write_weights(blob, list("ab"), read)
+    np.testing.assert_array_equal(read_weights(blob).toarray(), read.toarray())
+
+
 def test_an_object_without_groups_has_no_columns(blob):
     assert read_weights(blob).shape == (len(blob.data.vertices), 0)
     write_weights(blob, [], csr_array((len(blob.data.vertices), 0)))
