@@ -30,6 +30,7 @@ __all__ = [
     "clear_rows",
     "held_pairs",
     "load_pairs",
+    "lost_bones",
     "pairing_of",
     "rows_of",
     "save_pairs",
@@ -101,6 +102,16 @@ def bone_pairs_of(scene: bpy.types.Scene) -> Any:  # noqa: ANN401 - a collection
 def rows_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> list[Any]:
     """Return the rows of two armatures."""
     return [row for row in bone_pairs_of(scene) if row.source_rig == source and row.target_rig == target]
+
+
+def lost_bones(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
+    """Return the names that rows of two armatures have for bones of which there are no more."""
+    named = [
+        (rig, name)
+        for row in rows_of(scene, source, target)
+        for rig, name in ((source, row.source), (target, row.target))
+    ]
+    return list(dict.fromkeys(name for rig, name in named if name and name not in armature_of(rig).bones))
 
 
 def held_pairs(

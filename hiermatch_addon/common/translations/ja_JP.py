@@ -1200,6 +1200,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Drivers turn {0} of "{1}", which therefore do not follow the new motion. Mute them to see it.': (
         'ドライバーが"{1}"の{0}を回転させているため、新しいモーションに従いません。見るにはミュートしてください。'
     ),
+    "Pairs of bones that are gone, or called otherwise by now, were left out: {0}. Pair the bones again.": (
+        "なくなったか、名前が変わったボーンのペアは除外されました: {0}。ボーンをもう一度ペアにしてください。"
+    ),
     'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
     "Clear Transform) unless that is wanted.": (
         'ペアがなく、レストポーズでもないボーンが、付いているものをすべて回転させています: "{1}"の{0}。意図したもので'

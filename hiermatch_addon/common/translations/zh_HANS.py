@@ -1000,6 +1000,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Drivers turn {0} of "{1}", which therefore do not follow the new motion. Mute them to see it.': (
         '驱动器在旋转 "{1}" 的 {0}，因此它们不会跟随新的运动。请将其静音以查看。'
     ),
+    "Pairs of bones that are gone, or called otherwise by now, were left out: {0}. Pair the bones again.": (
+        "已不存在或已改名的骨骼的配对被略过：{0}。请重新配对骨骼。"
+    ),
     'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
     "Clear Transform) unless that is wanted.": (
         '没有配对且不在静置姿态的骨骼会带动挂在其上的一切旋转："{1}" 的 {0}。如非有意，请清除其姿态'

@@ -17,7 +17,7 @@ from ...common.phrases import counted, listed
 from ...jobs.stepped_job import SteppedJob
 from ...jobs.transfer import TransferReport
 from ...jobs.transfer_job import Carried
-from ...properties.bone_pairs import pairing_of, rows_of
+from ...properties.bone_pairs import lost_bones, pairing_of, rows_of
 from ...scene.armatures import armature_of
 from ...scene.character import SideReference
 from ...scene.motion.control_rigs import driven_bones
@@ -182,6 +182,11 @@ class MotionJob(SteppedJob):
             remarks = () if steered is None else steered.finished(rig)
             played = not actions or (self._plan.assign and len(actions) == 1)
             notes = _notes(source, rig, actions, moved, played=played and steered is None)
+            if lost := lost_bones(cast("bpy.types.Scene", context.scene), source, rig):
+                notes.append(
+                    f"Pairs of bones that are gone, or called otherwise by now, were left out: {listed(lost)}. Pair "
+                    "the bones again."
+                )
             report = TransferReport(_said(made), tuple(notes), remarks)
             seconds = time.perf_counter() - self._begun
             if before is None:

@@ -632,6 +632,23 @@ def test_what_modifiers_do_between_keys_is_carried_too():
     assert worst(source, target, range(1, 22, 2)) < 2e-3
 
 
+@pytest.mark.parametrize("which", ["A", "B"])
+def test_pairs_whose_bones_are_called_otherwise_by_now_are_named(which):
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source)
+    bpy.ops.hiermatch.pair_bones(source="A", target="B")
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert "were left out" not in bpy.context.scene.hiermatch_retarget.report.notes
+    bone = bpy.data.objects[which].data.bones[5]
+    before, bone.name = bone.name, "Bone"
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert f'were left out: "{before}". Pair the bones' in bpy.context.scene.hiermatch_retarget.report.notes
+    assert bpy.ops.hiermatch.pair_bones(source="A", target="B") == {"FINISHED"}
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert "were left out" not in bpy.context.scene.hiermatch_retarget.report.notes
+
+
 def test_bones_that_drivers_turn_are_named(capfd):
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed")
