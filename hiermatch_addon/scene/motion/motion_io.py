@@ -64,9 +64,9 @@ class ActionKeys:
     interpolations : dict
         For each bone the interpolation after each of these keys, and the easing.
     cycles : dict
-        For each bone that has one the settings of the modifier that repeats its curves.
+        For each bone and channel that has one the settings of the modifier that repeats its curves.
     extrapolations : dict
-        For each bone how its curves go on beyond the keys.
+        For each bone and channel how its curves go on beyond the keys.
     modified : bool
         Whether more than keys and cycles says how a curve goes, such as a Noise modifier.
     """
@@ -74,8 +74,8 @@ class ActionKeys:
     frames: NDArray[np.float64]
     times: dict[str, NDArray[np.float64]]
     interpolations: dict[str, list[tuple[str, str]]]
-    cycles: dict[str, dict[str, Any]]
-    extrapolations: dict[str, str]
+    cycles: dict[tuple[str, str], dict[str, Any]]
+    extrapolations: dict[tuple[str, str], str]
     modified: bool
 
 
@@ -140,20 +140,20 @@ def needs_evaluation(armature: bpy.types.Object) -> bool:
 def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKeys:
     """Read where an action has its keys."""
     times: dict[str, dict[float, tuple[str, str]]] = {}
-    cycles: dict[str, dict[str, Any]] = {}
-    extrapolations: dict[str, str] = {}
+    cycles: dict[tuple[str, str], dict[str, Any]] = {}
+    extrapolations: dict[tuple[str, str], str] = {}
     modified = False
     whole = ((OBJECT, channel, curve) for channel, curve in _moving_curves(action, armature))
-    for bone, _, curve in chain(bone_curves(action, armature), whole):
+    for bone, channel, curve in chain(bone_curves(action, armature), whole):
         keys = times.setdefault(bone, {})
         for point in curve.keyframe_points:
             keys.setdefault(float(point.co[0]), (point.interpolation, point.easing))
-        extrapolations.setdefault(bone, curve.extrapolation)
+        extrapolations.setdefault((bone, channel), curve.extrapolation)
         live = [modifier for modifier in curve.modifiers if not modifier.mute]
         modified |= any(modifier.type != "CYCLES" for modifier in live)
         for modifier in live:
             if modifier.type == "CYCLES":
-                cycles.setdefault(bone, {name: getattr(modifier, name) for name in _CYCLE})
+                cycles.setdefault((bone, channel), {name: getattr(modifier, name) for name in _CYCLE})
     frames = {bone: np.array(sorted(keys), np.float64) for bone, keys in times.items()}
     curved = {bone: [times[bone][float(frame)] for frame in found] for bone, found in frames.items()}
     ends = np.array(frame_range(action, armature), np.float64)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ....engine import BonePairing, TransferredMotion
     from ...scene.motion.motion_io import ActionKeys
 
-__all__ = ["LOCATION", "BoneChannels", "baked_keys", "bone_channels", "sparse_frames", "sparse_keys"]
+__all__ = ["LOCATION", "BoneChannels", "baked_keys", "bone_channels", "movers_of", "sparse_frames", "sparse_keys"]
 
 SIDE_STEP = 0.05
 """Frames before and after a key at which its slopes are measured."""
@@ -58,9 +58,16 @@ def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[
 
 
 def baked_keys(
-    channels: list[BoneChannels], frames: NDArray[np.float64], tolerance: float | None, keys: ActionKeys
+    channels: list[BoneChannels],
+    frames: NDArray[np.float64],
+    tolerance: float | None,
+    keys: ActionKeys,
+    movers: dict[str, list[str]],
 ) -> list[BoneKeys]:
-    """Make keys of channels that were computed at frames (f,): at each of them, or few within a tolerance."""
+    """Make keys of channels that were computed at frames (f,): at each of them, or few within a tolerance.
+
+    Beyond them they go on as the source's bones that move them (`movers_of`), where these have keys.
+    """
     made = []
     for channel in channels:
         slopes = slopes_of(frames, channel.values)
@@ -70,8 +77,18 @@ def baked_keys(
             else reduced_keys(frames, channel.values, tolerance * channel.coarseness)
         )
         both = np.stack([slopes[kept]] * 2)
-        cycle = next(iter(keys.cycles.values()), {})
-        made.append(BoneKeys(channel.bone, channel.channel, frames[kept], channel.values[kept], both, cycle=cycle))
+        cycle, beyond = _beyond(channel, movers.get(channel.bone, []), keys)
+        made.append(
+            BoneKeys(
+                channel.bone,
+                channel.channel,
+                frames[kept],
+                channel.values[kept],
+                both,
+                cycle=cycle,
+                extrapolation=beyond,
+            )
+        )
     return made
 
 
@@ -85,8 +102,8 @@ def sparse_keys(
     channels: list[BoneChannels],
     frames: NDArray[np.float64],
     keys: ActionKeys,
-    pairing: BonePairing,
-    rigs: tuple[bpy.types.Object, bpy.types.Object],
+    movers: dict[str, list[str]],
+    source: bpy.types.Object,
 ) -> list[BoneKeys]:
     """Make keys where the source's bones have theirs.
 
@@ -98,21 +115,16 @@ def sparse_keys(
         Frames of the keys, of all bones.
     keys : ActionKeys
         Which bones have keys when.
-    pairing : BonePairing
-        The pairs.
-    rigs : (bpy.types.Object, bpy.types.Object)
-        Source and target.
+    movers : dict
+        For each bone of the target the source's bones that turn it, from `movers_of`.
+    source : bpy.types.Object
+        The source's armature.
     """
-    relevant = _movers(pairing, rigs)
     made = []
     for channel in channels:
-        names = (
-            relevant[channel.bone]
-            if channel.channel != "location"
-            else _with_ancestors(relevant[channel.bone], rigs[0])
-        )
-        movers = [name for name in names if name in keys.times]
-        times = np.unique(np.concatenate([keys.times[name] for name in movers])) if movers else frames[:1]
+        names = movers[channel.bone] if channel.channel != "location" else _with_ancestors(movers[channel.bone], source)
+        moving = [name for name in names if name in keys.times]
+        times = np.unique(np.concatenate([keys.times[name] for name in moving])) if moving else frames[:1]
         rows = np.searchsorted(frames, times)
         before, at, after = (channel.values[3 * rows + step] for step in range(3))
         slopes = np.stack([(at - before) / SIDE_STEP, (after - at) / SIDE_STEP])
@@ -120,17 +132,32 @@ def sparse_keys(
             times, at, slopes = times[:1], at[:1], slopes[:, :1] * 0
         curved = {
             float(time): how
-            for name in reversed(movers)
+            for name in reversed(moving)
             for time, how in zip(keys.times[name], keys.interpolations[name], strict=True)
         }
         ways = [curved.get(float(time), ("BEZIER", "AUTO")) for time in times]
-        cycle = next((keys.cycles[name] for name in movers if name in keys.cycles), {})
-        beyond = next((keys.extrapolations[name] for name in movers), "CONSTANT")
+        cycle, beyond = _beyond(channel, moving, keys)
         made.append(BoneKeys(channel.bone, channel.channel, times, at, slopes, ways, cycle, beyond))
     return made
 
 
-def _movers(pairing: BonePairing, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> dict[str, list[str]]:
+def _beyond(channel: BoneChannels, movers: list[str], keys: ActionKeys) -> tuple[dict[str, Any], str]:
+    """Say how a channel goes on beyond its keys, as what moves it: how it is repeated, and else is extrapolated.
+
+    A place goes on as places, and a rotation as rotations, where there are such.  What nothing with keys moves, as far
+    as is known, such as what follows a goal, is repeated as anything is.
+    """
+    known = [name for name in movers if name in keys.times]
+
+    def chosen(found: dict[tuple[str, str], Any], names: list[str]) -> Any:  # noqa: ANN401 - of either kind
+        ways = [(how == "location", way) for name in names for (bone, how), way in found.items() if bone == name]
+        alike = [way for of_place, way in ways if of_place == (channel.channel == "location")]
+        return next(iter([*alike, *(way for _, way in ways)]), None)
+
+    return chosen(keys.cycles, known or list(keys.times)) or {}, chosen(keys.extrapolations, known) or "CONSTANT"
+
+
+def movers_of(pairing: BonePairing, rigs: tuple[bpy.types.Object, bpy.types.Object]) -> dict[str, list[str]]:
     """For each bone of the target that has partners the source's bones that turn it against what it hangs on."""
     sources, targets = (armature_of(rig).bones for rig in rigs)
     names = [[bone.name for bone in bones] for bones in (sources, targets)]

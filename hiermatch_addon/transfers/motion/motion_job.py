@@ -44,7 +44,7 @@ from ...scene.motion.rigs import (
     rig_of,
     two_rigs,
 )
-from .action_keys import SIDE_STEP, baked_keys, bone_channels, sparse_frames, sparse_keys
+from .action_keys import SIDE_STEP, baked_keys, bone_channels, movers_of, sparse_frames, sparse_keys
 from .bone_pairs import pairing_job
 from .steered_rig import found_again, is_steered, steered_steps
 
@@ -276,10 +276,12 @@ class MotionJob(SteppedJob):
             if link.name in self._steered:
                 yield from self._steered[link.name].posed_steps(link, found)
                 channels = self._steered[link.name].channels(found_again(link), channels)
+            movers = movers_of(pairing, (found_again(self._source), found_again(link)))
             if sparse:
-                made = sparse_keys(channels, frames, keys, pairing, rigs)
+                made = sparse_keys(channels, frames, keys, movers, found_again(self._source))
             else:
-                made = baked_keys(channels, frames, None if self._plan.keys == "ALL" else self._plan.tolerance, keys)
+                tolerance = None if self._plan.keys == "ALL" else self._plan.tolerance
+                made = baked_keys(channels, frames, tolerance, keys, movers)
             self._found[link.name, name] = made
 
     def _is_sparse(self, keys: ActionKeys, count: float) -> bool:

@@ -649,6 +649,35 @@ def test_pairs_whose_bones_are_called_otherwise_by_now_are_named(which):
     assert "were left out" not in bpy.context.scene.hiermatch_retarget.report.notes
 
 
+def repeat(curve, mode):
+    modifier = curve.modifiers.new("CYCLES")
+    modifier.mode_before = modifier.mode_after = mode
+
+
+@pytest.mark.parametrize("keying", ["SOURCE", "REDUCED", "ALL"])
+@pytest.mark.parametrize(
+    "go_on",
+    [
+        lambda path, curve: repeat(curve, "REPEAT_OFFSET" if path.endswith("location") else "REPEAT"),
+        lambda path, curve: repeat(curve, "REPEAT") if "thigh" in path else None,
+        lambda path, curve: setattr(curve, "extrapolation", "LINEAR" if path.endswith("location") else "CONSTANT"),
+    ],
+    ids=["walk", "one", "linear"],
+)
+def test_beyond_its_keys_each_channel_goes_on_as_what_moves_it(keying, go_on):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    hips = source.pose.bones["hips"]
+    for frame, turn in ((1, (1, 0, 0, 0)), (11, (0.98, 0.2, 0, 0)), (21, (1, 0, 0, 0))):
+        hips.rotation_quaternion = turn
+        hips.keyframe_insert("rotation_quaternion", frame=frame)
+    for (path, _index), curve in curves_of(action).items():
+        go_on(path, curve)
+    assert carry(source="A", target="B", keying=keying) == {"FINISHED"}
+    assert worst(source, target, [-30, 5, 30, 55]) < 2e-3
+
+
 def test_bones_that_drivers_turn_are_named(capfd):
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed")
