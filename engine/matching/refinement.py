@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.spatial import cKDTree
 
 from ..dense.components.masked_maps import piece_of, with_pieces_only
 from ..dense.dense_registration import EIGENPAIRS, RegisteredPair
@@ -23,6 +24,7 @@ from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, at_once, run, within
 from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
 from ..shapes.landmarks import locate_landmarks
+from ..shapes.prepared_surface import PreparedSurface
 from ..shapes.shape import Shape
 from ..shapes.shape_preparation import finer_shapes
 
@@ -150,11 +152,6 @@ def placed_by_map(
         Their images, k.
     point_distortion : (k,) array of float
         See `point_distortions`.
-
-    Raises
-    ------
-    MatchError
-        If a point is not on the main part of its mesh.
     """
     vertices = source_points.nearest_vertices
     images = SurfacePoints.from_barycentric(target, found.triangles[vertices], found.barycentric[vertices])
@@ -183,12 +180,8 @@ def point_distortions(
     -------
     (k,) array of float
         Root mean square, over the other vertices or a spread part of them, of the difference of the distances, each
-        in units of the square root of the area of its surface; zero for a vertex without a path to others.
-
-    Raises
-    ------
-    MatchError
-        If a vertex is not on the main part of its mesh.
+        in units of the square root of the area of its surface; zero for a vertex without a path to others.  What is
+        on a piece beside the main part, such as an eye, is measured from the place of the main part next to it.
     """
     count = np.size(source_vertices)
     anchors = np.unique(np.linspace(0, count - 1, min(count, _ANCHORS)).round().astype(np.int64))
@@ -196,8 +189,17 @@ def point_distortions(
     for mesh, given in ((source, source_vertices), (target, target_vertices)):
         vertices = np.asarray(given, np.int64)
         shape = run(with_limbs_steps(Shape(mesh), "mesh", vertices))
-        own = shape.surface.mesh_vertices(vertices)
+        own = _on_main_part(shape.surface, vertices)
         rows.append(shape.solver.distances(own[anchors])[:, own] / shape.scale)
     squares = np.square(rows[0] - rows[1])  # (a, k)
     others = np.maximum(len(anchors) - np.isin(np.arange(count), anchors), 1)
     return np.sqrt(np.where(np.isfinite(squares), squares, 0.0).sum(axis=0) / others)
+
+
+def _on_main_part(surface: PreparedSurface, vertices: Ints) -> Ints:
+    """Find the vertex of the surface that is matched that stands for each of some original ones, (k,)."""
+    on_main = surface.cleaned.vertex_parts[vertices] == 0
+    found = np.empty(len(vertices), np.int64)
+    found[on_main] = surface.mesh_vertices(vertices[on_main])
+    found[~on_main] = cKDTree(surface.mesh.vertices).query(surface.original.vertices[vertices[~on_main]])[1]
+    return found

@@ -102,6 +102,19 @@ class TestDistortions:
         assert found.argmax() == 5
         assert found[5] > 2 * np.delete(found, 5).max()
 
+    def test_what_is_on_a_piece_beside_the_main_part_is_measured_from_next_to_it(self):
+        ball = TriangleMesh(*icosphere(6))
+        vertices = np.arange(0, ball.vertex_count, 9)
+        bead, triangles = icosphere(1)
+        bead = 0.02 * bead + 1.03 * ball.vertices[vertices[5]]
+        both = TriangleMesh(
+            np.concatenate([ball.vertices, bead]), np.concatenate([ball.triangles, triangles + len(ball.vertices)])
+        )
+        images = vertices.copy()
+        images[5] = ball.vertex_count + 3
+        assert point_distortions(ball, both, vertices, images).max() < 0.02
+        assert point_distortions(both, ball, images, vertices).max() < 0.02
+
     def test_one_point(self):
         ball = TriangleMesh(*icosphere(3))
         assert point_distortions(ball, ball, [3], [4]).tolist() == [0.0]
