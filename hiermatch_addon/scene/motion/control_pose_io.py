@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Controls", "Switch", "at_rest", "leaders_of", "places", "posed_controls", "set_switches", "update"]
+__all__ = ["Controls", "Lent", "Switch", "at_rest", "leaders_of", "posed_controls", "set_switches"]
 
 _STANDS = 1e-4
 """By how much a control may stand otherwise than it should, in radians and in units of the first bone's length."""
@@ -111,11 +111,11 @@ def posed_controls(
     names = list(controls.turning)
     bases = np.tile(np.eye(4), (*turns.shape[:2], 1, 1))
     missed = np.zeros(turns.shape[:2])
-    with at_rest(armature, controls.switches):
-        rest, stage = places(armature, names), _Stage(armature, controls)
+    with at_rest(armature, controls.switches) as lent:
+        rest, stage = lent.places(names), _Stage(armature, lent, controls)
         for frame in range(len(turns)):
             stage.pose(stage.wished(turns[frame], heads[frame], rest[:, :3, 3]))
-            now = places(armature, names)
+            now = lent.places(names)
             turned = now[:, :3, :3] @ np.linalg.inv(rest[:, :3, :3])
             axes = [np.einsum("kij,kj->ki", each, rest[:, :3, 1]) for each in (turned, turns[frame])]
             missed[frame] = np.arccos((axes[0] * axes[1]).sum(axis=1).clip(-1, 1))
@@ -131,8 +131,8 @@ class _Stage:
     again until it is true: at once where a control is carried by the one above, and once more for each that is not.
     """
 
-    def __init__(self, armature: bpy.types.Object, controls: Controls) -> None:
-        self._armature = armature
+    def __init__(self, armature: bpy.types.Object, lent: Lent, controls: Controls) -> None:
+        self._armature, self._lent = armature, lent
         self._names = list(dict.fromkeys(controls.turning.values()))
         turned = list(controls.turning.values())
         self._first = [turned.index(name) for name in self._names]
@@ -142,7 +142,7 @@ class _Stage:
         self._leaders = np.array([each[0] if each else -1 for each in above], np.int64)
         self._most = 2 + max((len(each) for each in above), default=0)
         self._unit = armature_of(armature).bones[self._names[0]].length
-        self._starts = places(armature, self._names)
+        self._starts = lent.places(self._names)
 
     def wished(
         self, turns: NDArray[np.float64], heads: NDArray[np.float64], rest: NDArray[np.float64]
@@ -159,7 +159,7 @@ class _Stage:
         pose: Any = cast("bpy.types.Pose", self._armature.pose).bones
         before = None
         for _ in range(self._most):
-            now = places(self._armature, self._names)
+            now = self._lent.places(self._names)
             # How each has still to be turned back, to where it stands from where it should.
             back = now[:, :3, :3] @ wished[:, :3, :3].transpose(0, 2, 1)
             turned = _apart(back, np.eye(3))
@@ -175,11 +175,11 @@ class _Stage:
                 matrix = np.eye(4)
                 matrix[:3, :3] = wanted[:3, :3] if leader < 0 else back[leader] @ wanted[:3, :3]
                 matrix[:3, 3] = wanted[:3, 3] if place else stands[:3, 3]
-                bone.matrix = Matrix(matrix.tolist())
+                bone.matrix_basis = self._lent.basis(bone, Matrix(matrix.tolist()))
                 if not place:
                     bone.location = (0, 0, 0)
                 bone.scale = (1, 1, 1)
-            update()
+            self._lent.update()
 
     def _release(self, before: NDArray[np.float64], back: NDArray[np.float64], stands: NDArray[np.bool_]) -> None:
         """Note which controls did not turn with the one above, as those of limbs that keep their direction.
@@ -211,8 +211,44 @@ def leaders_of(armature: bpy.types.Object, name: str, inputs: dict[str, set[str]
     return found
 
 
+class Lent:
+    """An armature that is lent at rest, evaluated in a scene of its own: what it moves in others stays as it is.
+
+    That takes a part of the time where it moves meshes, as all of these are evaluated with it else.
+    """
+
+    def __init__(self, armature: bpy.types.Object, scene: bpy.types.Scene) -> None:
+        self._armature, self._layer = armature, scene.view_layers[0]
+        self._pose: Any = None
+        self.update()
+
+    def update(self) -> None:
+        """Let Blender evaluate what was changed."""
+        self._layer.update()
+        depsgraph = cast("bpy.types.Depsgraph", self._layer.depsgraph)
+        self._pose = cast("Any", self._armature.evaluated_get(depsgraph)).pose.bones
+
+    def matrix(self, name: str) -> Matrix:
+        """Return where a bone is, in the armature's space."""
+        return cast("Matrix", self._pose[name].matrix)
+
+    def places(self, names: Sequence[str]) -> NDArray[np.float64]:
+        """Return where bones are, in the armature's space, without scale, (k, 4, 4)."""
+        found = np.array([self._pose[name].matrix for name in names], np.float64).reshape(-1, 4, 4)
+        found[:, :3, :3] /= np.maximum(np.linalg.norm(found[:, :3, :3], axis=1, keepdims=True), np.finfo(float).tiny)
+        return found
+
+    def basis(self, bone: bpy.types.PoseBone, matrix: Matrix) -> Matrix:
+        """Return the transform of a bone with which it will be there, in the armature's space, if nothing holds it."""
+        rest: Any = bone.bone
+        above = {}
+        if bone.parent is not None:
+            above = {"parent_matrix": self.matrix(bone.parent.name), "parent_matrix_local": rest.parent.matrix_local}
+        return cast("Matrix", rest.convert_local_to_pose(matrix, rest.matrix_local, **above, invert=True))
+
+
 @contextmanager
-def at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator[None]:
+def at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator[Lent]:
     """Lend an armature at rest, without action, with switches set, and put everything back."""
     animation: Any = armature.animation_data or armature.animation_data_create()
     before = animation.action, getattr(animation, "action_slot", None), animation.use_nla
@@ -221,15 +257,18 @@ def at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator[
     for channel, values in stood.items():
         pose.foreach_get(channel, values)
     switched = [(switch, pose[switch.bone][switch.name]) for switch in switches]
+    shown = cast("bpy.types.Scene", bpy.context.scene)
+    scene = bpy.data.scenes.new("HierMatch")
+    scene.frame_current, scene.frame_subframe = shown.frame_current, shown.frame_subframe
     try:
         animation.use_nla, animation.action = False, None
         for channel, rest in _CHANNELS.items():
             pose.foreach_set(channel, np.tile(np.array(rest, np.float32), len(pose)))
         set_switches(armature, switches)
-        armature.update_tag(refresh={"OBJECT", "DATA", "TIME"})
-        update()
-        yield
+        scene.collection.objects.link(armature)
+        yield Lent(armature, scene)
     finally:
+        bpy.data.scenes.remove(scene)
         for switch, value in switched:
             pose[switch.bone][switch.name] = value
         animation.use_nla = before[2]
@@ -240,22 +279,8 @@ def at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator[
         for channel, values in stood.items():
             pose.foreach_set(channel, values)
         armature.update_tag(refresh={"OBJECT", "DATA", "TIME"})
-        update()
 
 
 def _apart(rotations: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return small angles between rotations (k, 3, 3): exact to single precision, as a trace is not."""
     return np.linalg.norm(rotations - others, axis=(1, 2)) / np.sqrt(2)
-
-
-def places(armature: bpy.types.Object, names: Sequence[str]) -> NDArray[np.float64]:
-    """Where bones are, in the armature's space, without scale, (k, 4, 4)."""
-    pose = cast("bpy.types.Pose", armature.pose).bones
-    found = np.array([pose[name].matrix for name in names], np.float64).reshape(-1, 4, 4)
-    found[:, :3, :3] /= np.maximum(np.linalg.norm(found[:, :3, :3], axis=1, keepdims=True), np.finfo(float).tiny)
-    return found
-
-
-def update() -> None:
-    """Let Blender evaluate what was changed."""
-    cast("Any", bpy.context).view_layer.update()

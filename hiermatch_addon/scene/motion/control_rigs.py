@@ -15,7 +15,7 @@ import numpy as np
 from mathutils import Quaternion
 
 from ..armatures import armature_of
-from .control_pose_io import Controls, Switch, at_rest, leaders_of, places, update
+from .control_pose_io import Controls, Switch, at_rest, leaders_of
 
 if TYPE_CHECKING:
     from collections.abc import Container, Sequence
@@ -136,19 +136,19 @@ def tried_controls(
     """Turn the controls of each group, group after group, see what follows, and leave everything as it was."""
     pose = cast("bpy.types.Pose", armature.pose).bones
     turn = Quaternion(_AXIS, _TURN)
-    with at_rest(armature, switches):
-        before = places(armature, found.bones)
+    with at_rest(armature, switches) as lent:
+        before = lent.places(found.bones)
         lengths = np.array([armature_of(armature).bones[name].length for name in found.bones])
-        starts = {name: pose[name].matrix.to_3x3().normalized() for group in groups for name in group}
+        starts = {name: lent.matrix(name).to_3x3().normalized() for group in groups for name in group}
         for group in groups:
             for name in group:
                 _turn_basis(pose[name], turn)
-            update()
-            after = places(armature, found.bones)
+            lent.update()
+            after = lent.places(found.bones)
             turned = _angles(after[:, :3, :3] @ np.linalg.inv(before[:, :3, :3]))
             ways = np.linalg.norm(after[:, :3, 3] - before[:, :3, 3], axis=1) / lengths
             for name in group:
-                moved = np.array(pose[name].matrix.to_3x3().normalized() @ starts[name].inverted())
+                moved = np.array(lent.matrix(name).to_3x3().normalized() @ starts[name].inverted())
                 # Where bones point counts: how they turn about themselves is often shared out along a limb.
                 errors = np.arccos((after[:, :3, 1] * (before[:, :3, 1] @ moved.T)).sum(axis=1).clip(-1, 1))
                 # What hardly turns does not follow, nor what another of the group moves.
@@ -158,7 +158,6 @@ def tried_controls(
                 }
             for name in group:
                 _turn_basis(pose[name], Quaternion())
-        update()
 
 
 def chosen_controls(
