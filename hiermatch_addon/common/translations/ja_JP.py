@@ -1273,11 +1273,6 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"のストリップがNLAエディターで調整中のため、アクションが固定されています。先に調整モードを終了してくださ'
         "い(Tab)。"
     ),
-    'The armature "{0}" is switched off in the view layer "{1}", so Blender does not move it. Link it to the scene, or '
-    "enable it and its collection in the Outliner.": (
-        'アーマチュア"{0}"はビューレイヤー"{1}"で無効になっているため、Blenderは動かしません。シーンにリンクするか、ア'
-        "ウトライナーでアーマチュアとそのコレクションを有効にしてください。"
-    ),
     '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
         '"{0}"にはアーマチュアのボーンのウェイトがありません。リグを持つソースを選んでください。'
     ),

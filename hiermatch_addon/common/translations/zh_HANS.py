@@ -1055,10 +1055,6 @@ MESSAGES: Final[dict[str, str]] = {
     "(Object > Library Override > Make).": ('骨架 "{0}" 是无法编辑的库重写。请先使其可编辑（物体 > 库重写 > 创建）。'),
     'A strip of "{0}" is being tweaked in the NLA editor, which holds its action. Leave the tweak mode there first '
     "(Tab).": ('"{0}" 的一个片段正在 NLA 编辑器中调整，其动作被锁定。请先在那里退出调整模式（Tab）。'),
-    'The armature "{0}" is switched off in the view layer "{1}", so Blender does not move it. Link it to the scene, or '
-    "enable it and its collection in the Outliner.": (
-        '骨架 "{0}" 在视图层 "{1}" 中已停用，因此 Blender 不会移动它。请将其链接到场景，或在大纲视图中启用它及其集合。'
-    ),
     '"{0}" has no weights for the bones of an armature. Choose a rigged Source.': (
         '"{0}" 没有骨架骨骼的权重。请选择已绑定的源。'
     ),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Poses of a control rig: lent at rest, looked at, and posed by its controls so that bones turn as wanted."""
+"""Poses of a control rig: a copy at rest, posed by its controls so that bones turn as wanted."""
 
 from __future__ import annotations
 
@@ -7,18 +7,21 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-import bpy
 import numpy as np
 from mathutils import Matrix
 
 from ..armatures import armature_of
+from .own_scene import own_scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    import bpy
     from numpy.typing import NDArray
 
-__all__ = ["Controls", "Lent", "Switch", "at_rest", "leaders_of", "posed_controls", "set_switches"]
+    from .own_scene import OwnScene
+
+__all__ = ["Controls", "Switch", "at_rest", "leaders_of", "posed_controls", "set_switches"]
 
 _STANDS = 1e-4
 """By how much a control may stand otherwise than it should, in radians and in units of the first bone's length."""
@@ -87,7 +90,7 @@ def posed_controls(
     turns: NDArray[np.float64],
     heads: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Pose the controls so that the bones turn as wanted, pose after pose, and leave everything as it was.
+    """Find the poses of controls in which the bones turn as wanted, pose after pose.
 
     Parameters
     ----------
@@ -107,15 +110,15 @@ def posed_controls(
     missed : (f, k) array of float
         By what angle each bone points elsewhere in the end, in radians.
     """
-    pose = cast("bpy.types.Pose", armature.pose).bones
     names = list(controls.turning)
     bases = np.tile(np.eye(4), (*turns.shape[:2], 1, 1))
     missed = np.zeros(turns.shape[:2])
-    with at_rest(armature, controls.switches) as lent:
-        rest, stage = lent.places(names), _Stage(armature, lent, controls)
+    with at_rest(armature, controls.switches) as alone:
+        pose = cast("bpy.types.Pose", alone.armature.pose).bones
+        rest, stage = alone.places(names), _Stage(alone, controls)
         for frame in range(len(turns)):
             stage.pose(stage.wished(turns[frame], heads[frame], rest[:, :3, 3]))
-            now = lent.places(names)
+            now = alone.places(names)
             turned = now[:, :3, :3] @ np.linalg.inv(rest[:, :3, :3])
             axes = [np.einsum("kij,kj->ki", each, rest[:, :3, 1]) for each in (turned, turns[frame])]
             missed[frame] = np.arccos((axes[0] * axes[1]).sum(axis=1).clip(-1, 1))
@@ -131,8 +134,8 @@ class _Stage:
     again until it is true: at once where a control is carried by the one above, and once more for each that is not.
     """
 
-    def __init__(self, armature: bpy.types.Object, lent: Lent, controls: Controls) -> None:
-        self._armature, self._lent = armature, lent
+    def __init__(self, alone: OwnScene, controls: Controls) -> None:
+        self._alone, armature = alone, alone.armature
         self._names = list(dict.fromkeys(controls.turning.values()))
         turned = list(controls.turning.values())
         self._first = [turned.index(name) for name in self._names]
@@ -142,7 +145,7 @@ class _Stage:
         self._leaders = np.array([each[0] if each else -1 for each in above], np.int64)
         self._most = 2 + max((len(each) for each in above), default=0)
         self._unit = armature_of(armature).bones[self._names[0]].length
-        self._starts = lent.places(self._names)
+        self._starts = alone.places(self._names)
 
     def wished(
         self, turns: NDArray[np.float64], heads: NDArray[np.float64], rest: NDArray[np.float64]
@@ -156,10 +159,10 @@ class _Stage:
 
     def pose(self, wished: NDArray[np.float64]) -> None:
         """Pose the controls, (c, 4, 4)."""
-        pose: Any = cast("bpy.types.Pose", self._armature.pose).bones
+        pose: Any = cast("bpy.types.Pose", self._alone.armature.pose).bones
         before = None
         for _ in range(self._most):
-            now = self._lent.places(self._names)
+            now = self._alone.places(self._names)
             # How each has still to be turned back, to where it stands from where it should.
             back = now[:, :3, :3] @ wished[:, :3, :3].transpose(0, 2, 1)
             turned = _apart(back, np.eye(3))
@@ -175,11 +178,11 @@ class _Stage:
                 matrix = np.eye(4)
                 matrix[:3, :3] = wanted[:3, :3] if leader < 0 else back[leader] @ wanted[:3, :3]
                 matrix[:3, 3] = wanted[:3, 3] if place else stands[:3, 3]
-                bone.matrix_basis = self._lent.basis(bone, Matrix(matrix.tolist()))
+                bone.matrix_basis = self._alone.basis(bone, Matrix(matrix.tolist()))
                 if not place:
                     bone.location = (0, 0, 0)
                 bone.scale = (1, 1, 1)
-            self._lent.update()
+            self._alone.update()
 
     def _release(self, before: NDArray[np.float64], back: NDArray[np.float64], stands: NDArray[np.bool_]) -> None:
         """Note which controls did not turn with the one above, as those of limbs that keep their direction.
@@ -211,74 +214,16 @@ def leaders_of(armature: bpy.types.Object, name: str, inputs: dict[str, set[str]
     return found
 
 
-class Lent:
-    """An armature that is lent at rest, evaluated in a scene of its own: what it moves in others stays as it is.
-
-    That takes a part of the time where it moves meshes, as all of these are evaluated with it else.
-    """
-
-    def __init__(self, armature: bpy.types.Object, scene: bpy.types.Scene) -> None:
-        self._armature, self._layer = armature, scene.view_layers[0]
-        self._pose: Any = None
-        self.update()
-
-    def update(self) -> None:
-        """Let Blender evaluate what was changed."""
-        self._layer.update()
-        depsgraph = cast("bpy.types.Depsgraph", self._layer.depsgraph)
-        self._pose = cast("Any", self._armature.evaluated_get(depsgraph)).pose.bones
-
-    def matrix(self, name: str) -> Matrix:
-        """Return where a bone is, in the armature's space."""
-        return cast("Matrix", self._pose[name].matrix)
-
-    def places(self, names: Sequence[str]) -> NDArray[np.float64]:
-        """Return where bones are, in the armature's space, without scale, (k, 4, 4)."""
-        found = np.array([self._pose[name].matrix for name in names], np.float64).reshape(-1, 4, 4)
-        found[:, :3, :3] /= np.maximum(np.linalg.norm(found[:, :3, :3], axis=1, keepdims=True), np.finfo(float).tiny)
-        return found
-
-    def basis(self, bone: bpy.types.PoseBone, matrix: Matrix) -> Matrix:
-        """Return the transform of a bone with which it will be there, in the armature's space, if nothing holds it."""
-        rest: Any = bone.bone
-        above = {}
-        if bone.parent is not None:
-            above = {"parent_matrix": self.matrix(bone.parent.name), "parent_matrix_local": rest.parent.matrix_local}
-        return cast("Matrix", rest.convert_local_to_pose(matrix, rest.matrix_local, **above, invert=True))
-
-
 @contextmanager
-def at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator[Lent]:
-    """Lend an armature at rest, without action, with switches set, and put everything back."""
-    animation: Any = armature.animation_data or armature.animation_data_create()
-    before = animation.action, getattr(animation, "action_slot", None), animation.use_nla
-    pose = cast("Any", armature.pose).bones
-    stood = {channel: np.empty(len(pose) * len(rest), np.float32) for channel, rest in _CHANNELS.items()}
-    for channel, values in stood.items():
-        pose.foreach_get(channel, values)
-    switched = [(switch, pose[switch.bone][switch.name]) for switch in switches]
-    shown = cast("bpy.types.Scene", bpy.context.scene)
-    scene = bpy.data.scenes.new("HierMatch")
-    scene.frame_current, scene.frame_subframe = shown.frame_current, shown.frame_subframe
-    try:
-        animation.use_nla, animation.action = False, None
+def at_rest(armature: bpy.types.Object, switches: Sequence[Switch]) -> Iterator[OwnScene]:
+    """Lend the copy of an armature at rest, without action, with switches set, in a scene of its own."""
+    with own_scene(armature) as alone:
+        pose = cast("Any", alone.armature.pose).bones
         for channel, rest in _CHANNELS.items():
             pose.foreach_set(channel, np.tile(np.array(rest, np.float32), len(pose)))
-        set_switches(armature, switches)
-        scene.collection.objects.link(armature)
-        yield Lent(armature, scene)
-    finally:
-        bpy.data.scenes.remove(scene)
-        for switch, value in switched:
-            pose[switch.bone][switch.name] = value
-        animation.use_nla = before[2]
-        if before[0] is not None:
-            animation.action = before[0]
-            if before[1] is not None:
-                animation.action_slot = before[1]
-        for channel, values in stood.items():
-            pose.foreach_set(channel, values)
-        armature.update_tag(refresh={"OBJECT", "DATA", "TIME"})
+        set_switches(alone.armature, switches)
+        alone.update()
+        yield alone
 
 
 def _apart(rotations: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -133,22 +133,22 @@ def carriers(armature: bpy.types.Object, found: Candidates) -> list[str]:
 def tried_controls(
     armature: bpy.types.Object, found: Candidates, groups: Sequence[Sequence[str]], switches: tuple[Switch, ...]
 ) -> None:
-    """Turn the controls of each group, group after group, see what follows, and leave everything as it was."""
-    pose = cast("bpy.types.Pose", armature.pose).bones
+    """Turn the controls of each group in a copy of the armature, group after group, and see what follows."""
     turn = Quaternion(_AXIS, _TURN)
-    with at_rest(armature, switches) as lent:
-        before = lent.places(found.bones)
+    with at_rest(armature, switches) as alone:
+        pose = cast("bpy.types.Pose", alone.armature.pose).bones
+        before = alone.places(found.bones)
         lengths = np.array([armature_of(armature).bones[name].length for name in found.bones])
-        starts = {name: lent.matrix(name).to_3x3().normalized() for group in groups for name in group}
+        starts = {name: alone.matrix(name).to_3x3().normalized() for group in groups for name in group}
         for group in groups:
             for name in group:
                 _turn_basis(pose[name], turn)
-            lent.update()
-            after = lent.places(found.bones)
+            alone.update()
+            after = alone.places(found.bones)
             turned = _angles(after[:, :3, :3] @ np.linalg.inv(before[:, :3, :3]))
             ways = np.linalg.norm(after[:, :3, 3] - before[:, :3, 3], axis=1) / lengths
             for name in group:
-                moved = np.array(lent.matrix(name).to_3x3().normalized() @ starts[name].inverted())
+                moved = np.array(alone.matrix(name).to_3x3().normalized() @ starts[name].inverted())
                 # Where bones point counts: how they turn about themselves is often shared out along a limb.
                 errors = np.arccos((after[:, :3, 1] * (before[:, :3, 1] @ moved.T)).sum(axis=1).clip(-1, 1))
                 # What hardly turns does not follow, nor what another of the group moves.

@@ -17,11 +17,11 @@ from .action_curves import (
     assign_action,
     bone_curves,
     frame_range,
-    lent_action,
     object_curves,
     played_action,
     slot_for,
 )
+from .own_scene import own_scene
 from .rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:
@@ -223,34 +223,27 @@ def grows(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
 
 
 def current_motion(armature: bpy.types.Object) -> Motion:
-    """Read the pose in which an armature stands now, after constraints, in its own space: a motion of one pose."""
-    bones = cast("bpy.types.Pose", armature.pose).bones
-    posed = np.array([bone.matrix for bone in bones], np.float64).reshape(1, -1, 4, 4)
-    return _motion_of(armature, posed)
+    """Read the pose in which an armature stands now, after constraints, in its own space: a motion of one pose.
+
+    No action is played again: it would know nothing of what has no keys yet.
+    """
+    with own_scene(armature) as alone:
+        alone.update()
+        return _motion_of(armature, alone.matrices()[None])
 
 
-def evaluated_frames(
-    scene: bpy.types.Scene, action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]
-) -> Motion:
-    """Let Blender play an action at frames (f,), with all constraints and drivers, and leave everything as it was."""
-    frame, part = scene.frame_current, scene.frame_subframe
-    bones = cast("bpy.types.Pose", armature.pose).bones
-    bases = [bone.matrix_basis.copy() for bone in bones]
-    posed = np.empty((len(frames), len(bones), 4, 4))
+def evaluated_frames(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]) -> Motion:
+    """Let Blender play an action at frames (f,), with all constraints and drivers, by a copy of the armature."""
     slot = slot_for(action, armature)
-    try:
-        with lent_action(armature) as animation:
-            animation.use_nla = False
-            animation.action = action
-            if slot is not None:
-                animation.action_slot = slot
-            for number, time in enumerate(frames):
-                scene.frame_set(int(np.floor(time)), subframe=float(time - np.floor(time)))
-                posed[number] = [bone.matrix for bone in bones]
-    finally:
-        scene.frame_set(frame, subframe=part)
-        for bone, basis in zip(bones, bases, strict=True):
-            bone.matrix_basis = basis
+    posed = np.empty((len(frames), len(armature_of(armature).bones), 4, 4))
+    with own_scene(armature) as alone:
+        animation = cast("Any", alone.armature.animation_data)
+        animation.action = action
+        if slot is not None:
+            animation.action_slot = slot
+        for number, frame in enumerate(frames):
+            alone.go_to(frame)
+            posed[number] = alone.matrices()
     return _motion_of(armature, posed)
 
 

@@ -10,11 +10,8 @@ import numpy as np
 from ....engine import BonePairing, Skeleton
 from ...common.errors import ObjectError
 from ..armatures import armature_of, find_armature
-from ..character import armatures_above
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     import bpy
     from numpy.typing import NDArray
 
@@ -22,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "check_armature",
-    "check_evaluated",
     "in_own_spaces",
     "object_rotation",
     "own_skeleton",
@@ -87,37 +83,6 @@ def check_armature(armature: bpy.types.Object, *, written: bool) -> None:
             f'A strip of "{armature.name}" is being tweaked in the NLA editor, which holds its action. Leave the tweak '
             "mode there first (Tab)."
         )
-
-
-def check_evaluated(armature: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> None:
-    """Make sure that Blender poses an armature in a view layer: where it does not, all poses look the same.
-
-    It does so also with one that is hidden, or that something shown hangs on.
-
-    Raises
-    ------
-    ObjectError
-        If it does not.
-    """
-    shown = set(_shown_collections(view_layer.layer_collection))
-    switched_on = [
-        obj for obj in view_layer.objects if not obj.hide_viewport and not shown.isdisjoint(obj.users_collection)
-    ]
-    if armature not in switched_on and not any(armature in armatures_above(obj) for obj in switched_on):
-        raise ObjectError(
-            f'The armature "{armature.name}" is switched off in the view layer "{view_layer.name}", so Blender does '
-            "not move it. Link it to the scene, or enable it and its collection in the Outliner."
-        )
-
-
-def _shown_collections(layer: bpy.types.LayerCollection) -> Iterator[bpy.types.Collection]:
-    """Go through the collections that are neither left out of a view layer nor disabled."""
-    if layer.collection.hide_viewport:
-        return
-    if not layer.exclude:
-        yield layer.collection
-    for child in layer.children:
-        yield from _shown_collections(child)
 
 
 def object_rotation(armature: bpy.types.Object) -> NDArray[np.float64]:

@@ -37,7 +37,6 @@ from ...scene.motion.motion_io import (
 from ...scene.motion.nla_strips import copy_strips
 from ...scene.motion.rigs import (
     check_armature,
-    check_evaluated,
     object_rotation,
     own_skeleton,
     rest_matrices,
@@ -115,8 +114,6 @@ class MotionJob(SteppedJob):
         named: dict[bpy.types.Object, Side] = {}
         for target in targets:  # of several meshes of one rig the first
             named.setdefault(two_rigs(source, target, written=True)[1], target)
-        for rig in (rig_of(source), *named):
-            check_evaluated(rig, view_layer_of(context))
         self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in named]
         scene = cast("bpy.types.Scene", context.scene)
         self._scene, self._view_layer = scene.name, view_layer_of(context)
@@ -302,7 +299,7 @@ class MotionJob(SteppedJob):
             yield Progress(start / len(frames), "Reading motion")
             rig, action, some = found_again(self._source), self._action(name), frames[start : start + size]
             if evaluated:
-                parts.append(evaluated_frames(bpy.data.scenes[self._scene], action, rig, some))
+                parts.append(evaluated_frames(action, rig, some))
             else:
                 parts.append(posed_at(action, rig, some))
         turns, heads = (np.concatenate([getattr(part, what) for part in parts]) for what in ("turns", "heads"))

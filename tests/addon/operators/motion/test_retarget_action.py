@@ -554,18 +554,44 @@ def switch_off(armature):
 
 
 @pytest.mark.parametrize("which", ["A", "B"])
-@pytest.mark.parametrize("operator", ["retarget_action", "retarget_pose"])
-def test_one_that_blender_does_not_pose_is_named(which, operator):
-    """All its poses would look the same, and so would what is made of them."""
+@pytest.mark.parametrize("off", ["left out", "disabled"])
+def test_one_that_blender_does_not_pose_is_carried_all_the_same(which, off):
+    """Its poses in the scene all look the same."""
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    source.pose.bones["neck"].constraints.new("LIMIT_ROTATION")  # so that Blender has to evaluate it
+    action = add_action(source)
+    assert bpy.ops.hiermatch.pair_bones(source="A", target="B") == {"FINISHED"}
+    chosen = bpy.data.objects[which]
+    if off == "left out":
+        switch_off(chosen)
+    else:
+        chosen.hide_viewport = True
+    assert bpy.ops.hiermatch.retarget_action(source="A", target="B", action=action.name) == {"FINISHED"}
+    assert chosen.hide_viewport == (off == "disabled")
+    assert bpy.data.scenes.keys() == ["Scene"]
+    chosen.hide_viewport = False
+    bpy.context.view_layer.layer_collection.exclude = False
+    for child in bpy.context.view_layer.layer_collection.children:
+        child.exclude = False
+    assert worst(source, target, range(1, 22, 4)) < 2e-3
+
+
+def test_a_pose_that_has_no_keys_yet_is_carried_from_a_rig_that_plays_an_action():
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed")
     add_action(source)
-    assert bpy.ops.hiermatch.pair_bones(source="A", target="B") == {"FINISHED"}
-    switch_off(bpy.data.objects[which])
-    before = snapshot(target)
-    with pytest.raises(RuntimeError, match=f'The armature "{which}" is switched off in the view layer "ViewLayer"'):
-        getattr(bpy.ops.hiermatch, operator)(source="A", target="B")
-    assert snapshot(target) == before
+    bpy.context.scene.frame_set(11)
+    source.pose.bones["neck"].rotation_quaternion = (0.8, 0.6, 0, 0)
+    bpy.context.view_layer.update()
+    assert bpy.ops.hiermatch.retarget_pose(source="A", target="B") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    name = next(row.target for row in bpy.context.scene.hiermatch_bone_pairs if row.source == "neck")
+    turned = [
+        (rig.pose.bones[bone].matrix @ rig.data.bones[bone].matrix_local.inverted()).to_quaternion()
+        for rig, bone in ((source, "neck"), (target, name))
+    ]
+    assert turned[0].rotation_difference(turned[1]).angle < 0.05
 
 
 def tweak(armature, action):
