@@ -120,7 +120,19 @@ _MARKER = "hiermatch_carried"
 _TURNED = 0.02
 """By what angle a bone is no longer at rest: about one degree."""
 
-_CYCLE = ("mode_before", "cycles_before", "mode_after", "cycles_after")
+_CYCLE = (
+    "mode_before",
+    "cycles_before",
+    "mode_after",
+    "cycles_after",
+    "use_restricted_range",
+    "frame_start",
+    "frame_end",
+    "blend_in",
+    "blend_out",
+    "use_influence",
+    "influence",
+)
 
 
 def needs_evaluation(armature: bpy.types.Object) -> bool:

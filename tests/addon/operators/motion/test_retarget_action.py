@@ -675,9 +675,11 @@ def test_pairs_whose_bones_are_called_otherwise_by_now_are_named(which):
     assert "were left out" not in bpy.context.scene.hiermatch_retarget.report.notes
 
 
-def repeat(curve, mode):
+def repeat(curve, mode, **settings):
     modifier = curve.modifiers.new("CYCLES")
     modifier.mode_before = modifier.mode_after = mode
+    for name, value in settings.items():
+        setattr(modifier, name, value)
 
 
 @pytest.mark.parametrize("keying", ["SOURCE", "REDUCED", "ALL"])
@@ -686,9 +688,10 @@ def repeat(curve, mode):
     [
         lambda path, curve: repeat(curve, "REPEAT_OFFSET" if path.endswith("location") else "REPEAT"),
         lambda path, curve: repeat(curve, "REPEAT") if "thigh" in path else None,
+        lambda _path, curve: repeat(curve, "REPEAT", use_restricted_range=True, frame_start=1, frame_end=40),
         lambda path, curve: setattr(curve, "extrapolation", "LINEAR" if path.endswith("location") else "CONSTANT"),
     ],
-    ids=["walk", "one", "linear"],
+    ids=["walk", "one", "range", "linear"],
 )
 def test_beyond_its_keys_each_channel_goes_on_as_what_moves_it(keying, go_on):
     source, _ = add_person("A")
