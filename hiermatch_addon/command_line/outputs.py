@@ -12,7 +12,7 @@ import bpy
 
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..common.file_writing import beside
+from ..common.file_writing import beside, check_place
 from ..scene.character import parts_of
 from ..scene.garments import fitted_to
 from ..scene.motion.nla_strips import add_tracks
@@ -117,6 +117,7 @@ def _export(path: Path, *, moving: bool) -> None:
             "another kind."
         )
     group, _, operator = name.partition(".")
+    check_place(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=".hiermatch-") as folder:

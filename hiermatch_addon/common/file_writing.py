@@ -36,21 +36,28 @@ def read_text(path: Path) -> str:
 def check_place(path: Path) -> None:
     """Make sure, before long work, that a file can be written, as far as can be told without writing.
 
+    One that is there and is read-only is not to be replaced, though the folder would allow it.
+
     Raises
     ------
     ObjectError
         If not.
     """
-    folder = next((parent for parent in path.absolute().parents if parent.exists()), path.parent)
-    if path.is_dir():
+    folder = next((parent for parent in path.absolute().parents if _exists(parent)), path.parent)
+    if _exists(path) and path.is_dir():
         reason = errno.EISDIR
     elif not folder.is_dir():
         reason = errno.ENOTDIR
-    elif not os.access(folder, os.W_OK):
+    elif not os.access(folder, os.W_OK) or (_exists(path) and not os.access(path, os.W_OK)):
         reason = errno.EACCES
     else:
         return
     raise ObjectError(f'"{path}" cannot be written: {os.strerror(reason)}. Choose another place.')
+
+
+def _exists(path: Path) -> bool:
+    """Tell whether there is such a file or folder; unlike `Path.exists` also of a name that is too long."""
+    return os.access(path, os.F_OK)
 
 
 def write_whole(path: Path, content: bytes) -> None:
@@ -74,6 +81,7 @@ def beside(path: Path) -> Iterator[Path]:
     ObjectError
         If it cannot be written.
     """
+    check_place(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -187,11 +187,30 @@ def test_outputs_that_cannot_be_written_are_told_before_the_work(pair, tmp_path,
     for written in (*wanted, f"--map={tmp_path / 'file' / 'map.npz'}", f"--report={tmp_path / 'file' / 'report.json'}"):
         assert main(["match", *pair, written, *flags(QUICK)]) == 1
         assert "cannot be written" in capsys.readouterr().err
-    monkeypatch.setattr(os, "access", lambda _path, _mode: False)  # as of a folder of somebody else
-    assert main(["match", *pair, f"--output={tmp_path / 'new' / 'out.blend'}", f"--report={tmp_path / 'r.json'}"]) == 1
+    theirs = tmp_path / "theirs"
+    theirs.mkdir()
+    access = os.access
+    monkeypatch.setattr(os, "access", lambda at, mode: access(at, mode) and (mode, Path(at)) != (os.W_OK, theirs))
+    assert main(["match", *pair, f"--output={theirs / 'new' / 'out.blend'}", f"--report={tmp_path / 'r.json'}"]) == 1
     assert "cannot be written" in capsys.readouterr().err
     assert "cannot be written" in report_of(tmp_path / "r.json")["error"]
-    assert not (tmp_path / "new").exists()
+    assert not (theirs / "new").exists()
+
+
+@pytest.mark.parametrize("name", ["out.blend", "out.obj", "map.npz"])
+def test_files_that_are_read_only_are_not_replaced(name, pair, tmp_path, capsys, monkeypatch):
+    """As those are that a pipeline has published; who may replace all, as root may, is let be one who may not."""
+    path = tmp_path / name
+    path.write_text("published")
+    path.chmod(0o444)
+    access = os.access
+    monkeypatch.setattr(os, "access", lambda at, mode: access(at, mode) and (mode, Path(at)) != (os.W_OK, path))
+    wanted = f"--map={path}" if name == "map.npz" else f"--output={path}"
+    for checked in (reports.check_place, lambda _path: None):
+        monkeypatch.setattr(reports, "check_place", checked)
+        assert main(["match", *pair, wanted, *flags(QUICK)]) == 1
+        assert f'{name}" cannot be written' in capsys.readouterr().err
+    assert path.read_text() == "published"
 
 
 def test_outputs_that_turn_out_not_to_be_written_are_told(pair, tmp_path, capsys, monkeypatch):
