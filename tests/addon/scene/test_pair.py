@@ -152,6 +152,15 @@ class TestCheck:
         with pytest.raises(ObjectError, match='"Target" is hidden'):
             check(pair)
 
+    def test_one_in_a_collection_that_is_not_shown(self, pair):
+        aside = bpy.data.collections.new("Aside")
+        bpy.context.scene.collection.children.link(aside)
+        bpy.context.scene.collection.objects.unlink(pair[1])
+        aside.objects.link(pair[1])
+        aside.hide_viewport = True
+        with pytest.raises(ObjectError, match='"Target" is not shown: its collection is hidden'):
+            check_pair(bpy.context.view_layer, *pair)
+
     def test_disabled_in_viewports(self, pair):
         pair[1].hide_viewport = True
         with pytest.raises(ObjectError, match='"Target" is disabled in viewports'):
