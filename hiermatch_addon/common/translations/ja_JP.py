@@ -1211,6 +1211,7 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0}はオブジェクト"{1}"のサイズも変えます。それは移されませんでした。'
     ),
+    'The sizes that bones of "{0}" get were left out: {1}.': '"{0}"のボーンのサイズの変化は移されませんでした: {1}。',
     'The action "{0}" was deleted meanwhile. Nothing was written.': (
         'アクション"{0}"がその間に削除されました。何も書き込まれていません。'
     ),

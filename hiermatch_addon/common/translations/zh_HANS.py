@@ -1011,6 +1011,7 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0} 还会改变物体 "{1}" 的大小。这部分被略去。'
     ),
+    'The sizes that bones of "{0}" get were left out: {1}.': '"{0}" 的骨骼大小变化被略去：{1}。',
     'The action "{0}" was deleted meanwhile. Nothing was written.': '动作 "{0}" 在此期间被删除。未写入任何内容。',
     'Source and Target are both "{0}". Choose two different armatures.': '源和目标都是 "{0}"。请选择两个不同的骨架。',
     "Reading motion": "正在读取运动",

@@ -22,10 +22,12 @@ __all__ = [
     "bone_curves",
     "frame_range",
     "lent_action",
+    "moves_bones",
     "named_action",
     "object_curves",
     "played_action",
     "renamed_paths",
+    "scaled_bones",
     "slot_for",
 ]
 
@@ -33,10 +35,13 @@ _BONE_PATH = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]')
 
 _BONE = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]\.(?P<channel>\w+)$')
 
-_OF_OBJECTS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
+_TRANSFORMS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 
 _STILL = 1e-6
 """Difference of values up to which a curve moves nothing: rounding of what is written by single precision."""
+
+_AS_LARGE = 0.01
+"""By what part a bone may be larger or smaller and still count as large as it is: importers round more."""
 
 
 def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
@@ -66,11 +71,7 @@ def actions_of(armature: bpy.types.Object) -> list[bpy.types.Action]:
     """
     others = {name for obj in bpy.data.objects if obj.type == "ARMATURE" and obj != armature for name in _playing(obj)}
     theirs = others - set(_playing(armature))
-    return [
-        action
-        for action in bpy.data.actions
-        if action.name not in theirs and any(True for _ in bone_curves(action, armature))
-    ]
+    return [action for action in bpy.data.actions if action.name not in theirs and moves_bones(action, armature)]
 
 
 def _playing(armature: bpy.types.Object) -> list[str]:
@@ -99,15 +100,31 @@ def slot_for(action: bpy.types.Action, armature: bpy.types.Object) -> Any:  # no
 def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterator[tuple[str, str, Any]]:
     """Go through the curves of an action that move bones of an armature, unless muted: bone, channel, and the curve.
 
-    Curves without keys that no modifier gives values move nothing.
+    Curves without keys that no modifier gives values move nothing, nor do those of how a bone bends in itself.
     """
     bones = armature_of(armature).bones
     for curve in _curves(action, slot_for(action, armature)):
         found = _BONE.match(curve.data_path)
-        if found is not None and _is_heard(curve) and not curve.is_empty:
+        if found is not None and found["channel"] in _TRANSFORMS and _is_heard(curve) and not curve.is_empty:
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
+
+
+def moves_bones(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
+    """Tell whether an action moves or turns bones of an armature."""
+    return any(channel != "scale" for _, channel, _ in bone_curves(action, armature))
+
+
+def scaled_bones(action: bpy.types.Action, armature: bpy.types.Object) -> list[str]:
+    """Return the names of the bones of an armature whose size an action changes."""
+    found = [
+        bone
+        for bone, channel, curve in bone_curves(action, armature)
+        if channel == "scale"
+        and (len(curve.modifiers) or any(abs(point.co[1] - 1) > _AS_LARGE for point in curve.keyframe_points))
+    ]
+    return list(dict.fromkeys(found))
 
 
 def frame_range(action: bpy.types.Action, armature: bpy.types.Object) -> tuple[float, float]:
@@ -148,7 +165,7 @@ def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Itera
     Curves that stay at one value move nothing.
     """
     for curve in _curves(action, slot_for(action, armature)):
-        if curve.data_path in _OF_OBJECTS and _is_heard(curve):
+        if curve.data_path in _TRANSFORMS and _is_heard(curve):
             values = [point.co[1] for point in curve.keyframe_points]
             if len(curve.modifiers) or (values and max(values) - min(values) > _STILL):
                 yield curve.data_path, curve

@@ -20,6 +20,7 @@ from ...jobs.transfer_job import Carried
 from ...properties.bone_pairs import lost_bones, pairing_of, rows_of
 from ...scene.armatures import armature_of
 from ...scene.character import SideReference
+from ...scene.motion.action_curves import scaled_bones
 from ...scene.motion.control_rigs import driven_bones
 from ...scene.motion.motion_io import (
     current_motion,
@@ -393,4 +394,7 @@ def _notes(
     growing = [action.name for action in actions if grows(action, source)]
     if growing:
         notes.append(f'{listed(growing)} changes the size of the object "{source.name}", too. That was left out.')
+    scaled = list(dict.fromkeys(name for action in actions for name in scaled_bones(action, source)))
+    if scaled:
+        notes.append(f'The sizes that bones of "{source.name}" get were left out: {listed(scaled)}.')
     return notes

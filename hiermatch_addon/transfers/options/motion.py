@@ -13,7 +13,7 @@ import bpy
 from ....engine import MotionSettings
 from ...common.errors import ObjectError
 from ...common.phrases import listed
-from ...scene.motion.action_curves import actions_of, bone_curves, named_action, played_action
+from ...scene.motion.action_curves import actions_of, moves_bones, named_action, played_action
 from ...scene.motion.nla_strips import strip_actions
 
 __all__ = ["MotionOptions", "MotionPlan", "motion_plan"]
@@ -165,7 +165,7 @@ def _wanted(options: MotionOptions, rig: bpy.types.Object) -> list[str]:
     if options.actions == "ALL":
         return [action.name for action in actions_of(rig)]
     played = played_action(rig)
-    if played is not None and _moves(played, rig):
+    if played is not None and moves_bones(played, rig):
         return [played.name]
     found = [action.name for action in actions_of(rig)]
     return found if len(found) == 1 else []
@@ -181,12 +181,8 @@ def _named(text: str, rig: bpy.types.Object) -> list[str]:
             if not fitting:
                 raise ObjectError(f'No action that moves bones of "{rig.name}" fits the pattern "{part}".')
             found += fitting
-        elif not _moves(named_action(part), rig):
+        elif not moves_bones(named_action(part), rig):
             raise ObjectError(f'The action "{part}" moves no bone of "{rig.name}". Choose one that does.')
         else:
             found.append(part)
     return list(dict.fromkeys(found))
-
-
-def _moves(action: bpy.types.Action, rig: bpy.types.Object) -> bool:
-    return any(True for _ in bone_curves(action, rig))

@@ -646,6 +646,34 @@ def test_curves_without_keys_move_nothing():
     assert carry(source="A", target="B", action="Wave", keying="SOURCE") == {"FINISHED"}
 
 
+def only(action, channel):
+    """Take all curves from an action but those of a channel of bones."""
+    for (path, _), curve in curves_of(action).items():
+        curve.mute = not path.endswith(f".{channel}")
+
+
+def test_bones_whose_sizes_an_action_changes_are_named(capfd):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    said = 'The sizes that bones of "A" get were left out: "head".'
+    head, neck = source.pose.bones["head"], source.pose.bones["neck"]
+    for bone in (head, neck):
+        for frame in (1, 11):
+            bone.keyframe_insert("scale", frame=frame)
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert said not in capfd.readouterr().out
+    head.scale.y = 1.3
+    head.keyframe_insert("scale", frame=11)
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert said in capfd.readouterr().out
+    only(action, "scale")
+    before = snapshot(target)
+    with pytest.raises(RuntimeError, match='The action "Wave" moves no bone of "A"'):
+        carry(source="A", target="B", action="Wave")
+    assert snapshot(target) == before
+
+
 def test_what_modifiers_do_between_keys_is_carried_too():
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed")
