@@ -7,16 +7,10 @@ import bpy
 import numpy as np
 import pytest
 
-from tests.addon.characters import add_action, add_person, match_at_once, posed_vertices, someone
+from tests.addon.characters import add_action, add_person, posed_vertices, someone
 
 ops = bpy.ops.hiermatch
 LEG = ("thigh.L", "shin.L")
-
-
-@pytest.fixture(autouse=True)
-def at_once(monkeypatch):
-    """Match without work."""
-    match_at_once(monkeypatch)
 
 
 def add_controls(armature, *, locked=()):  # noqa: C901 - one rig

@@ -12,12 +12,6 @@ from tests.addon.characters import add_person, match_at_once, someone
 ops = bpy.ops.hiermatch
 
 
-@pytest.fixture(autouse=True)
-def at_once(monkeypatch):
-    """Match without work."""
-    match_at_once(monkeypatch)
-
-
 def table():
     """The pairs of names."""
     return {(row.source, row.target) for row in bpy.context.scene.hiermatch_bone_pairs}

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keys and curves of carried actions: where keys are, how curves go between and beyond them, and what is left out."""
+
+import bpy
+import pytest
+from mathutils import Matrix
+
+from tests.addon.characters import add_action, add_person
+from tests.addon.motions import curves_of, snapshot, worst
+
+carry, pose = bpy.ops.hiermatch.retarget_action, bpy.ops.hiermatch.retarget_pose
+
+
+def test_sparse_keys_stay_sparse_with_their_interpolation():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed", rolls=0.4)
+    action = add_action(source)
+    for curve in curves_of(action).values():
+        curve.keyframe_points[0].interpolation = "LINEAR"
+        curve.keyframe_points[1].interpolation = "CONSTANT"
+        curve.modifiers.new("CYCLES")
+    carry(source="A", target="B")
+    curves = curves_of(bpy.data.actions["Wave B"])
+    arm = made.names[[origin == frozenset(["forearm.L"]) for origin in made.origins].index(True)]
+    curve = curves[f'pose.bones["{arm}"].rotation_quaternion', 1]
+    assert [point.co[0] for point in curve.keyframe_points] == [1, 11, 21]
+    assert [point.interpolation for point in curve.keyframe_points] == ["LINEAR", "CONSTANT", "BEZIER"]
+    assert [modifier.type for modifier in curve.modifiers] == ["CYCLES"]
+    still = made.names[[origin == frozenset(["hand.R"]) for origin in made.origins].index(True)]
+    assert len(curves[f'pose.bones["{still}"].rotation_quaternion', 0].keyframe_points) == 1
+    assert worst(source, target, (1, 6, 15, 21)) < 5e-3
+
+
+def test_baked_keys_are_few_and_true():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    counts = {}
+    for keys in ("REDUCED", "ALL"):
+        carry(source="A", target="B", keying=keys)
+        counts[keys] = sum(len(curve.keyframe_points) for curve in curves_of(target.animation_data.action).values())
+        assert worst(source, target, (1, 4, 9, 17, 21)) < 4e-3
+    assert counts["REDUCED"] < 0.6 * counts["ALL"]
+
+
+def test_what_is_muted_is_not_carried():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    action = add_action(source)
+    for (path, _), curve in curves_of(action).items():
+        curve.mute = "forearm.L" in path
+    for bone in source.pose.bones:
+        bone.matrix_basis = Matrix()
+    carry(source="A", target="B")
+    forearm, upper = (made.names[made.origins.index(frozenset([name]))] for name in ("forearm.L", "upper_arm.L"))
+    bpy.context.scene.frame_set(11)
+    assert target.pose.bones[forearm].matrix_basis.to_quaternion().angle < 0.01
+    assert target.pose.bones[upper].matrix_basis.to_quaternion().angle > 0.1
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 4), reason="actions have slots since Blender 4.4")
+@pytest.mark.parametrize("keying", ["AUTO", "ALL"])
+def test_an_action_that_moves_something_else_as_well_gets_no_more_frames(keying):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    slot = action.slots.new("OBJECT", "Camera")
+    curve = action.layers[0].strips[0].channelbag(slot, ensure=True).fcurves.new("location", index=0)
+    for frame in (-100, 400):
+        curve.keyframe_points.insert(frame, 0)
+    carry(source="A", target="B", keying=keying)
+    assert tuple(target.animation_data.action.frame_range) == (1, 21)
+
+
+def test_curves_without_keys_move_nothing():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    action = add_action(source)
+    for curve in curves_of(action).values():
+        while len(curve.keyframe_points):
+            curve.keyframe_points.remove(curve.keyframe_points[0])
+    with pytest.raises(RuntimeError, match='The action "Wave" moves no bone of "A"'):
+        carry(source="A", target="B", action="Wave")
+    next(iter(curves_of(action).values())).modifiers.new("FNGENERATOR")
+    assert carry(source="A", target="B", action="Wave", keying="SOURCE") == {"FINISHED"}
+
+
+def only(action, channel):
+    """Take all curves from an action but those of a channel of bones."""
+    for (path, _), curve in curves_of(action).items():
+        curve.mute = not path.endswith(f".{channel}")
+
+
+def test_bones_whose_sizes_an_action_changes_are_named(capfd):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    said = 'The sizes that bones of "A" get were left out: "head".'
+    head, neck = source.pose.bones["head"], source.pose.bones["neck"]
+    for bone in (head, neck):
+        for frame in (1, 11):
+            bone.keyframe_insert("scale", frame=frame)
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert said not in capfd.readouterr().out
+    head.scale.y = 1.3
+    head.keyframe_insert("scale", frame=11)
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert said in capfd.readouterr().out
+    only(action, "scale")
+    before = snapshot(target)
+    with pytest.raises(RuntimeError, match='The action "Wave" moves no bone of "A"'):
+        carry(source="A", target="B", action="Wave")
+    assert snapshot(target) == before
+
+
+def test_what_modifiers_do_between_keys_is_carried_too():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    for (path, index), curve in curves_of(action).items():
+        if "thigh.R" in path and index == 1:
+            noise = curve.modifiers.new("NOISE")
+            noise.strength, noise.scale = 0.5, 3
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert worst(source, target, range(1, 22, 2)) < 2e-3
+
+
+def repeat(curve, mode, **settings):
+    modifier = curve.modifiers.new("CYCLES")
+    modifier.mode_before = modifier.mode_after = mode
+    for name, value in settings.items():
+        setattr(modifier, name, value)
+
+
+@pytest.mark.parametrize("keying", ["SOURCE", "REDUCED", "ALL"])
+@pytest.mark.parametrize(
+    "go_on",
+    [
+        lambda path, curve: repeat(curve, "REPEAT_OFFSET" if path.endswith("location") else "REPEAT"),
+        lambda path, curve: repeat(curve, "REPEAT") if "thigh" in path else None,
+        lambda _path, curve: repeat(curve, "REPEAT", use_restricted_range=True, frame_start=1, frame_end=40),
+        lambda path, curve: setattr(curve, "extrapolation", "LINEAR" if path.endswith("location") else "CONSTANT"),
+    ],
+    ids=["walk", "one", "range", "linear"],
+)
+def test_beyond_its_keys_each_channel_goes_on_as_what_moves_it(keying, go_on):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    hips = source.pose.bones["hips"]
+    for frame, turn in ((1, (1, 0, 0, 0)), (11, (0.98, 0.2, 0, 0)), (21, (1, 0, 0, 0))):
+        hips.rotation_quaternion = turn
+        hips.keyframe_insert("rotation_quaternion", frame=frame)
+    for (path, _index), curve in curves_of(action).items():
+        go_on(path, curve)
+    assert carry(source="A", target="B", keying=keying) == {"FINISHED"}
+    assert worst(source, target, [-30, 5, 30, 55]) < 2e-3
