@@ -310,13 +310,13 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
         raise ObjectError(
             f'"{obj.name}" is disabled in viewports. Enable it with the screen beside its name in the Outliner.'
         )
-    if not obj.visible_get(view_layer=view_layer) and not obj.hide_get(view_layer=view_layer):
+    if obj.hide_get(view_layer=view_layer):
+        raise ObjectError(f'"{obj.name}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).')
+    if not obj.visible_get(view_layer=view_layer):
         raise ObjectError(
             f'"{obj.name}" is not shown: its collection is hidden or disabled in viewports, or it is outside of Local '
             "View. Show its collection in the Outliner, or leave Local View (View > Local View)."
         )
-    if not obj.visible_get(view_layer=view_layer):
-        raise ObjectError(f'"{obj.name}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).')
     _check_mode(obj)
     if not len(mesh_of(obj).polygons):
         raise ObjectError(f'"{obj.name}" has no faces. A surface is needed, not only vertices or edges.')

@@ -1957,13 +1957,13 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」はビューレイヤー「{1}」にありません。シーンにリンクするか、アウトライナーでコレクションを有効"
         "にしてください。"
     ),
+    '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
+        "「{0}」は非表示です。先に表示してください（オブジェクト > 表示/隠す、またはアウトライナーの目のアイコン）。"
+    ),
     '"{0}" is not shown: its collection is hidden or disabled in viewports, or it is outside of Local View. Show its '
     "collection in the Outliner, or leave Local View (View > Local View).": (
         "「{0}」は表示されていません。コレクションが非表示またはビューポートで無効か、ローカルビューの外にあります。"
         "アウトライナーでコレクションを表示するか、ローカルビューを終了してください（ビュー > ローカルビュー）。"
-    ),
-    '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
-        "「{0}」は非表示です。先に表示してください（オブジェクト > 表示/隠す、またはアウトライナーの目のアイコン）。"
     ),
     '"{0}" is disabled in viewports. Enable it with the screen beside its name in the Outliner.': (
         "「{0}」はビューポートで無効になっています。アウトライナーで名前の横にある画面アイコンを押して有効に"

@@ -1631,13 +1631,13 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is not in the view layer "{1}". Link it to the scene, or enable its collection in the Outliner.': (
         "“{0}”不在视图层“{1}”中。请将其链接到场景，或在大纲视图中启用它的集合。"
     ),
+    '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
+        "“{0}”已隐藏。请先显示它（物体 > 显示/隐藏，或大纲视图中的眼睛图标）。"
+    ),
     '"{0}" is not shown: its collection is hidden or disabled in viewports, or it is outside of Local View. Show its '
     "collection in the Outliner, or leave Local View (View > Local View).": (
         "“{0}”未显示：其集合已隐藏或在视图中禁用，或者它在局部视图之外。请在大纲视图中显示其集合，或退出局部视图"
         "（视图 > 局部视图）。"
-    ),
-    '"{0}" is hidden. Show it first (Object > Show/Hide, or the eye in the Outliner).': (
-        "“{0}”已隐藏。请先显示它（物体 > 显示/隐藏，或大纲视图中的眼睛图标）。"
     ),
     '"{0}" is disabled in viewports. Enable it with the screen beside its name in the Outliner.': (
         "“{0}”已在视图中禁用。请在大纲视图中点击名称旁的屏幕图标启用它。"

@@ -186,11 +186,11 @@ def lent_action(armature: bpy.types.Object) -> Iterator[Any]:
     tweaked = animation.use_tweak_mode
     if tweaked:
         animation.use_tweak_mode = False
-    before = animation.action, getattr(animation, "action_slot", None), animation.use_nla
+    before = animation.action, getattr(animation, "action_slot", None)
     try:
         yield animation
     finally:
-        animation.action, animation.use_nla = before[0], before[2]
+        animation.action = before[0]
         if before[0] is not None and before[1] is not None:
             animation.action_slot = before[1]
         if tweaked:

@@ -36,14 +36,7 @@ from ...scene.motion.motion_io import (
     write_action,
 )
 from ...scene.motion.nla_strips import copy_strips
-from ...scene.motion.rigs import (
-    check_armature,
-    object_rotation,
-    own_skeleton,
-    rest_matrices,
-    rig_of,
-    two_rigs,
-)
+from ...scene.motion.rigs import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of, two_rigs
 from .action_keys import SIDE_STEP, baked_keys, bone_channels, movers_of, sparse_frames, sparse_keys
 from .bone_pairs import pairing_job
 from .steered_rig import found_again, is_steered, steered_steps
