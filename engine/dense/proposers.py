@@ -21,7 +21,7 @@ from ..runtime.arrays import Floats
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, part_of, within
 from ..shapes.landmarks import Landmarks
-from .credibility import EVEN, LITTLE_RISE, RISE, may_reach
+from .credibility import EVEN, LITTLE_RISE, MUCH_ALIKE, RISE, is_less_alike, is_placed, may_reach
 from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
 from .limb_sides import exchanged_limbs, repaired_start_steps
@@ -178,9 +178,24 @@ def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
     return sorted([*ways, *others], key=lambda candidate: candidate.score)
 
 
+def _turned_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
+    """Propose a body that looks the other way: turned half around from where most of it is left in place.
+
+    Most bodies look the same way, so that what is in place is believed more; but a half turn is compared fairly only if
+    it is registered as well.  Bodies that are much alike tell front from back themselves.
+    """
+    contested = candidates[0].score + contest.selection.contested
+    placed = [c for c in candidates if c.score <= contested and is_placed(c.in_place)]
+    if contest.landmarks is not None or not placed or not is_less_alike(placed[0].likeness, MUCH_ALIKE):
+        return candidates
+    turned = yield from contest.follow.half_turned_steps(placed[0])
+    return sorted([*candidates, turned], key=attrgetter("score"))
+
+
 PROPOSERS = (
     Proposer(_matchings_steps, LITTLE_RISE),
     Proposer(_limbs_steps, LITTLE_RISE),
+    Proposer(_turned_steps, LITTLE_RISE),
     Proposer(_rolls_steps, RISE),
 )
 """In the order in which they are asked: each may mend what those before it have proposed."""

@@ -16,6 +16,7 @@ from ..mesh.surface_points import SurfacePoints
 from ..registration.axial_twists import rolled_back, untwisted
 from ..registration.axial_windings import wound_steps
 from ..registration.deformable import DeformableSurface
+from ..registration.half_turns import half_turned
 from ..registration.positional_constraints import Ties
 from ..registration.registration import (
     AGAIN,
@@ -268,6 +269,12 @@ class Follower:
                 break
             candidate = rolled
         return candidate, ways
+
+    def half_turned_steps(self, candidate: Candidate) -> Steps[Candidate]:
+        """Register the source turned half around from where a candidate leaves it."""
+        turned = half_turned(self.source, self.target, candidate.registration.positions, self._smooth)
+        hypothesis = replace(candidate.hypothesis, origin="half turn")  # which is not refined: it leads elsewhere
+        return (yield from self._registered_again_steps(replace(candidate, hypothesis=hypothesis), turned))
 
     def _registered_again_steps(self, candidate: Candidate, positions: Floats) -> Steps[Candidate]:
         """Follow a candidate's hypothesis from other positions."""

@@ -95,6 +95,7 @@ MECHANISMS = {
     "rigid maps": [("engine.dense.dense_hypotheses.rigid_maps", lambda _: lambda *_given: [])],
     "matchings as they are": [(f"{Q}.unrefined_hypotheses_steps", lambda _: lambda *_given: returned([]))],
     "limb sides": [(f"{Q}.repaired_start_steps", lambda _: lambda *_given: returned(None))],
+    "half turns": [(f"{Q}.is_placed", lambda _: lambda _in_place: False)],
     "rolling back": [
         (f"{R}.Follower.rolled_back_steps", lambda _: lambda _self, candidates: returned([[c] for c in candidates]))
     ],

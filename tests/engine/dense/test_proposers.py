@@ -9,7 +9,7 @@ import pytest
 
 from engine import MatchError, run
 from engine.dense import proposers
-from engine.dense.credibility import EVEN
+from engine.dense.credibility import EVEN, MUCH_ALIKE
 from engine.dense.dense_hypotheses import Selection
 from engine.dense.proposers import Contest, Proposer, are_distinct, contenders, proposed_steps
 
@@ -89,6 +89,37 @@ def test_at_last_only_rough_maps_may_gain(likeness, is_rough, given_up):
     candidate.hypothesis = SimpleNamespace(is_rough=is_rough)
     with pytest.raises(MatchError, match="not enough alike") if given_up else nullcontext():
         contest_of(30.0).check_last([candidate])
+
+
+@pytest.mark.parametrize(
+    ("scores", "in_place", "likeness", "turned"),
+    [
+        ([0.0, 1.0], [0.9, 0.9], MUCH_ALIKE - 1, 0),
+        ([0.0, 1.0], [0.1, 0.9], MUCH_ALIKE - 1, 1),
+        ([0.0, 9.0], [0.1, 0.9], MUCH_ALIKE - 1, None),  # not credible
+        ([0.0, 1.0], [0.1, 0.1], MUCH_ALIKE - 1, None),
+        ([0.0, 1.0], [0.9, 0.9], MUCH_ALIKE + 1, None),  # tell front from back themselves
+    ],
+    ids=["best", "second", "worse", "none", "alike"],
+)
+def test_what_leaves_unlike_bodies_in_place_is_compared_with_a_half_turn(scores, in_place, likeness, turned):
+    done = []
+
+    def half_turned_steps(candidate):
+        done.append(candidate)
+        return SimpleNamespace(score=-1.0)
+        yield
+
+    candidates = [
+        SimpleNamespace(score=score, in_place=each, likeness=likeness)
+        for score, each in zip(scores, in_place, strict=True)
+    ]
+    follow = SimpleNamespace(half_turned_steps=half_turned_steps)
+    (propose_turned,) = (each.steps for each in proposers.PROPOSERS if "turned" in each.steps.__name__)
+    proposed = run(propose_turned(Contest(follow), candidates))
+    assert done == ([] if turned is None else [candidates[turned]])
+    assert [each.score for each in proposed] == [-1.0] * len(done) + scores
+    assert run(propose_turned(Contest(follow, landmarks=SimpleNamespace()), candidates)) == candidates
 
 
 def contest_of(least, *, are_closed=True):
