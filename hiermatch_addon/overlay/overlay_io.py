@@ -56,10 +56,10 @@ def read_drawing(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, pending
             place(positions[side], read(items, role), matrices[side]) for side, role in enumerate(("source", "target"))
         )
         marks.append(Marks(source, target, _numbers(items, "number", np.int32), min(chosen, len(items) - 1)))
-    if pending is None:
+    side = -1 if pending is None else next((n for n, obj in enumerate(pair) if obj.name == pending[0]), -1)
+    if pending is None or side < 0 or pending[1] >= len(positions[side]):  # another pair is picked, or it was edited
         waiting = None
     else:
-        side = [obj.name for obj in pair].index(pending[0])
         vertex = np.full((1, 3), pending[1], np.int64)
         x, y, z = place(positions[side], Places(vertex, np.array([[1.0, 0.0, 0.0]])), matrices[side])[0].tolist()
         waiting = (x, y, z)

@@ -1414,6 +1414,9 @@ MESSAGES: Final[dict[str, str]] = {
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "クリックできるものがありません。二つの頂点を指定してhiermatch.add_landmarkを使ってください。"
     ),
+    '"{0}" was edited since the click on it. Click on its place again.': (
+        "「{0}」はクリックした後に編集されました。もう一度その場所をクリックしてください。"
+    ),
     "One of the two meshes was deleted. Press Esc and start again.": (
         "二つのメッシュの一方が削除されました。Escを押してやり直してください。"
     ),

@@ -1175,6 +1175,7 @@ MESSAGES: Final[dict[str, str]] = {
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "没有可点击的对象。请用两个顶点调用 hiermatch.add_landmark。"
     ),
+    '"{0}" was edited since the click on it. Click on its place again.': ("“{0}”在点击之后被编辑过。请重新点击该处。"),
     "One of the two meshes was deleted. Press Esc and start again.": "两个网格之一被删除。请按 Esc 后重新开始。",
     "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
         "没有可改善的匹配。请选取两个网格作为源和目标并进行匹配。"

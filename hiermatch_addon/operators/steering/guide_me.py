@@ -42,7 +42,7 @@ class Guide(LandmarkClicks):
         self._step = 0
         return super().invoke(context, event)
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
+    def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Leave a place out, or take a click; after the last place match."""
         if event.type in _SKIP and event.value == "PRESS":
             self._pending = None
@@ -51,7 +51,7 @@ class Guide(LandmarkClicks):
             if self._step < len(_PLACES):
                 self._show_status(context)
         else:
-            answer = super().modal(context, event)
+            answer = super()._handle(context, event)
         if answer == {"RUNNING_MODAL"} and self._step >= len(_PLACES):
             self.cancel(context)
             self._done(context)
@@ -60,14 +60,25 @@ class Guide(LandmarkClicks):
 
     def _take(self, context: bpy.types.Context, hit: Hit | None) -> None:
         """Take the place on the source first and then on the target, and go on to the next one."""
-        wanted = self._names[0] if self._pending is None else self._other
-        if hit is not None and self._clicked(hit)[0] != wanted:
-            raise ObjectError(f'Click on "{wanted}" first, or press S to leave this place out.')
-        added = self._added
+        side = 0 if self._pending is None else 1
+        if hit is not None and self._clicked(hit).side != side:
+            raise ObjectError(f'Click on "{self._names[side]}" first, or press S to leave this place out.')
+        made = len(self._made)
         if hit is not None and self._pending is not None:
             self._drop_former()
         super()._take(context, hit)
-        self._step += self._added - added
+        self._step += len(self._made) - made
+
+    def _follow_undo(self) -> bool:
+        """Ask again for the first place that Undo has taken back, or go on behind the last that Redo has brought."""
+        made = len(self._made)
+        changed = super()._follow_undo()
+        if changed:
+            back = len(self._made) < made
+            names = [translated(place) for place in _PLACES]
+            self._step = names.index(self._undone[0].name) if back else names.index(self._made[-1].name) + 1
+            self._pending = None
+        return changed
 
     def _drop_former(self) -> None:
         """Remove a landmark that was made for the same place before."""
@@ -88,7 +99,7 @@ class Guide(LandmarkClicks):
 
     def _done(self, context: bpy.types.Context) -> None:
         """Match again, if there is something new to go by."""
-        if not self._added:
+        if not self._made:
             self.report({"INFO"}, translated("No landmark was added, so there is nothing new to match by"))
             return
         state = state_of(context)
@@ -96,7 +107,7 @@ class Guide(LandmarkClicks):
         options = {name: getattr(state, name) for name in OPTION_NAMES}
         source, target = (name_of(view_layer_of(context), side) for side in self._found())
         start_soon(context, "hiermatch.match", **options, source=source, target=target)
-        self.report({"INFO"}, translated(f"Matching again with {counted(self._added, 'landmark')}"))
+        self.report({"INFO"}, translated(f"Matching again with {counted(len(self._made), 'landmark')}"))
 
 
 class HIERMATCH_OT_guide_me(Guide, bpy.types.Operator):

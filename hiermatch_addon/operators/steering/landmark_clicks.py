@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
 from bpy_extras import view3d_utils
@@ -13,35 +14,51 @@ from ...common.access import window_manager_of
 from ...common.errors import ObjectError
 from ...common.redraw import redraw_views
 from ...common.translated_text import translated
-from ...jobs.running import can_start
+from ...jobs.running import can_start, is_running
 from ...overlay.drawing import show_pending
 from ...properties.steering_lists import sync_lists
 from ...properties.steering_properties import steering_of
-from ...scene.character import SideReference, parts_of, vertex_ranges
-from ...storage.landmarks import add_landmarks
+from ...scene.character import SideReference, parts_of, vertex_count, vertex_ranges
+from ...storage.landmarks import add_landmarks, find_landmarks
 from .landmark_operator import pick_pair, steerable_pair
-from .landmark_picking import cast_ray
+from .landmark_picking import cast_ray, places_around
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
     from ...scene.character import Side
+    from ...storage.landmarks import Landmark
     from .landmark_picking import Hit
 
     _Operator = bpy.types.Operator
+    _Viewport = tuple[bpy.types.Region, bpy.types.SpaceView3D, Any]
 else:
     _Operator = object
 
 __all__ = ["LandmarkClicks"]
+
+_MOVES: Final = ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE")
+"""Events of which there are many, and that change nothing."""
+
+_REACH: Final = 12
+"""How far beside a mesh a click still counts as one on it, in pixels."""
+
+
+@dataclass(frozen=True)
+class _Click:
+    """The first place of a pair: the vertex of the source (0) or the target (1), and how many this had then."""
+
+    side: int
+    vertex: int
+    count: int
 
 
 class LandmarkClicks(_Operator):
     """To be inherited from before `bpy.types.Operator`; each pair of clicks is a step of its own to undo."""
 
     _sides: tuple[SideReference, SideReference]
-    _pending: tuple[str, int] | None
-    _workspace: str
-    _added: int
+    _pending: _Click | None
+    replaced = False  # whether another one waits for clicks now
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -56,21 +73,42 @@ class LandmarkClicks(_Operator):
         return {"CANCELLED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[OperatorReturnItems]:
-        """Wait for clicks."""
+        """Wait for clicks, in the place of who does so already."""
         try:
             source, target = steerable_pair(context)
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         pick_pair(context, source, target)
-        self._sides, self._pending, self._added = (SideReference.of(source), SideReference.of(target)), None, 0
-        self._workspace = context.workspace.name if context.workspace else ""
+        self._wait_for(source, target)
+        for window in window_manager_of(context).windows:
+            for other in cast("Any", window).modal_operators:
+                if isinstance(other, LandmarkClicks):
+                    other.replaced = True
         steering_of(context).show_overlay = True
         window_manager_of(context).modal_handler_add(self)
         self._show_status(context)
         return {"RUNNING_MODAL"}
 
+    def _wait_for(self, source: Side, target: Side) -> None:
+        """Begin with nothing clicked on yet."""
+        self._sides, self._pending = (SideReference.of(source), SideReference.of(target)), None
+        self._made: list[Landmark] = []  # as far as Undo has not taken them back
+        self._undone: list[Landmark] = []
+
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
+        """Wait on, unless another one waits instead, or other work of ours has begun."""
+        working = is_running(window_manager_of(context))
+        if self.replaced or working:
+            if not self.replaced:
+                self.cancel(context)
+            return {"FINISHED", "PASS_THROUGH"}
+        if event.type not in _MOVES and self._follow_undo():
+            steering_of(context).show_overlay = True  # Undo may have brought back that it was off
+            self._show_status(context)
+        return self._handle(context, event)
+
+    def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Take a click in a viewport; leave everything else to Blender."""
         if event.type in ("ESC", "RET", "NUMPAD_ENTER", "RIGHTMOUSE") and event.value == "PRESS":
             back = event.type in ("ESC", "RIGHTMOUSE")
@@ -82,43 +120,50 @@ class LandmarkClicks(_Operator):
             if not back:
                 self._done(context)
             return {"FINISHED"}
-        if event.type != "LEFTMOUSE" or event.value != "PRESS" or event.alt:
-            return {"PASS_THROUGH"}
-        viewport = _viewport_at(context, event.mouse_x, event.mouse_y)
+        pressed = event.type == "LEFTMOUSE" and event.value == "PRESS" and not event.alt
+        viewport = _viewport_at(context, event.mouse_x, event.mouse_y) if pressed else None
         if viewport is None:
             return {"PASS_THROUGH"}
+        meant_for_us = context.mode == "OBJECT"  # in another mode the click does there what it always does
         try:
-            self._take(context, self._hit(context, *viewport, event))
+            self._check_modes()
+            if meant_for_us:
+                self._take(context, self._hit(context, viewport, (event.mouse_x, event.mouse_y)))
         except HierMatchError as error:
             self.report({"WARNING"}, translated(str(error)))
         self._show_status(context)
-        return {"RUNNING_MODAL"}
+        return {"RUNNING_MODAL"} if meant_for_us else {"PASS_THROUGH"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Leave the viewport as it was; Blender itself calls this when it loads a file or closes the window."""
         show_pending(None)
-        workspace = bpy.data.workspaces.get(self._workspace)
-        if workspace is not None:
+        for workspace in bpy.data.workspaces:
             workspace.status_text_set(None)
-        _say_in_viewports(context, None)
+        for screen in bpy.data.screens:  # also of workspaces that were shown meanwhile
+            _say_in_viewports(screen, None)
         redraw_views(window_manager_of(context))
 
-    def _hit(
-        self,
-        context: bpy.types.Context,
-        region: bpy.types.Region,
-        view: Any,  # noqa: ANN401 - Blender's stubs leave it open
-        event: bpy.types.Event,
-    ) -> Hit | None:
-        """Find what was clicked on."""
-        mouse = (event.mouse_x - region.x, event.mouse_y - region.y)
-        origin = view3d_utils.region_2d_to_origin_3d(region, view, mouse)
-        direction = view3d_utils.region_2d_to_vector_3d(region, view, mouse)
-        return cast_ray(context, [part for side in self._found() for part in parts_of(side)], origin, direction)
+    def _hit(self, context: bpy.types.Context, viewport: _Viewport, mouse: tuple[int, int]) -> Hit | None:
+        """Find what was clicked on, or just beside."""
+        region, space, view = viewport
+        parts = [part for side in self._found() for part in parts_of(side)]
+        for x, y in places_around(_REACH * cast("Any", context.preferences).system.ui_scale):
+            place = (mouse[0] - region.x + x, mouse[1] - region.y + y)
+            origin = view3d_utils.region_2d_to_origin_3d(region, view, place)
+            direction = view3d_utils.region_2d_to_vector_3d(region, view, place)
+            hit = cast_ray(context, parts, origin, direction, space)
+            if hit is not None:
+                return hit
+        return None
 
     @property
     def _names(self) -> tuple[str, str]:
-        return self._sides[0].name, self._sides[1].name
+        """What the two sides are called now, or were called if one is gone."""
+        found = [reference.find() for reference in self._sides]
+        names = [
+            reference.name if side is None else side.name for side, reference in zip(found, self._sides, strict=True)
+        ]
+        return names[0], names[1]
 
     def _found(self) -> tuple[Side, Side]:
         """Look the two sides up again."""
@@ -127,40 +172,66 @@ class LandmarkClicks(_Operator):
             raise ObjectError("One of the two meshes was deleted. Press Esc and start again.")
         return source, target
 
-    def _clicked(self, hit: Hit) -> tuple[str, int]:
+    def _check_modes(self) -> None:
+        for side in self._found():
+            for part in parts_of(side):
+                if part.mode != "OBJECT":
+                    raise ObjectError(
+                        f'"{part.name}" is in {part.mode.replace("_", " ").title()} Mode. Leave it first.'
+                    )
+
+    def _clicked(self, hit: Hit) -> _Click:
         """Return which side was hit, and the number of the vertex there, counted through all its parts."""
-        source, target = self._found()
-        side = source if hit.obj in parts_of(source) else target
-        return side.name, vertex_ranges(side)[parts_of(side).index(hit.obj)].start + hit.vertex
+        sides = self._found()
+        number = 0 if hit.obj in parts_of(sides[0]) else 1
+        side = sides[number]
+        start = vertex_ranges(side)[parts_of(side).index(hit.obj)].start
+        return _Click(number, start + hit.vertex, vertex_count(side))
 
     def _take(self, context: bpy.types.Context, hit: Hit | None) -> None:
         """Keep the first place of a pair, or make a landmark of both."""
         if hit is None:
             raise ObjectError(f'Click on "{self._names[0]}" or on "{self._names[1]}".')
         clicked = self._clicked(hit)
-        if self._pending is None or self._pending[0] == clicked[0]:
+        first = self._pending
+        if first is None or first.side == clicked.side:
             self._pending = clicked
             return
         source, target = self._found()
-        vertices = dict([self._pending, clicked])
-        pair = (vertices[source.name], vertices[target.name])
-        (added,) = add_landmarks(source, target, [pair], self._place_name())
-        self._pending = None
-        self._added += 1
+        edited = (source, target)[first.side]
+        if vertex_count(edited) != first.count:
+            self._pending = None
+            raise ObjectError(f'"{edited.name}" was edited since the click on it. Click on its place again.')
+        pair = (first.vertex, clicked.vertex) if first.side == 0 else (clicked.vertex, first.vertex)
+        self._made += add_landmarks(source, target, [pair], self._place_name())
+        self._pending, self._undone = None, []
         sync_lists(cast("bpy.types.Scene", context.scene))
         steering = steering_of(context)
         numbers = [item.number for item in steering.landmarks]
-        steering.landmark_index = numbers.index(added.number)
-        bpy.ops.ed.undo_push(message=f"Landmark {added.number}")
+        number = self._made[-1].number
+        steering.landmark_index = numbers.index(number)
+        bpy.ops.ed.undo_push(message=f"Landmark {number}")
+
+    def _follow_undo(self) -> bool:
+        """Count what Undo has taken back no longer, and what Redo has brought again; tell whether there was any."""
+        if not self._made and not self._undone:
+            return False
+        source, target = (reference.find() for reference in self._sides)
+        there = set() if source is None or target is None else {_key(mark) for mark in find_landmarks(source, target)}
+        every, count = [*self._made, *self._undone], len(self._made)
+        kept = next((number for number, mark in enumerate(every) if _key(mark) not in there), len(every))
+        self._made, self._undone = every[:kept], every[kept:]
+        return kept != count
 
     def _show_status(self, context: bpy.types.Context) -> None:
         """Say what to click on next, and show what was clicked on."""
-        show_pending(self._pending)
-        workspace = bpy.data.workspaces.get(self._workspace)
-        if workspace is not None:
-            said = f"{self._prompt()}    Landmarks added: {self._added}    Enter: done    Esc: back"
-            workspace.status_text_set(translated(said))
-            _say_in_viewports(context, translated(said))
+        first = self._pending
+        show_pending(None if first is None else (self._names[first.side], first.vertex))
+        said = translated(f"{self._prompt()}    Landmarks added: {len(self._made)}    Enter: done    Esc: back")
+        if context.workspace is not None:
+            context.workspace.status_text_set(said)
+        if context.screen is not None:
+            _say_in_viewports(context.screen, said)
         redraw_views(window_manager_of(context))
 
     def _prompt(self) -> str:
@@ -172,8 +243,7 @@ class LandmarkClicks(_Operator):
     @property
     def _other(self) -> str:
         """The mesh whose place is still to be clicked on."""
-        pending = cast("tuple[str, int]", self._pending)
-        return next(name for name in self._names if name != pending[0])
+        return self._names[1 - cast("_Click", self._pending).side]
 
     def _place_name(self) -> str:
         """Return what the landmark is called that is added next; empty for no name of its own."""
@@ -183,22 +253,26 @@ class LandmarkClicks(_Operator):
         """Go on after Enter."""
 
 
-def _say_in_viewports(context: bpy.types.Context, text: str | None) -> None:
+def _key(landmark: Landmark) -> tuple[int, int, int]:
+    return landmark.number, landmark.source, landmark.target
+
+
+def _say_in_viewports(screen: bpy.types.Screen, text: str | None) -> None:
     """Write something into the headers of all 3D viewports, where the eyes are; None takes it away."""
-    for area in context.screen.areas if context.screen else ():
+    for area in screen.areas:
         if area.type == "VIEW_3D":
             area.header_text_set(cast("str", text))
 
 
-def _viewport_at(context: bpy.types.Context, x: int, y: int) -> tuple[bpy.types.Region, Any] | None:
+def _viewport_at(context: bpy.types.Context, x: int, y: int) -> _Viewport | None:
     """Find the 3D viewport at a place of the window, unless something lies over it there."""
     screen = context.screen
     for area in screen.areas if screen else ():
         inside = [region for region in area.regions if _covers(region, x, y)]
         if area.type == "VIEW_3D" and inside and all(region.type == "WINDOW" for region in inside):
-            space: Any = area.spaces.active
+            space = cast("bpy.types.SpaceView3D", area.spaces.active)
             view = space.region_3d if len(inside) == 1 else None
-            return None if view is None else (inside[0], inside[0].data or view)
+            return None if view is None else (inside[0], space, inside[0].data or view)
     return None
 
 

@@ -15,7 +15,7 @@ from ...scene.mesh_io import vertex_positions
 from ...storage.landmark_layer import selected_vertices
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import bpy
     from mathutils import Vector
@@ -23,10 +23,21 @@ if TYPE_CHECKING:
 
     from ...scene.character import Side
 
-__all__ = ["Hit", "cast_ray", "selected_empties", "selected_pair", "shown_positions", "vertices_at_empties"]
+__all__ = [
+    "Hit",
+    "cast_ray",
+    "places_around",
+    "selected_empties",
+    "selected_pair",
+    "shown_positions",
+    "vertices_at_empties",
+]
 
 _OFF = 0.1
 """How far from where the surface was hit the nearest vertex may be, in diagonals of the mesh's bounding box."""
+
+_RINGS = 3
+"""On so many circles around a click is looked for what was meant."""
 
 
 @dataclass(frozen=True)
@@ -101,10 +112,24 @@ def vertices_at_empties(context: bpy.types.Context, source: Side, target: Side) 
     return int(on_source[1]), int(on_target[0])
 
 
+def places_around(reach: float) -> Iterator[tuple[float, float]]:
+    """Give the places within a distance at which to look for what was meant by a click, the nearest first."""
+    yield 0.0, 0.0
+    for ring in range(1, _RINGS + 1):
+        for angle in np.arange(8 * ring) * np.pi / (4 * ring):
+            yield float(np.cos(angle)) * reach * ring / _RINGS, float(np.sin(angle)) * reach * ring / _RINGS
+
+
 def cast_ray(
-    context: bpy.types.Context, objects: Sequence[bpy.types.Object], origin: Vector, direction: Vector
+    context: bpy.types.Context,
+    objects: Sequence[bpy.types.Object],
+    origin: Vector,
+    direction: Vector,
+    viewport: bpy.types.SpaceView3D | None = None,
 ) -> Hit | None:
     """Find the vertex that is meant by a click: the nearest one to where a ray in world space meets the meshes first.
+
+    What is hidden, or not in Local View in the viewport if there is one, is not met.
 
     Raises
     ------
@@ -114,7 +139,7 @@ def cast_ray(
     depsgraph = context.evaluated_depsgraph_get()
     best: tuple[float, bpy.types.Object, Vector] | None = None
     for obj in objects:
-        if not obj.visible_get(view_layer=view_layer_of(context)):
+        if not obj.visible_get(view_layer=view_layer_of(context), **({"viewport": viewport} if viewport else {})):
             continue
         shown = obj.evaluated_get(depsgraph)
         inverse = shown.matrix_world.inverted_safe()

@@ -10,8 +10,13 @@ import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.operators.steering import guide_me
 from hiermatch.hiermatch_addon.operators.steering.landmark_picking import Hit
-from hiermatch.hiermatch_addon.scene.character import SideReference
-from hiermatch.hiermatch_addon.storage.landmarks import find_landmarks, rename_landmark
+from hiermatch.hiermatch_addon.storage.landmarks import (
+    add_landmarks,
+    clear_landmarks,
+    find_landmarks,
+    remove_landmark,
+    rename_landmark,
+)
 
 from tests.addon.scenes import add_pair
 
@@ -52,8 +57,7 @@ def guide(pair, started):
     assert pair
     assert started == []
     guide = Guided()
-    guide._sides = tuple(SideReference.of(obj) for obj in pair)  # noqa: SLF001
-    guide._pending, guide._added, guide._workspace = None, 0, ""  # noqa: SLF001
+    guide._wait_for(*pair)  # noqa: SLF001
     return guide
 
 
@@ -104,6 +108,23 @@ def test_escape_matches_nothing(guide, pair, started):
     assert guide.press("ESC") == {"FINISHED"}
     assert not started
     assert len(find_landmarks(*pair)) == 1
+
+
+def test_what_undo_takes_back_is_asked_for_again(guide, pair):
+    for vertices in ((3, 5), (7, 9)):
+        guide.click(pair[0], vertices[0])
+        guide.click(pair[1], vertices[1])
+    assert guide._prompt().startswith("Right Hand (3 of 6)")  # noqa: SLF001
+    guide.click(pair[0], 11)
+    remove_landmark(*pair, 2)  # as Undo does
+    guide.press("Z")
+    assert guide._prompt().startswith('Left Hand (2 of 6): click on it on "Source"')  # noqa: SLF001
+    add_landmarks(*pair, [(7, 9)], "Left Hand")  # as Redo does
+    guide.press("Z")
+    assert guide._prompt().startswith("Right Hand (3 of 6)")  # noqa: SLF001
+    clear_landmarks(*pair)
+    assert guide.press("RET") == {"FINISHED"}
+    assert "nothing new" in guide.reports[-1][1]
 
 
 def test_a_second_round_replaces_the_places_of_the_first(guide, pair):

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What waits for clicks lives with all that is done between two clicks."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from hiermatch.hiermatch_addon.common.errors import ObjectError
+from hiermatch.hiermatch_addon.operators.steering import landmark_clicks
+from hiermatch.hiermatch_addon.operators.steering.landmark_picking import Hit, places_around
+from hiermatch.hiermatch_addon.overlay import overlay_io
+from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, clear_landmarks, find_landmarks
+
+from tests.addon.scenes import add_pair
+
+
+class Clicks(landmark_clicks.LandmarkClicks):
+    """The operator without Blender around it."""
+
+    def __init__(self):
+        self.reports = []
+
+    def report(self, _kind, text):
+        self.reports.append(text)
+
+    def event(self, kind, context=None):
+        event = SimpleNamespace(type=kind, value="PRESS", alt=False, mouse_x=5, mouse_y=5)
+        return self.modal(context or bpy.context, event)
+
+    def click(self, obj, vertex):
+        self._take(bpy.context, Hit(obj, vertex))
+
+
+@pytest.fixture
+def pair():
+    state = bpy.context.scene.hiermatch
+    state.source, state.target = add_pair()
+    return state.source, state.target
+
+
+@pytest.fixture
+def clicks(pair):
+    clicks = Clicks()
+    clicks._wait_for(*pair)  # noqa: SLF001
+    return clicks
+
+
+def ends_of(landmarks):
+    return [(landmark.source, landmark.target) for landmark in landmarks]
+
+
+def test_a_mesh_that_was_edited_since_its_click_is_asked_for_again(clicks, pair):
+    add_landmarks(*pair, [(1, 2)])
+    last = len(pair[0].data.vertices) - 1
+    clicks.click(pair[0], last)
+    pair[0].data.clear_geometry()
+    pair[0].data.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+    with pytest.raises(ObjectError, match='"Source" was edited since'):
+        clicks.click(pair[1], 7)
+    clicks.click(pair[0], 2)
+    clicks.click(pair[1], 7)
+    assert (2, 7) in ends_of(find_landmarks(*pair))
+
+
+def test_a_mesh_may_be_renamed_between_two_clicks(clicks, pair):
+    clicks.click(pair[0], 3)
+    pair[0].name = "Renamed"
+    assert clicks._prompt() == 'Click on the corresponding place of "Target"'  # noqa: SLF001
+    clicks.click(pair[1], 7)
+    assert ends_of(find_landmarks(*pair)) == [(3, 7)]
+    assert '"Renamed"' in clicks._prompt()  # noqa: SLF001
+
+
+@pytest.mark.parametrize("pending", [("Renamed", 3), ("Source", 10**6)])
+def test_a_place_that_is_gone_is_not_drawn(pair, pending):
+    bpy.context.scene.hiermatch_steering.show_overlay = True
+    overlay_io.read_drawing(bpy.context.scene, bpy.context.evaluated_depsgraph_get(), pending)
+    assert pair
+
+
+def test_undo_and_redo_are_counted(clicks, pair):
+    clicks.click(pair[0], 3)
+    clicks.click(pair[1], 7)
+    clear_landmarks(*pair)
+    clicks.event("Z")
+    assert not clicks._made  # noqa: SLF001
+    add_landmarks(*pair, [(3, 7)])
+    clicks.event("Z")
+    assert len(clicks._made) == 1  # noqa: SLF001
+
+
+def test_only_one_waits_for_clicks_at_a_time(clicks, pair, monkeypatch):
+    manager = SimpleNamespace(
+        windows=[SimpleNamespace(modal_operators=[clicks], screen=SimpleNamespace(areas=[]))],
+        modal_handler_add=lambda _operator: None,
+    )
+    clicks.bl_idname = "HIERMATCH_OT_pick_landmarks"
+    monkeypatch.setattr(landmark_clicks, "window_manager_of", lambda _context: manager)
+    newer = Clicks()
+    assert newer.invoke(bpy.context, None) == {"RUNNING_MODAL"}
+    assert clicks.event("MOUSEMOVE") == {"FINISHED", "PASS_THROUGH"}
+    assert newer.event("MOUSEMOVE") == {"PASS_THROUGH"}
+    assert pair
+
+
+def test_nothing_waits_for_clicks_while_a_match_runs(clicks, monkeypatch):
+    running = SimpleNamespace(bl_idname="HIERMATCH_OT_match", panel="HIERMATCH_PT_match")
+    manager = SimpleNamespace(windows=[SimpleNamespace(modal_operators=[running], screen=SimpleNamespace(areas=[]))])
+    monkeypatch.setattr(landmark_clicks, "window_manager_of", lambda _context: manager)
+    assert clicks.event("TIMER") == {"FINISHED", "PASS_THROUGH"}
+
+
+def test_a_click_in_another_mode_is_left_to_that_mode(clicks, pair, monkeypatch):
+    monkeypatch.setattr(landmark_clicks, "_viewport_at", lambda *_: (None, None, None))
+    bpy.context.view_layer.objects.active = pair[0]
+    bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+    try:
+        assert clicks.event("LEFTMOUSE") == {"PASS_THROUGH"}
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    assert clicks.reports == ['"Source" is in Weight Paint Mode. Leave it first.']
+
+
+def test_a_click_just_beside_a_mesh_counts(clicks, pair, monkeypatch):
+    asked = []
+
+    def cast_ray(_context, _parts, origin, *_):
+        asked.append(origin)
+        return Hit(pair[0], 3) if origin[0] > 7 else None
+
+    view3d = SimpleNamespace(
+        region_2d_to_origin_3d=lambda _region, _view, place: place, region_2d_to_vector_3d=lambda *_: None
+    )
+    monkeypatch.setattr(landmark_clicks, "view3d_utils", view3d)
+    monkeypatch.setattr(landmark_clicks, "cast_ray", cast_ray)
+    region = SimpleNamespace(x=0, y=0)
+    context = SimpleNamespace(preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)))
+    assert clicks._hit(context, (region, None, None), (5, 5)) == Hit(pair[0], 3)  # noqa: SLF001
+    assert asked[0] == (5, 5)
+    assert clicks._hit(context, (region, None, None), (-50, 5)) is None  # noqa: SLF001
+
+
+def test_what_is_nearer_to_a_click_is_looked_at_first():
+    distances = [(x**2 + y**2) ** 0.5 for x, y in places_around(12)]
+    assert distances == pytest.approx(sorted(distances))
+    assert max(distances) == pytest.approx(12)
