@@ -14,9 +14,9 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..common.file_writing import beside, check_place
 from ..scene.character import parts_of
-from ..scene.garments import fitted_to
 from ..scene.motion.nla_strips import add_tracks
 from ..scene.motion.rigs import rig_of
+from ..scene.worn.fitted_copies import fitted_to
 from .meshes import has_operator
 from .operator_errors import said_by
 

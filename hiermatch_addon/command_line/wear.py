@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ..scene.character import parts_of
-from ..scene.garments import meshes_of, undressed
+from ..scene.worn.garments import meshes_of, undressed
 from ..transfers.options.wear import wear_settings
 from ..transfers.wearing.wear_transfer import WearTransfer
 from .command import EXIT_CODES

@@ -65,10 +65,13 @@ class Transfer(Protocol):
         What is carried, for the progress bar: "Weights".
     uses_rig : bool
         Whether it goes better with the source's rig fitted into the target first.
+    mirrors : bool
+        Whether it can be carried across a match that exchanges left and right.
     """
 
     label: str
     uses_rig: bool
+    mirrors: bool
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read everything from all objects of both sides and make sure that it can be written.

@@ -329,6 +329,8 @@ class TransferJob(SteppedJob):
         while self.doubts:
             yield Progress(begin, "Waiting for an answer")
         passage = Passage(leg.stored.between(leg.source, leg.mesh))
+        if not all(transfer.mirrors for transfer in leg.transfers):
+            self._check_sides(leg.name, passage.pair)
         if self._rig is not None and any(transfer.uses_rig for transfer in leg.transfers):
             passage = yield from within(self._fitted_steps(leg, passage, self._rig), begin, _FITTED)
             begin = _FITTED
@@ -337,6 +339,20 @@ class TransferJob(SteppedJob):
             start = begin + number * share
             yield Progress(start, transfer.label)
             yield from within(transfer.steps(passage), start, start + share, transfer.label)
+
+    def _check_sides(self, target: str, pair: MapPair) -> None:
+        """Make sure that a match keeps left and right, before the work is done that would be of no use.
+
+        Raises
+        ------
+        ObjectError
+            If it does not.
+        """
+        if pair.source_to_target.mirrors(pair.source, pair.target):
+            raise ObjectError(
+                f'The match exchanges left and right between "{self._source_name}" and "{target}", and clothes and '
+                "motion cannot be carried across it. Press Use Mirrored Match once more, or match again."
+            )
 
     @property
     def doubts(self) -> list[tuple[str, Verdict]]:

@@ -12,7 +12,7 @@ from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..properties.panel_state import picked, state_of
 from ..scene.character import parts_of, side_of
-from ..scene.garments import bound_items, selected_items
+from ..scene.worn.garments import bound_items, selected_items
 from ..transfers.options.wear import WearOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
 from .panel_text import draw_text

@@ -77,6 +77,7 @@ class AttributeTransfer:
 
     label = "Attributes"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, settings: AttributeSettings) -> None:
         self._settings = settings

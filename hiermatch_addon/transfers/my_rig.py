@@ -79,6 +79,7 @@ class MyRigTransfer:
 
     label = "Rig"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, settings: MyRigSettings) -> None:
         self._settings = settings

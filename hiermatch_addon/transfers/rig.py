@@ -54,6 +54,7 @@ class RigTransfer:
 
     label = "Rig"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, settings: RigSettings) -> None:
         self._settings = settings

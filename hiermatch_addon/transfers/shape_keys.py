@@ -63,6 +63,7 @@ class ShapeKeyTransfer:
 
     label = "Shape Keys"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, settings: ShapeKeySettings) -> None:
         self._settings = settings

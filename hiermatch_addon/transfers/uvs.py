@@ -48,6 +48,7 @@ class UVTransfer:
 
     label = "UV Maps"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, settings: UVSettings) -> None:
         self._settings = settings

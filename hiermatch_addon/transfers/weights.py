@@ -66,6 +66,7 @@ class WeightTransfer:
 
     label = "Weights"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, settings: WeightSettings) -> None:
         self._settings = settings

@@ -66,6 +66,7 @@ class WrapTransfer:
 
     label = "Wrap"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, settings: WrapSettings) -> None:
         self._settings = settings

@@ -1417,6 +1417,13 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" was edited since the click on it. Click on its place again.': (
         "「{0}」はクリックした後に編集されました。もう一度その場所をクリックしてください。"
     ),
+    (
+        'The match exchanges left and right between "{0}" and "{1}", and clothes and motion cannot be carried across '
+        "it. Press Use Mirrored Match once more, or match again."
+    ): (
+        "このマッチングは「{0}」と「{1}」の左右を入れ替えているため、衣服とモーションは転写できません。"
+        "「ミラーマッチングを使用」をもう一度押すか、マッチングし直してください。"
+    ),
     "One of the two meshes was deleted. Press Esc and start again.": (
         "二つのメッシュの一方が削除されました。Escを押してやり直してください。"
     ),
@@ -1462,6 +1469,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" follows {1} of "{2}".': '"{0}"は"{2}"の{1}に従います。',
     '{0} of "{1}" could not be bound to "{2}". Bind it by hand.': (
         '"{1}"の{0}を"{2}"にバインドできませんでした。手動でバインドしてください。'
+    ),
+    '"{0}" was edited after it had been fitted. As it was then it is kept, hidden, as {1}.': (
+        "「{0}」はフィット後に編集されていました。編集されたものは{1}として非表示で残してあります。"
     ),
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (

@@ -1176,6 +1176,10 @@ MESSAGES: Final[dict[str, str]] = {
         "没有可点击的对象。请用两个顶点调用 hiermatch.add_landmark。"
     ),
     '"{0}" was edited since the click on it. Click on its place again.': ("“{0}”在点击之后被编辑过。请重新点击该处。"),
+    (
+        'The match exchanges left and right between "{0}" and "{1}", and clothes and motion cannot be carried across '
+        "it. Press Use Mirrored Match once more, or match again."
+    ): ("该匹配交换了“{0}”与“{1}”的左右，衣物和动作无法通过它传递。请再按一次“使用镜像匹配”，或重新匹配。"),
     "One of the two meshes was deleted. Press Esc and start again.": "两个网格之一被删除。请按 Esc 后重新开始。",
     "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
         "没有可改善的匹配。请选取两个网格作为源和目标并进行匹配。"
@@ -1211,6 +1215,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Following shape keys": "正在跟随形态键",
     '"{0}" follows {1} of "{2}".': '"{0}" 跟随 "{2}" 的 {1}。',
     '{0} of "{1}" could not be bound to "{2}". Bind it by hand.': '"{1}" 的 {0} 无法绑定到 "{2}"。请手动绑定。',
+    '"{0}" was edited after it had been fitted. As it was then it is kept, hidden, as {1}.': (
+        "“{0}”在贴合之后被编辑过。编辑过的版本已隐藏并保留为{1}。"
+    ),
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (
         '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'

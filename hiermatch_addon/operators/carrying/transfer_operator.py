@@ -98,6 +98,7 @@ class TransferOperator(JobOperator):
     panel = "HIERMATCH_PT_retarget"
     optional = False
 
+    _writes = True  # whether anything is written on the targets themselves
     _left_out = ""  # which parts of the source's own character, as a sentence
     _named = False  # whether a script says which objects
     _asks = False  # whether there is somebody to be asked about a doubtful match
@@ -143,7 +144,7 @@ class TransferOperator(JobOperator):
         self, context: bpy.types.Context, source: Side, targets: list[Side], options: TransferOptions
     ) -> TransferJob | MotionJob:
         """Make the job that carries."""
-        return TransferJob(context, source, targets, self._transfers, options)
+        return TransferJob(context, source, targets, self._transfers, options, writes=self._writes)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Do it in slices, and ask about a match that is not to be trusted."""

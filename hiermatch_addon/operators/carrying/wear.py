@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...properties.panel_state import picked, state_of
-from ...scene.garments import meshes_of, selected_items, undressed
+from ...scene.worn.garments import meshes_of, selected_items, undressed
 from ...transfers.options.wear import WearOptions, wear_settings
 from ...transfers.wearing.wear_transfer import WearTransfer
 from .transfer_operator import TransferOperator
@@ -60,6 +60,8 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
             self._chosen = meshes_of(
                 self.collection, *(bpy.data.objects[name] for name in bodies if name in bpy.data.objects)
             )
+        options: Any = self
+        self._writes = options.wear_hide != "NONE"  # else the body may be another file's
         job = super()._start(context)
         self.items.clear()
         for name in self._chosen:

@@ -87,6 +87,7 @@ class BonePairTransfer:
 
     label = "Bone Pairs"
     uses_rig = True
+    mirrors = False
 
     def __init__(self) -> None:
         self.pairing: BonePairing | None = None

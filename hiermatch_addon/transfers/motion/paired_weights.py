@@ -54,6 +54,7 @@ class PairedWeightTransfer:
 
     label = "Weights"
     uses_rig = True
+    mirrors = True
 
     def __init__(self, limit: int) -> None:
         self._limit = limit

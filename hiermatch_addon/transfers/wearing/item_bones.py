@@ -11,8 +11,8 @@ import numpy as np
 from ....engine import bones_of_items, moved_with_items, row_sums
 from ...scene.armature_copy import NewBone, add_bones
 from ...scene.armatures import SourceRig, armature_of, find_armature
-from ...scene.garments import ITEM
 from ...scene.pair import is_own
+from ...scene.worn.fitted_copies import ITEM
 from .item_weights import in_columns
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from ...common.access import mesh_of
 from ...common.errors import ObjectError
 from ...scene.armatures import find_armature, held_by
 from ...scene.deform_layer import read_weights
-from ...scene.garments import dressed_at_rest
 from ...scene.mesh_io import position_digest, read_mesh, topology
+from ...scene.worn.garments import dressed_at_rest
 from .item_weights import ItemWeights, in_columns
 
 if TYPE_CHECKING:

@@ -13,11 +13,12 @@ from ...common.phrases import listed
 from ...scene.armatures import find_armature
 from ...scene.binding import bind
 from ...scene.deform_layer import write_weights
-from ...scene.garment_shape_io import write_shape
-from ...scene.garments import fitted_copy
 from ...scene.mesh_io import add_colors
 from ...scene.modifier_bindings import bind_again
 from ...scene.shape_key_io import KeySettings, add_keys, key_positions, keys_of, shape_key_names
+from ...scene.worn.fitted_copies import former_names, mark_names
+from ...scene.worn.garment_shape_io import write_shape
+from ...scene.worn.garments import fitted_copy
 
 if TYPE_CHECKING:
     import bpy
@@ -45,6 +46,11 @@ def write_key(obj: bpy.types.Object, target: Side, fitted: FittedItem) -> None:
         np.array([vertex.co for vertex in mesh_of(obj).vertices]) if keys is None else key_positions(keys.reference_key)
     )
     name = KEY + target.name
+    for former in former_names(target):
+        before = None if keys is None else keys.key_blocks.get(KEY + former)
+        if before is not None and name not in shape_key_names(obj):
+            before.name = name
+    mark_names(obj, target)
     others = [other for other in shape_key_names(obj) if other.startswith(KEY) and other != name]
     add_keys(obj, [KeySettings(name, value=float(not others))], (local - rest)[None])
 
@@ -60,14 +66,9 @@ def write_copy(
 ) -> tuple[bpy.types.Object, list[str]]:
     """Write a fitted copy of what moved on the whole by a motion (4, 4); return it, and what is to be known."""
     source, target = bodies
-    notes: list[str] = []
     growth = float(np.median(fitted.scales))
-    copy, kept = fitted_copy(context, item, source, target, motion=motion, growth=growth)
-    if kept:
-        notes.append(
-            f'Drivers of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
-            "what they need. Carry its shape keys or bones over by Retarget, and fit it again."
-        )
+    copy, kept, aside = fitted_copy(context, item, source, target, motion=motion, growth=growth)
+    notes = _notes_on(copy, target, kept, aside)
     write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])
     armature = find_armature(target)
     if armature is None:
@@ -95,6 +96,21 @@ def write_copy(
     if loose:
         notes.append(f'{listed(loose)} of "{copy.name}" could not be bound to "{target.name}". Bind it by hand.')
     return copy, notes
+
+
+def _notes_on(copy: bpy.types.Object, target: Side, kept: list[str], aside: list[str]) -> list[str]:
+    """Say what drivers of a copy still read, and what is kept of the one that it replaces."""
+    notes = []
+    if aside:
+        notes.append(
+            f'"{copy.name}" was edited after it had been fitted. As it was then it is kept, hidden, as {listed(aside)}.'
+        )
+    if kept:
+        notes.append(
+            f'Drivers of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
+            "what they need. Carry its shape keys or bones over by Retarget, and fit it again."
+        )
+    return notes
 
 
 def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:

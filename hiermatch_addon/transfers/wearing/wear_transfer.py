@@ -14,9 +14,10 @@ from ...jobs.transfer import TransferReport
 from ...scene.armatures import armature_of, find_armature, read_rig
 from ...scene.character import Character, parts_of, read_surface, whole
 from ...scene.deform_layer import check_weights_writable
-from ...scene.garments import bound_items, check_item, dressed_at_rest
 from ...scene.pair import check_writable, named_object
 from ...scene.shape_key_io import check_keys_writable
+from ...scene.worn.fitted_copies import as_fitted
+from ...scene.worn.garments import bound_items, check_item, dressed_at_rest
 from ..options.rig import RigSettings
 from ..options.weights import WeightSettings
 from ..rig import RigTransfer
@@ -55,6 +56,7 @@ class WearTransfer:
 
     label = "Clothes"
     uses_rig = True
+    mirrors = False
 
     def __init__(self, settings: WearSettings) -> None:
         self._settings = settings
@@ -197,6 +199,8 @@ class WearTransfer:
                         remarks.append(f'"{made.name}" follows {counted(followed, "shape key")} of "{target.name}".')
             if self._settings.colors:
                 write_colors(made, fitted)
+            if made is not obj:
+                as_fitted(made)
             remarks.append(done(item.name, fitted, is_body=item.name in self._ends))
             notes.extend(filter(None, [doubt(item.name, fitted)]))
         remarks.extend(

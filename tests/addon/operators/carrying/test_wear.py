@@ -6,7 +6,9 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.jobs import transfer_job
 from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
+from hiermatch.hiermatch_addon.transfers.wearing import wear_transfer
 
 from tests.addon.garments import depths, fitted, in_world, wear
 from tests.addon.rigs import add_armature
@@ -39,6 +41,59 @@ def test_items_are_fitted_as_copies_and_again_in_place(dressed_pair):
     assert len(bpy.data.collections["Outfit of Target"].objects) == 2
     assert source.name == "Source"
     assert coat.name == "Coat"
+
+
+def made_copies():
+    return sorted(obj.name for obj in bpy.data.objects if "hiermatch_body" in obj)
+
+
+def test_copies_are_found_again_after_renaming(dressed_pair):
+    _, target, shirt, _ = dressed_pair
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    target.name, shirt.name = "Giant", "Blouse"
+    fitted("Coat").name = "My Coat"
+    assert wear("Blouse", target="Giant") == {"FINISHED"}
+    assert made_copies() == ["Blouse on Giant", "My Coat"]
+    assert fitted("Coat", "Giant").name == "My Coat"
+    assert [one.name for one in bpy.data.collections if "hiermatch_body" in one] == ["Outfit of Giant"]
+    assert not set(fitted("Blouse", "Giant").keys()) & {"hiermatch_item_name", "hiermatch_body_name"}
+
+
+def test_a_shape_key_is_found_again_after_renaming(dressed_pair):
+    _, target, shirt, _ = dressed_pair
+    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
+    target.name = "Giant"
+    assert wear("Shirt", target="Giant", wear_result="KEY") == {"FINISHED"}
+    assert shirt.data.shape_keys.key_blocks.keys() == ["Basis", "Fit to Giant"]
+
+
+def test_what_another_body_wears_is_left_alone(dressed_pair):
+    _, target, *_ = dressed_pair
+    assert wear("Shirt") == {"FINISHED"}
+    other = target.copy()
+    other.data = target.data.copy()
+    other.name = "Twin"
+    bpy.context.scene.collection.objects.link(other)
+    bpy.context.view_layer.update()
+    assert wear("Shirt", target="Twin") == {"FINISHED"}
+    assert made_copies() == ["Shirt on Target", "Shirt on Twin"]
+
+
+def test_a_copy_that_was_edited_is_kept_aside(dressed_pair):
+    assert dressed_pair
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    fitted("Shirt").data.vertices[3].co.z += 0.5
+    where = tuple(fitted("Shirt").data.vertices[3].co)
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    assert made_copies() == ["Coat on Target", "Shirt on Target", "Shirt on Target (edited)"]
+    kept = bpy.data.objects["Shirt on Target (edited)"]
+    assert tuple(kept.data.vertices[3].co) == where
+    assert kept.users_collection == fitted("Shirt").users_collection
+    assert kept.hide_get()
+    assert kept.hide_render
+    assert "was edited after it had been fitted" in bpy.context.scene.hiermatch_retarget.report.notes
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    assert len(made_copies()) == 3
 
 
 def test_a_surface_deform_is_bound_to_the_other_body(dressed_pair):
@@ -237,6 +292,32 @@ def test_items_of_a_library_are_copied_into_the_file(dressed_pair, tmp_path, ove
         assert {(one.library, one.override_library) for one in owned} == {(None, None)}
         assert copy.modifiers.keys() == ["Thick"]
     np.testing.assert_array_equal(in_world(item), stood)
+
+
+def test_a_body_of_a_library_is_dressed_as_long_as_nothing_is_written_on_it(dressed_pair, tmp_path):
+    source, target, *_ = dressed_pair
+    library = str(tmp_path / "bodies.blend")
+    bpy.data.libraries.write(library, {target}, fake_user=True)
+    bpy.data.objects.remove(target)
+    with bpy.data.libraries.load(library, link=True) as (_, wanted):
+        wanted.objects = ["Target"]
+    bpy.context.scene.collection.objects.link(wanted.objects[0])
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="is linked from"):
+        wear("Shirt", wear_hide="KEY")
+    for _ in range(2):
+        assert wear("Shirt") == {"FINISHED"}
+        assert made_copies() == ["Shirt on Target"]
+    assert source.library is None
+
+
+def test_a_mirrored_match_is_refused_before_the_work(dressed_pair, monkeypatch):
+    assert dressed_pair
+    bpy.ops.hiermatch.flip(object="Source")
+    monkeypatch.setattr(transfer_job, "fit_rig_steps", None)
+    monkeypatch.setattr(wear_transfer, "wrap_steps", None)
+    with pytest.raises(RuntimeError, match=r"exchanges left and right .* Use Mirrored Match once more"):
+        wear("Shirt")
 
 
 def test_drivers_of_modifiers_come_along_and_nothing_else_that_moves_an_item(dressed_pair):

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.scene.character import Character, joined, parts_of, read_surface, whole
-from hiermatch.hiermatch_addon.scene.garments import undressed
+from hiermatch.hiermatch_addon.scene.worn.garments import undressed
 from mathutils import Vector
 
 from tests.addon.garments import depths, fitted, in_world, wear

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..common.access import mesh_of
-from .mesh_io import vertex_positions
-from .shape_key_io import key_positions, keys_of
+from ...common.access import mesh_of
+from ..mesh_io import vertex_positions
+from ..shape_key_io import key_positions, keys_of
 
 if TYPE_CHECKING:
     import bpy

@@ -11,41 +11,34 @@ import numpy as np
 from mathutils import Matrix
 from scipy.sparse import csr_array, vstack
 
-from ...engine import continues_body, ends_at_joint, hanging_triangles
-from ..common.access import mesh_of, view_layer_of
-from ..common.errors import ObjectError
-from .armatures import find_armature, held_by, moving_armatures, read_rig
-from .character import FITTED_TO, Character, joined, joined_mesh, parts_of, vertex_ranges
+from ....engine import continues_body, ends_at_joint, hanging_triangles
+from ...common.access import mesh_of, view_layer_of
+from ...common.errors import ObjectError
+from ..armatures import find_armature, held_by, moving_armatures, read_rig
+from ..character import Character, joined, joined_mesh, parts_of, vertex_ranges
+from ..key_drivers import counterparts, point_drivers
+from ..mesh_io import read_mesh
+from ..pair import check_object
+from ..shape_key_io import keys_of
+from .fitted_copies import BODY, ITEM, adopt, fitted_name, made_copy, mark_names, put_aside, unmark, was_edited
 from .garment_shape_io import mirror_axes
-from .key_drivers import counterparts, point_drivers
-from .mesh_io import read_mesh
-from .pair import check_object
-from .shape_key_io import keys_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from .character import Side
+    from ..character import Side
 
 __all__ = [
-    "BODY",
-    "ITEM",
     "bound_items",
     "check_item",
     "dressed_at_rest",
     "fitted_copy",
-    "fitted_name",
-    "fitted_to",
-    "made_copy",
     "meshes_of",
     "selected_items",
     "undressed",
 ]
-
-ITEM, BODY = "hiermatch_item", FITTED_TO
-"""Custom properties of a fitted copy: the names of the original, and of the body that it was fitted to."""
 
 _SHAPES = frozenset({"MESH", "CURVE", "CURVES", "SURFACE", "FONT", "META"})
 """Types of objects that have a shape."""
@@ -142,11 +135,6 @@ def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph
     return replace(left, left_out=frozenset(np.flatnonzero(hanging).tolist())) if isinstance(left, Character) else left
 
 
-def fitted_to(body: Side) -> list[bpy.types.Object]:
-    """Return all that was fitted to a body."""
-    return [obj for obj in bpy.data.objects if obj.type == "MESH" and cast("Any", obj).get(BODY) == body.name]
-
-
 def check_item(
     context: bpy.types.Context,
     item: bpy.types.Object,
@@ -188,16 +176,6 @@ def dressed_at_rest(item: bpy.types.Object, source: Side) -> bool:
     return armature is None or armature in moving_armatures(item) or bool(held_by(item, armature))
 
 
-def fitted_name(item: str, body: str) -> str:
-    """Return the name of a fitted copy."""
-    return f"{item} on {body}"
-
-
-def made_copy(item: bpy.types.Object, body: Side) -> bpy.types.Object | None:
-    """Find the copy of an item that was fitted to a body before."""
-    return next((obj for obj in fitted_to(body) if cast("Any", obj).get(ITEM) == item.name), None)
-
-
 def fitted_copy(
     context: bpy.types.Context,
     item: bpy.types.Object,
@@ -206,8 +184,10 @@ def fitted_copy(
     *,
     motion: NDArray[np.float64],
     growth: float,
-) -> tuple[bpy.types.Object, list[str]]:
+) -> tuple[bpy.types.Object, list[str], list[str]]:
     """Copy an item with all that is on it, for another body; one that was fitted before is replaced.
+
+    If that one was edited since, it is kept aside.
 
     Its modifiers stay live: sizes of Solidify, Bevel and Displace grow with it, a Mirror turns with it, and what they
     point to of the one body becomes that of the other.
@@ -231,12 +211,15 @@ def fitted_copy(
         The copy.
     kept : list of str
         Names of what belongs to the source that drivers of its shape keys and modifiers still read from.
+    aside : list of str
+        Name of the one that was fitted before, if it was edited since; else empty.
     """
     copy = _copy_of(item)
     copy.matrix_world = _placed(item, motion)
-    name = _put_in_place(cast("bpy.types.Scene", context.scene), copy, item, target)
+    name, aside = _put_in_place(cast("bpy.types.Scene", context.scene), copy, item, target)
     marks: Any = copy
     marks[ITEM], marks[BODY] = item.name, target.name
+    mark_names(item, target)
     copy.name = mesh_of(copy).name = name
     copy.hide_set(state=False)
     copy.select_set(state=False)
@@ -258,7 +241,7 @@ def fitted_copy(
         if own is not None:
             every[own] = [cast("bpy.types.Key", keys)] if part is item else theirs
     driven: list[bpy.types.Key | bpy.types.Object] = [copy] if keys is None else [copy, keys]
-    return copy, sorted({name for one in driven for name in point_drivers(one, every)})
+    return copy, sorted({name for one in driven for name in point_drivers(one, every)}), aside
 
 
 def _copy_of(item: bpy.types.Object) -> bpy.types.Object:
@@ -268,6 +251,7 @@ def _copy_of(item: bpy.types.Object) -> bpy.types.Object:
         if made.override_library is not None:  # as a copy of an override is one, too
             made.make_local()
     copy.data = mesh
+    unmark(copy)
     _leave_animation(copy)
     copy.constraints.clear()
     copy.parent = None
@@ -291,20 +275,34 @@ def _leave_animation(copy: bpy.types.Object) -> None:
         animation.drivers.remove(curve)
 
 
-def _put_in_place(scene: bpy.types.Scene, copy: bpy.types.Object, item: bpy.types.Object, body: Side) -> str:
-    """Put a copy into the scene, in the place of one that was fitted before; return what it is to be called."""
+def _put_in_place(
+    scene: bpy.types.Scene, copy: bpy.types.Object, item: bpy.types.Object, body: Side
+) -> tuple[str, list[str]]:
+    """Put a copy into the scene, in the place of one that was fitted before.
+
+    Return what it is to be called, and what the one before is called now if it was edited and is kept.
+    """
+    adopt(body)
     before = made_copy(item, body)
-    name, shown = fitted_name(item.name, body.name), False
+    name, shown, aside = fitted_name(item.name, body.name), False, []
     if before is not None:
-        name, shown = before.name, scene.objects.get(before.name) == before
-        for collection in before.users_collection:
+        former = fitted_name(cast("Any", before)[ITEM], body.name)
+        name, shown = name if before.name == former else before.name, scene.objects.get(before.name) == before
+        collections = list(before.users_collection)
+        for collection in collections:
             collection.objects.link(copy)
         before.user_remap(copy)
-        bpy.data.objects.remove(before)
+        if was_edited(before):
+            for collection in collections:
+                if before not in set(collection.objects):
+                    collection.objects.link(before)
+            aside.append(put_aside(before))
+        else:
+            bpy.data.objects.remove(before)
     outfit = None if shown else _collection_of(scene, body)
     if outfit is not None and copy not in set(outfit.objects):
         outfit.objects.link(copy)
-    return name
+    return name, aside
 
 
 def _placed(item: bpy.types.Object, motion: NDArray[np.float64]) -> Matrix:

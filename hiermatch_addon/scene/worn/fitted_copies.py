@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fitted copies of clothes: of which item and for which body, also after renaming, and whether they were edited since.
+
+A copy names its item and its body.  These are marked in turn with what they were called then.  Such a mark tells
+more than a pointer from the copy would: a copy that is brought to another file takes no body along.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import bpy
+import numpy as np
+
+from ..character import FITTED_TO, armatures_above, parts_of, positions_of, topology_of
+from ..deform_layer import read_weights
+from ..shape_key_io import key_positions, keys_of
+
+if TYPE_CHECKING:
+    from ..character import Side
+
+__all__ = [
+    "BODY",
+    "ITEM",
+    "adopt",
+    "as_fitted",
+    "fitted_name",
+    "fitted_to",
+    "former_names",
+    "made_copy",
+    "mark_names",
+    "put_aside",
+    "unmark",
+    "was_edited",
+]
+
+ITEM, BODY = "hiermatch_item", FITTED_TO
+"""Custom properties of a fitted copy: the names of the original, and of the body that it was fitted to."""
+
+_ITEM_MARK: Final = "hiermatch_item_name"
+"""Custom property of an item: what it was called when it was fitted last."""
+
+_BODY_MARK: Final = "hiermatch_body_name"
+"""Custom property of the parts of a body: what this was called when something was fitted to it last."""
+
+_AS_FITTED: Final = "hiermatch_as_fitted"
+"""Custom property of a fitted copy: a text that is another one once the copy was edited."""
+
+
+def fitted_name(item: str, body: str) -> str:
+    """Return the name of a fitted copy."""
+    return f"{item} on {body}"
+
+
+def fitted_to(body: Side) -> list[bpy.types.Object]:
+    """Return all that was fitted to a body, also under a name that it had before."""
+    names = {body.name, *former_names(body)}
+    return [obj for obj in bpy.data.objects if obj.type == "MESH" and cast("Any", obj).get(BODY) in names]
+
+
+def former_names(body: Side) -> list[str]:
+    """Return by what other names a body may be known to what was fitted to it; none that now is another one's.
+
+    A body of several objects has another name when it is picked in another way, too.
+    """
+    marks = dict.fromkeys(cast("Any", part).get(_BODY_MARK, "") for part in parts_of(body))
+    return [name for name in marks if name and name != body.name and not _is_anothers(name, body)]
+
+
+def made_copy(item: bpy.types.Object, body: Side) -> bpy.types.Object | None:
+    """Find the copy of an item that was fitted to a body before, also if one of them has been renamed since."""
+    names = [item.name]
+    former = cast("Any", item).get(_ITEM_MARK, "")
+    if former and former not in bpy.data.objects:
+        names.append(former)
+    found = [obj for name in names for obj in fitted_to(body) if cast("Any", obj).get(ITEM) == name]
+    return found[0] if found else None
+
+
+def adopt(body: Side) -> None:
+    """Let all that was fitted to a body know it by the name that it has now.
+
+    What is called after a name that nothing has any more is called after the new one, but what the user has named.
+    """
+    for former in former_names(body):
+        gone = _called(former) == []
+        for obj in bpy.data.objects:
+            mine: Any = obj
+            if mine.get(BODY) == former:
+                mine[BODY] = body.name
+                if gone and obj.name == fitted_name(mine.get(ITEM, ""), former):
+                    obj.name = fitted_name(mine[ITEM], body.name)
+        for collection in bpy.data.collections:
+            kept: Any = collection
+            if kept.get(BODY) == former:
+                kept[BODY] = body.name
+                collection.name = collection.name.replace(former, body.name) if gone else collection.name
+
+
+def mark_names(item: bpy.types.Object, body: Side) -> None:
+    """Mark an item and a body with what they are called, as far as they are this file's own."""
+    for marked, mark, name in ((item, _ITEM_MARK, item.name), *((p, _BODY_MARK, body.name) for p in parts_of(body))):
+        if marked.library is None and marked.override_library is None:
+            cast("Any", marked)[mark] = name
+
+
+def unmark(copy: bpy.types.Object) -> None:
+    """Take from the copy of an item what marks the item."""
+    marks: Any = copy
+    for mark in (_ITEM_MARK, _BODY_MARK):
+        if mark in marks:
+            del marks[mark]
+
+
+def as_fitted(copy: bpy.types.Object) -> None:
+    """Say that a copy is now as it was fitted."""
+    cast("Any", copy)[_AS_FITTED] = _state(copy)
+
+
+def was_edited(copy: bpy.types.Object) -> bool:
+    """Tell whether a copy was edited since it was fitted, as far as that is known."""
+    known = cast("Any", copy).get(_AS_FITTED, "")
+    return bool(known) and known != _state(copy)
+
+
+def put_aside(copy: bpy.types.Object) -> str:
+    """Keep a copy that another one has replaced, hidden and under another name; return that."""
+    marks: Any = copy
+    del marks[ITEM], marks[_AS_FITTED]  # it stays marked as worn: it is no part of the body
+    copy.name = f"{copy.name} (edited)"
+    copy.hide_render = True
+    layer = cast("bpy.types.ViewLayer", bpy.context.view_layer)
+    layer.update()  # or it would not know of what was put into a collection just now
+    if copy.name in cast("Any", layer).objects:
+        copy.hide_set(state=True)
+    return copy.name
+
+
+def _called(name: str) -> list[bpy.types.ID]:
+    """Return what has a name that a body may have."""
+    found = [bpy.data.objects.get(name), bpy.data.collections.get(name)]
+    return [one for one in found if one is not None]
+
+
+def _is_anothers(name: str, body: Side) -> bool:
+    """Tell whether a name is that of something else than a body, its armatures and collections."""
+    parts = parts_of(body)
+    own: set[bpy.types.ID] = {*parts, *(armature for part in parts for armature in armatures_above(part))}
+    own |= {one for one in bpy.data.collections if not own.isdisjoint(one.all_objects)}
+    return any(one not in own for one in _called(name))
+
+
+def _state(copy: bpy.types.Object) -> str:
+    """Describe the form of a copy, its weights, modifiers and materials."""
+    digest = hashlib.blake2b(digest_size=16)
+    for text in (topology_of(copy), positions_of(copy), *(group.name for group in copy.vertex_groups)):
+        digest.update(f"{text}\0".encode())
+    keys = keys_of(copy)
+    for key in () if keys is None else keys.key_blocks:
+        digest.update(f"{key.name}\0".encode() + key_positions(key).astype(np.float32).tobytes())
+    weights = read_weights(copy).sorted_indices() if len(copy.vertex_groups) else None
+    if weights is not None:
+        digest.update(weights.data.astype(np.float32).tobytes() + weights.indices.astype(np.int64).tobytes())
+    for modifier in copy.modifiers:
+        digest.update(f"{modifier.type} {modifier.name}\0".encode())
+    for slot in copy.material_slots:
+        digest.update(f"{slot.material.name if slot.material else ''}\0".encode())
+    return digest.hexdigest()
