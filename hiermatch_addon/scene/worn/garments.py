@@ -291,11 +291,11 @@ def _put_in_place(
         collections = list(before.users_collection)
         for collection in collections:
             collection.objects.link(copy)
+            collection.objects.unlink(before)  # first, or what follows would put the copy there a second time
         before.user_remap(copy)
         if was_edited(before):
             for collection in collections:
-                if before not in set(collection.objects):
-                    collection.objects.link(before)
+                collection.objects.link(before)
             aside.append(put_aside(before))
         else:
             bpy.data.objects.remove(before)
