@@ -16,6 +16,7 @@ from ..storage.halves import find_common
 from ..storage.landmarks import add_landmarks, find_landmarks, landmark_array
 from ..storage.vertex_maps import StoredMaps, map_name
 from .stepped_job import SteppedJob
+from .verdict import asymmetry_note
 
 if TYPE_CHECKING:
     import bpy
@@ -53,6 +54,8 @@ class MirrorJob(SteppedJob):
         How far the work is.
     left_out : int
         Once finished, how many mirror images were left out because they contradict the match of the two meshes.
+    notes : list of str
+        Once finished, what is said of meshes that are hardly symmetric.
 
     Raises
     ------
@@ -74,6 +77,7 @@ class MirrorJob(SteppedJob):
         self._maps = _fresh_maps(source, target)
         self._images: list[NDArray[np.int64]] = []
         self.left_out = 0
+        self.notes: list[str] = []
         super().__init__()
 
     def finish(self, view_layer: bpy.types.ViewLayer) -> list[Landmark]:
@@ -111,6 +115,8 @@ class MirrorJob(SteppedJob):
         """Find the symmetry of one mesh after the other."""
         for number, mesh in enumerate(self._meshes):
             dense = yield from within(symmetry_map_steps(mesh), number / 2, (number + 1) / 2)
+            name = self._objects[number][0].name
+            self.notes.extend(filter(None, [asymmetry_note(name, dense.quality)]))
             self._images.append(dense.source_to_target.nearest_vertices[self._landmarks[:, number]])
 
     def _astray(self) -> NDArray[np.bool_]:

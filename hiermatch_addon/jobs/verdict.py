@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ...engine import MatchQuality, TriangleMesh
     from ..storage.stored_match import Quality
 
-__all__ = ["ANSWERS", "DOUBTFUL", "GOOD", "Verdict", "advice_on"]
+__all__ = ["ANSWERS", "DOUBTFUL", "GOOD", "Verdict", "advice_on", "asymmetry_note"]
 
 DOUBTFUL: Final = 0.3
 """Below this confidence nothing is carried across a match unless the user wants it: more of it is wrong than right."""
@@ -119,3 +119,13 @@ def advice_on(
                 "under Leave Out, and match again."
             )
     return ""
+
+
+def asymmetry_note(name: str, quality: Quality | MatchQuality) -> str:
+    """Say that a mesh is hardly its own mirror image, by the quality of its left-right map; empty if it is."""
+    if quality.confidence >= GOOD:
+        return ""
+    return (
+        f'"{name}" is hardly symmetric, so that its mirror images are uncertain (confidence {quality.confidence:.0%}): '
+        "check what was mirrored."
+    )

@@ -18,6 +18,7 @@ from ..common.phrases import counted
 from ..common.side_names import flipped_name, partners, side_of
 from ..jobs.stepped_job import SteppedJob
 from ..jobs.transfer import TransferReport
+from ..jobs.verdict import asymmetry_note
 from ..scene.attribute_io import attribute_layouts, read_attribute, write_attribute
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
 from ..scene.mesh_io import corner_vertices, position_digest, read_mesh, topology, vertex_positions
@@ -89,6 +90,7 @@ class SymmetriseJob(SteppedJob):
         self._mesh = read_mesh(obj, context.evaluated_depsgraph_get(), use_modifiers=False)
         self._hints = _hints(obj) * (1.0 if settings.side == "LEFT" else -1.0)
         self.seconds = 0.0
+        self._note = ""
         super().__init__()
 
     def finish(self, context: bpy.types.Context) -> TransferReport:
@@ -104,7 +106,7 @@ class SymmetriseJob(SteppedJob):
             raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
         done = [part.write(obj) for part in self._parts if part.names]
         self.seconds = time.perf_counter() - self._start
-        return TransferReport(", ".join(done))
+        return TransferReport(", ".join(done), tuple(filter(None, [self._note])))
 
     def _check(self, view_layer: bpy.types.ViewLayer) -> None:
         self._object(view_layer)
@@ -112,6 +114,7 @@ class SymmetriseJob(SteppedJob):
     def _all_steps(self) -> Steps[None]:
         """Find the mirror images, and compute what is to be written."""
         found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
+        self._note = asymmetry_note(self._name, found.quality)
         yield Progress(0.9, "Telling the sides apart")
         telling = called_steps(Symmetriser.of, self._mesh, found.source_to_target, self._hints)
         symmetriser = yield from within(telling, 0.9, 0.95)

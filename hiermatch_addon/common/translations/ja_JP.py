@@ -1937,6 +1937,12 @@ MESSAGES: Final[dict[str, str]] = {
     "Wrote {0} regions on both meshes as vertex groups": "両メッシュに{0}個の領域を頂点グループとして書き込みました",
     'Exported the match of "{0}" and "{1}" to "{2}"': "「{0}」と「{1}」の対応を「{2}」に書き出しました",
     'Imported the match of "{0}" and "{1}" from "{2}"': "「{0}」と「{1}」の対応を「{2}」から読み込みました",
+    '"{0}" is hardly symmetric, so that its mirror images are uncertain (confidence {1}): check what was mirrored.': (
+        "「{0}」はほとんど左右対称ではないため、鏡像の位置は不確かです（信頼度{1}）。ミラーした結果を確認してください。"
+    ),
+    "Nothing to mirror: all landmarks lie in the middle, or have one on the other side already": (
+        "ミラーするものがありません。すべてのランドマークは中央にあるか、反対側にすでにあります"
+    ),
     "Added {0} on the other side": "反対側に{0}を追加しました",
     "Cleared {0}": "{0}をクリアしました",
     "Setup: {0}": "設定：{0}",

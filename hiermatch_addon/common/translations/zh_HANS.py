@@ -1616,6 +1616,12 @@ MESSAGES: Final[dict[str, str]] = {
     "Wrote {0} regions on both meshes as vertex groups": "已在两个网格上把 {0} 个区域写为顶点组",
     'Exported the match of "{0}" and "{1}" to "{2}"': "已将“{0}”和“{1}”的匹配导出到“{2}”",
     'Imported the match of "{0}" and "{1}" from "{2}"': "已从“{2}”导入“{0}”和“{1}”的匹配",
+    '"{0}" is hardly symmetric, so that its mirror images are uncertain (confidence {1}): check what was mirrored.': (
+        "“{0}”几乎不对称，因此镜像位置不确定（置信度 {1}）：请检查镜像的结果。"
+    ),
+    "Nothing to mirror: all landmarks lie in the middle, or have one on the other side already": (
+        "没有可镜像的地标：所有地标都位于中间，或另一侧已有对应地标"
+    ),
     "Added {0} on the other side": "已在另一侧添加 {0}",
     "Cleared {0}": "已清除 {0}",
     "Setup: {0}": "设置：{0}",

@@ -60,5 +60,7 @@ class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator
     def _finish(self, context: bpy.types.Context, job: SymmetriseJob) -> set[OperatorReturnItems]:
         """Write and report."""
         report = job.finish(context)
+        for note in report.notes:
+            self.report({"WARNING"}, translated(note))
         self.report({"INFO"}, translated(f'Made "{self.object}" symmetric in {job.seconds:.1f} s: {report.done}'))
         return {"FINISHED"}

@@ -60,5 +60,11 @@ class HIERMATCH_OT_mirror_landmarks(JobOperator, bpy.types.Operator):
                     "their match"
                 ),
             )
-        self.report({"INFO"}, translated(f"Added {counted(len(added), 'landmark')} on the other side"))
+        for note in job.notes if added else ():
+            self.report({"WARNING"}, translated(note))
+        if added or job.left_out:
+            self.report({"INFO"}, translated(f"Added {counted(len(added), 'landmark')} on the other side"))
+        else:
+            said = "Nothing to mirror: all landmarks lie in the middle, or have one on the other side already"
+            self.report({"INFO"}, translated(said))
         return {"FINISHED"}

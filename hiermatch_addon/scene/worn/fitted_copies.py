@@ -84,7 +84,7 @@ def adopt(body: Side) -> None:
     What is called after a name that nothing has any more is called after the new one, but what the user has named.
     """
     for former in former_names(body):
-        gone = _called(former) == []
+        gone = not _called(former)
         for obj in bpy.data.objects:
             mine: Any = obj
             if mine.get(BODY) == former:
@@ -139,8 +139,8 @@ def put_aside(copy: bpy.types.Object) -> str:
 
 def _called(name: str) -> list[bpy.types.ID]:
     """Return what has a name that a body may have."""
-    found = [bpy.data.objects.get(name), bpy.data.collections.get(name)]
-    return [one for one in found if one is not None]
+    every: tuple[Any, ...] = (bpy.data.objects, bpy.data.collections)
+    return [kind[name] for kind in every if name in kind]
 
 
 def _is_anothers(name: str, body: Side) -> bool:

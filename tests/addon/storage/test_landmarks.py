@@ -406,10 +406,34 @@ def mirrored(mesh):
     """Take each vertex to the one that is nearest to its mirror image."""
     images = cKDTree(mesh.vertices).query(mesh.vertices * [1, -1, 1])[1]
     yield Progress(0.5, "Looking")
-    return SimpleNamespace(source_to_target=SimpleNamespace(nearest_vertices=images))
+    return as_map(images)
+
+
+def as_map(images, confidence=1.0):
+    """Stand for a left-right map."""
+    return SimpleNamespace(
+        source_to_target=SimpleNamespace(nearest_vertices=images), quality=SimpleNamespace(confidence=confidence)
+    )
 
 
 class TestMirror:
+    @pytest.mark.parametrize("confidence", [0.98, 0.4])
+    def test_meshes_that_are_hardly_symmetric_are_named(self, monkeypatch, capfd, confidence):
+        def unsure(mesh):
+            found = yield from mirrored(mesh)
+            return as_map(found.source_to_target.nearest_vertices, confidence)
+
+        monkeypatch.setattr(landmark_mirroring, "symmetry_map_steps", unsure)
+        pair = add_symmetric_pair()
+        state = bpy.context.scene.hiermatch
+        state.source, state.target = pair
+        add_landmarks(*pair, [tuple(max(o.data.vertices, key=lambda vertex: vertex.co.y).index for o in pair)])
+        bpy.ops.hiermatch.mirror_landmarks()
+        said = capfd.readouterr().out
+        assert ("is hardly symmetric" in said) == (confidence < 0.5)
+        bpy.ops.hiermatch.mirror_landmarks()
+        assert "Nothing to mirror" in capfd.readouterr().out
+
     def test_to_the_other_side(self, monkeypatch):
         monkeypatch.setattr(landmark_mirroring, "symmetry_map_steps", mirrored)
         pair = add_symmetric_pair()
@@ -434,7 +458,7 @@ class TestMirror:
             centre = mesh.vertices.mean(axis=0)
             images = cKDTree(mesh.vertices).query((mesh.vertices - centre) * signs + centre)[1]
             yield Progress(0.5, "Looking")
-            return SimpleNamespace(source_to_target=SimpleNamespace(nearest_vertices=images))
+            return as_map(images)
 
         monkeypatch.setattr(landmark_mirroring, "symmetry_map_steps", turned)
         high = [max(obj.data.vertices, key=lambda vertex: vertex.co.y + 0.6 * vertex.co.z).index for obj in dense_pair]

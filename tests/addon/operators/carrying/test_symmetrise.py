@@ -25,7 +25,7 @@ def found():
     mesh = TriangleMesh(vertices.astype(np.float32), triangles)
     there = ClosestPoints(TriangleMesh(rest, triangles)).nearest(rest * [1, -1, 1])
     mirror = SurfaceMap.from_barycentric(mesh, there.triangles, there.barycentric)
-    return mesh, rest, SimpleNamespace(source_to_target=mirror)
+    return mesh, rest, SimpleNamespace(source_to_target=mirror, quality=SimpleNamespace(confidence=1.0))
 
 
 @pytest.fixture
@@ -73,6 +73,19 @@ def test_weights_are_taken_to_the_other_side(body):
     np.testing.assert_allclose(weights[good, 0], left[good], atol=1e-6)
     assert np.abs(weights[(rest[:, 1] < -0.1) & (rest[:, 2] > 0), 2] - 1).mean() < 0.02
     assert [group.name for group in obj.vertex_groups] == ["Leg.L", "Leg.R", "Spine"]
+
+
+def test_a_body_that_is_hardly_symmetric_is_named(body, found, capfd):
+    obj, rest = body
+    add_legs(obj, rest)
+    symmetrise()
+    assert "is hardly symmetric" not in capfd.readouterr().out
+    found[2].quality.confidence = 0.4
+    try:
+        symmetrise()
+    finally:
+        found[2].quality.confidence = 1.0
+    assert '"Body" is hardly symmetric' in capfd.readouterr().out
 
 
 def test_the_other_direction(body):
