@@ -710,7 +710,7 @@ MESSAGES: Final[dict[str, str]] = {
         '着ているものはまだ"{0}"で動きます: {1}。「着せる」でもう一度合わせてください。'
     ),
     "Bind": "バインド",
-    "Same Rest Pose": "ソースと同じレストポーズ",
+    "Same Rest Pose": "同じレストポーズ",
     (
         "Whether to bring the target to the rest pose of the source, so that the source's actions play on "
         "it. How it stood is kept as an action"
@@ -1090,7 +1090,7 @@ MESSAGES: Final[dict[str, str]] = {
     "The row of the table of bones that is active": "ボーンの表でアクティブな行",
     "Tolerance": "許容誤差",
     "By how much reduced keys may change a rotation": "キーの削減で回転がどれだけ変わってよいか",
-    "Actions": "アクション",
+    "Actions": "対象アクション",
     "Which actions of the source are carried over": "ソースのどのアクションを移すか",
     "The one that the source plays, or the only one that it has": "ソースが再生しているもの、または唯一のもの",
     "All actions of the file that move bones of the source": "ソースのボーンを動かす、ファイル内のすべてのアクション",

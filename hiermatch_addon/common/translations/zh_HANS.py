@@ -595,7 +595,7 @@ MESSAGES: Final[dict[str, str]] = {
         '它所穿的仍由 "{0}" 带动：{1}。请用“穿戴”重新适配。'
     ),
     "Bind": "绑定",
-    "Same Rest Pose": "与源相同的静置姿态",
+    "Same Rest Pose": "同一静置姿态",
     (
         "Whether to bring the target to the rest pose of the source, so that the source's actions play on "
         "it. How it stood is kept as an action"
@@ -905,7 +905,7 @@ MESSAGES: Final[dict[str, str]] = {
     "The row of the table of bones that is active": "骨骼表中的活动行",
     "Tolerance": "容差",
     "By how much reduced keys may change a rotation": "精简关键帧时旋转允许改变的量",
-    "Actions": "动作",
+    "Actions": "动作范围",
     "Which actions of the source are carried over": "传递源的哪些动作",
     "The one that the source plays, or the only one that it has": "源正在播放的动作，或其唯一的动作",
     "All actions of the file that move bones of the source": "文件中所有移动源骨骼的动作",

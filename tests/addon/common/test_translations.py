@@ -20,6 +20,16 @@ from hiermatch.hiermatch_addon.common.translated_text import translated
 from hiermatch.hiermatch_addon.common.translations import LANGUAGES
 from hiermatch.hiermatch_addon.panels.panel_text import wrap_text
 from hiermatch.hiermatch_addon.registration import CLASSES
+from hiermatch.hiermatch_addon.transfers.options.attributes import AttributeOptions
+from hiermatch.hiermatch_addon.transfers.options.motion import MotionOptions
+from hiermatch.hiermatch_addon.transfers.options.my_rig import MyRigOptions
+from hiermatch.hiermatch_addon.transfers.options.rig import RigOptions
+from hiermatch.hiermatch_addon.transfers.options.shape_keys import ShapeKeyOptions
+from hiermatch.hiermatch_addon.transfers.options.symmetrise import SymmetriseOptions
+from hiermatch.hiermatch_addon.transfers.options.uvs import UVOptions
+from hiermatch.hiermatch_addon.transfers.options.wear import WearOptions
+from hiermatch.hiermatch_addon.transfers.options.weights import WeightOptions
+from hiermatch.hiermatch_addon.transfers.options.wrap import WrapOptions
 
 from tests.addon.conftest import ROOT
 
@@ -198,6 +208,26 @@ def test_the_languages_translate_the_same():
 def test_sentences_end_as_in_english(messages):
     """Blender adds the full stop of a tooltip itself."""
     assert not [text for text, said in messages.items() if text.endswith(".") != said.endswith("。")]
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_labels_beside_their_fields_are_not_cut_off(language):
+    """In a sidebar of 300 pixels there is room for eight ideographs; two columns of Latin letters count as one."""
+    kinds = [RigOptions, WeightOptions, ShapeKeyOptions, UVOptions, AttributeOptions, MyRigOptions]
+    groups = [*kinds, WrapOptions, WearOptions, MotionOptions, SymmetriseOptions]
+    names = {one.keywords["name"] for group in groups for one in group.__annotations__.values() if is_beside(one)}
+    assert "Same Rest Pose" in names
+    said = {name: LANGUAGES[language][name] for name in names}
+    assert {name: text for name, text in said.items() if columns(text) > 16} == {}
+
+
+def is_beside(definition):
+    """Tell whether the label of a property stands to the left of its field."""
+    return definition.function.__name__ != "BoolProperty" and "HIDDEN" not in definition.keywords.get("options", ())
+
+
+def columns(text):
+    return sum(1 if letter.isascii() else 2 for letter in text)
 
 
 def test_what_is_filled_in_is_kept(messages):
