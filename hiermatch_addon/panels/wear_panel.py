@@ -12,6 +12,7 @@ from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..properties.panel_state import picked, state_of
 from ..scene.character import parts_of, side_of
+from ..scene.worn.fitted_copies import original_of
 from ..scene.worn.garments import bound_items, selected_items
 from ..transfers.options.wear import WearOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
@@ -45,6 +46,8 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         active, state = view_layer_of(context).objects.active, state_of(context)
+        if active is not None:
+            active = original_of(active) or active  # how an item fits is kept on the item
         _draw_items(layout, context)
         if active is not None and active.type == "MESH" and active not in (state.source, state.target):
             box = layout.box().column()

@@ -289,16 +289,7 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
     ObjectError
         If it cannot.
     """
-    if obj.type == "ARMATURE":
-        raise ObjectError(
-            f'The armature "{obj.name}" moves no mesh with faces that is shown in this view layer. Show its meshes, or '
-            "choose another one."
-        )
-    if obj.type != "MESH":
-        raise ObjectError(
-            f'"{obj.name}" is not a mesh but of type {obj.type.title()}. Choose a mesh object, or convert it '
-            "(Object > Convert > Mesh)."
-        )
+    _check_type(obj)
     if writable:
         check_writable(obj)
     if view_layer.objects.get(obj.name) != obj:
@@ -324,6 +315,26 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
     flat = [axis for axis, length in zip("XYZ", scale, strict=True) if not length > 0]
     if flat:
         raise ObjectError(f'"{obj.name}" has a scale of zero on {" and ".join(flat)}. Set its scale to 1 (Alt+S).')
+
+
+def _check_type(obj: bpy.types.Object) -> None:
+    """Make sure that an object is a mesh."""
+    if obj.type == "ARMATURE":
+        raise ObjectError(
+            f'The armature "{obj.name}" moves no mesh with faces that is shown in this view layer. Show its meshes, or '
+            "choose another one."
+        )
+    if obj.type == "EMPTY" and obj.instance_collection is not None:
+        raise ObjectError(
+            f'"{obj.name}" is no mesh but shows the collection "{obj.instance_collection.name}". Make its objects '
+            "editable (Object > Library Override > Make, or Object > Apply > Make Instances Real), and choose one of "
+            "them."
+        )
+    if obj.type != "MESH":
+        raise ObjectError(
+            f'"{obj.name}" is not a mesh but of type {obj.type.title()}. Choose a mesh object, or convert it '
+            "(Object > Convert > Mesh)."
+        )
 
 
 def _check_mode(obj: bpy.types.Object) -> None:

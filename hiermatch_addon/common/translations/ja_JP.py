@@ -1968,6 +1968,14 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」と「{1}」は同じメッシュデータを共有しています。先に一方を独立させてください（オブジェクト > "
         "関係 > シングルユーザー化 > オブジェクトとデータ）。"
     ),
+    (
+        '"{0}" is no mesh but shows the collection "{1}". Make its objects editable (Object > Library Override > Make, '
+        "or Object > Apply > Make Instances Real), and choose one of them."
+    ): (
+        "「{0}」はメッシュではなく、コレクション「{1}」を表示しているものです。その中のオブジェクトを編集可能に"
+        "して（オブジェクト > ライブラリオーバーライド > 作成、または オブジェクト > 適用 > インスタンスを実体化）、"
+        "そのうちの一つを選んでください。"
+    ),
     '"{0}" is not a mesh but of type {1}. Choose a mesh object, or convert it (Object > Convert > Mesh).': (
         "「{0}」はメッシュではなく{1}タイプです。メッシュオブジェクトを選ぶか、変換してください（オブジェクト"
         " > 変換 > メッシュ）。"

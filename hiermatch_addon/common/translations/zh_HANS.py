@@ -1639,6 +1639,13 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" and "{1}" share the same mesh data. Give one of them its own first (Object > Relations > Make '
         "Single User > Object & Data)."
     ): "“{0}”和“{1}”共用同一网格数据。请先让其中一个使用自己的数据（物体 > 关系 > 使其独立化 > 物体和数据）。",
+    (
+        '"{0}" is no mesh but shows the collection "{1}". Make its objects editable (Object > Library Override > Make, '
+        "or Object > Apply > Make Instances Real), and choose one of them."
+    ): (
+        "“{0}”不是网格，而是显示集合“{1}”的实例。请先使其中的物体可编辑"
+        "（物体 > 库重写 > 创建，或 物体 > 应用 > 使实例独立），然后选择其中之一。"
+    ),
     '"{0}" is not a mesh but of type {1}. Choose a mesh object, or convert it (Object > Convert > Mesh).': (
         "“{0}”不是网格，而是 {1} 类型。请选择网格物体，或将其转换（物体 > 转换 > 网格）。"
     ),

@@ -30,6 +30,7 @@ __all__ = [
     "former_names",
     "made_copy",
     "mark_names",
+    "original_of",
     "put_aside",
     "unmark",
     "was_edited",
@@ -76,6 +77,19 @@ def made_copy(item: bpy.types.Object, body: Side) -> bpy.types.Object | None:
         names.append(former)
     found = [obj for name in names for obj in fitted_to(body) if cast("Any", obj).get(ITEM) == name]
     return found[0] if found else None
+
+
+def original_of(copy: bpy.types.Object) -> bpy.types.Object | None:
+    """Find the item that a copy was made from, also if that has been renamed since; None of what is no copy."""
+    mine: Any = copy
+    if BODY not in mine or ITEM not in mine:
+        return None
+    objects: Any = bpy.data.objects
+    same = objects.get(mine[ITEM])
+    if same is not None:
+        return None if BODY in same else cast("bpy.types.Object", same)
+    marked = (obj for obj in objects if obj.get(_ITEM_MARK) == mine[ITEM] and BODY not in obj)
+    return next(marked, None)
 
 
 def adopt(body: Side) -> None:

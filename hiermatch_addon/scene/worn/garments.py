@@ -20,7 +20,19 @@ from ..key_drivers import counterparts, point_drivers
 from ..mesh_io import read_mesh
 from ..pair import check_object
 from ..shape_key_io import keys_of
-from .fitted_copies import BODY, ITEM, adopt, fitted_name, made_copy, mark_names, put_aside, unmark, was_edited
+from .fitted_copies import (
+    BODY,
+    ITEM,
+    adopt,
+    fitted_name,
+    fitted_to,
+    made_copy,
+    mark_names,
+    original_of,
+    put_aside,
+    unmark,
+    was_edited,
+)
 from .garment_shape_io import mirror_axes
 
 if TYPE_CHECKING:
@@ -66,7 +78,9 @@ def bound_items(context: bpy.types.Context, body: Side) -> list[bpy.types.Object
 
 
 def selected_items(context: bpy.types.Context, source: Side, targets: Sequence[Side], *, named: bool) -> list[str]:
-    """Return the names of the selected objects that are items, in order: not a body, an armature, or fitted itself.
+    """Return the names of the selected objects that are items, in order: not a body or an armature.
+
+    What was fitted to one of the targets stands for the item that it was made from.
 
     Parameters
     ----------
@@ -80,7 +94,10 @@ def selected_items(context: bpy.types.Context, source: Side, targets: Sequence[S
     selected = set(view_layer_of(context).objects.selected)
     own, theirs = set(parts_of(source)), {part for target in targets for part in parts_of(target)}
     bodies = theirs if named and len(own) > 1 and not own <= selected else own | theirs
-    return sorted(obj.name for obj in selected - bodies if obj.type in _SHAPES and BODY not in cast("Any", obj))
+    copies = {copy for target in targets for copy in fitted_to(target)} & selected
+    meant = {obj for obj in selected - bodies if BODY not in cast("Any", obj)}
+    meant |= {item for copy in copies if (item := original_of(copy)) is not None}
+    return sorted(obj.name for obj in meant if obj.type in _SHAPES)
 
 
 def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:

@@ -62,6 +62,24 @@ def test_what_is_selected_is_named_and_what_was_fitted_is_not(bodies, context):
     assert not {coat.name, fitted.name, *(body.name for body in bodies)} & set(said[said.index("Items") :])
 
 
+def test_a_fitted_copy_stands_for_its_item(bodies, context):
+    shirt = add_item(bodies[0], "Shirt", 0.02)
+    fitted, other = (add_item(bodies[1], name, 0.02) for name in ("Shirt Fitted", "Shirt Elsewhere"))
+    for copy, body in ((fitted, bodies[1].name), (other, "Somebody")):
+        copy["hiermatch_item"], copy["hiermatch_body"] = "Shirt", body
+    bpy.context.view_layer.objects.active = fitted
+    fitted.select_set(state=True)
+    said = drawn_texts(context)
+    assert said.count("Shirt") == 2  # among the items, and over how it fits
+    assert fitted.name not in said
+    shirt["hiermatch_item_name"] = "Shirt"
+    shirt.name = "Blouse"
+    assert drawn_texts(context).count("Blouse") == 2
+    fitted.select_set(state=False)
+    other.select_set(state=True)
+    assert "Items" not in drawn_texts(context)
+
+
 def test_with_nothing_selected_all_that_hangs_on_the_rig_is_named_up_to_a_number(bodies, context):
     rig = add_armature("Rig")
     items = [add_item(bodies[0], f"Item {letter}", 0.02) for letter in "ABCDEFGH"]

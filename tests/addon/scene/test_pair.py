@@ -230,3 +230,12 @@ class TestCheck:
         bpy.context.collection.objects.link(borrowed)
         with pytest.raises(ObjectError, match='"Borrowed" is linked'):
             check((own, borrowed))
+
+
+def test_what_shows_a_collection_is_to_be_made_editable(pair):
+    """As characters are that were linked from another file."""
+    shown = bpy.data.objects.new("Hero", None)
+    shown.instance_type, shown.instance_collection = "COLLECTION", bpy.data.collections.new("Heroes")
+    bpy.context.scene.collection.objects.link(shown)
+    with pytest.raises(ObjectError, match='shows the collection "Heroes"'):
+        check((pair[0], shown))
