@@ -63,11 +63,11 @@ class Guide(LandmarkClicks):
         side = 0 if self._pending is None else 1
         if hit is not None and self._clicked(hit).side != side:
             raise ObjectError(f'Click on "{self._names[side]}" first, or press S to leave this place out.')
-        made = len(self._made)
-        if hit is not None and self._pending is not None:
+        completes = self._pending is not None
+        if hit is not None and completes:
             self._drop_former()
         super()._take(context, hit)
-        self._step += len(self._made) - made
+        self._step += completes
 
     def _follow_undo(self) -> bool:
         """Ask again for the first place that Undo has taken back, or go on behind the last that Redo has brought."""

@@ -203,14 +203,14 @@ class LandmarkClicks(_Operator):
             self._pending = None
             raise ObjectError(f'"{edited.name}" was edited since the click on it. Click on its place again.')
         pair = (first.vertex, clicked.vertex) if first.side == 0 else (clicked.vertex, first.vertex)
-        self._made += add_landmarks(source, target, [pair], self._place_name())
+        (added,) = add_landmarks(source, target, [pair], self._place_name())
+        self._made = [*(mark for mark in self._made if mark.number != added.number), added]  # one may have moved
         self._pending, self._undone = None, []
         sync_lists(cast("bpy.types.Scene", context.scene))
         steering = steering_of(context)
         numbers = [item.number for item in steering.landmarks]
-        number = self._made[-1].number
-        steering.landmark_index = numbers.index(number)
-        bpy.ops.ed.undo_push(message=f"Landmark {number}")
+        steering.landmark_index = numbers.index(added.number)
+        bpy.ops.ed.undo_push(message=f"Landmark {added.number}")
 
     def _follow_undo(self) -> bool:
         """Count what Undo has taken back no longer, and what Redo has brought again; tell whether there was any."""

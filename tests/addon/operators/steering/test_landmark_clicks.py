@@ -91,6 +91,14 @@ def test_undo_and_redo_are_counted(clicks, pair):
     assert len(clicks._made) == 1  # noqa: SLF001
 
 
+def test_a_landmark_that_is_moved_by_a_click_is_counted_once(clicks, pair):
+    for vertex in (7, 9):
+        clicks.click(pair[0], 3)
+        clicks.click(pair[1], vertex)
+    clicks.event("A")
+    assert ends_of(find_landmarks(*pair)) == ends_of(clicks._made) == [(3, 9)]  # noqa: SLF001
+
+
 def test_only_one_waits_for_clicks_at_a_time(clicks, pair, monkeypatch):
     manager = SimpleNamespace(
         windows=[SimpleNamespace(modal_operators=[clicks], screen=SimpleNamespace(areas=[]))],
