@@ -59,15 +59,17 @@ class Guide(LandmarkClicks):
         return answer
 
     def _take(self, context: bpy.types.Context, hit: Hit | None) -> None:
-        """Take the place on the source first and then on the target, and go on to the next one."""
-        side = 0 if self._pending is None else 1
-        if hit is not None and self._clicked(hit).side != side:
-            raise ObjectError(f'Click on "{self._names[side]}" first, or press S to leave this place out.')
-        completes = self._pending is not None
-        if hit is not None and completes:
+        """Take the place on the source first and then on the target, and go on to the next one.
+
+        Another click on the source corrects the one before.
+        """
+        waits = self._pending is not None
+        if hit is None or not (waits or self._clicked(hit).side == 0):
+            raise ObjectError(f'Click on "{self._names[int(waits)]}" first, or press S to leave this place out.')
+        if waits and self._clicked(hit).side == 1:
             self._drop_former()
         super()._take(context, hit)
-        self._step += completes
+        self._step += waits and self._pending is None
 
     def _follow_undo(self) -> bool:
         """Ask again for the first place that Undo has taken back, or go on behind the last that Redo has brought."""
