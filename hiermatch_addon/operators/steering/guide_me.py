@@ -58,6 +58,9 @@ class Guide(LandmarkClicks):
             return {"FINISHED"}
         return answer
 
+    def _asked(self) -> list[tuple[int, ...]]:
+        return [(0,), (1,)] if self._pending is None else [(1,), (0,)]
+
     def _take(self, context: bpy.types.Context, hit: Hit | None) -> None:
         """Take the place on the source first and then on the target, and go on to the next one.
 

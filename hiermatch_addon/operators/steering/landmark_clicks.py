@@ -146,15 +146,22 @@ class LandmarkClicks(_Operator):
     def _hit(self, context: bpy.types.Context, viewport: _Viewport, mouse: tuple[int, int]) -> Hit | None:
         """Find what was clicked on, or just beside."""
         region, space, view = viewport
-        parts = [part for side in self._found() for part in parts_of(side)]
+        sides = self._found()
+        asked = [[part for number in numbers for part in parts_of(sides[number])] for numbers in self._asked()]
         for x, y in places_around(_REACH * cast("Any", context.preferences).system.ui_scale):
             place = (mouse[0] - region.x + x, mouse[1] - region.y + y)
             origin = view3d_utils.region_2d_to_origin_3d(region, view, place)
             direction = view3d_utils.region_2d_to_vector_3d(region, view, place)
-            hit = cast_ray(context, parts, origin, direction, space)
+            hits = (cast_ray(context, parts, origin, direction, space) for parts in asked)
+            hit = next(filter(None, hits), None)
             if hit is not None:
                 return hit
         return None
+
+    def _asked(self) -> list[tuple[int, ...]]:
+        """Return which sides a click may be meant for, those first that are asked for: the two may overlap."""
+        first = self._pending
+        return [(0, 1)] if first is None else [(1 - first.side,), (first.side,)]
 
     @property
     def _names(self) -> tuple[str, str]:

@@ -150,6 +150,23 @@ def test_a_click_just_beside_a_mesh_counts(clicks, pair, monkeypatch):
     assert clicks._hit(context, (region, None, None), (-50, 5)) is None  # noqa: SLF001
 
 
+def test_of_meshes_that_overlap_the_one_that_is_asked_for_is_meant(clicks, pair, monkeypatch):
+    """As those do that were imported to the origin."""
+
+    def cast_ray(_context, parts, *_):
+        return Hit(min(parts, key=lambda part: part.name), 3)  # the source is in front
+
+    view3d = SimpleNamespace(region_2d_to_origin_3d=lambda *_: None, region_2d_to_vector_3d=lambda *_: None)
+    monkeypatch.setattr(landmark_clicks, "view3d_utils", view3d)
+    monkeypatch.setattr(landmark_clicks, "cast_ray", cast_ray)
+    context = SimpleNamespace(preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)))
+    viewport = (SimpleNamespace(x=0, y=0), None, None)
+    for obj in pair:
+        hit = clicks._hit(context, viewport, (5, 5))  # noqa: SLF001
+        assert hit.obj == obj
+        clicks._take(bpy.context, hit)  # noqa: SLF001
+
+
 def test_what_is_nearer_to_a_click_is_looked_at_first():
     distances = [(x**2 + y**2) ** 0.5 for x, y in places_around(12)]
     assert distances == pytest.approx(sorted(distances))
