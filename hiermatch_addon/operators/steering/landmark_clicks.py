@@ -22,6 +22,7 @@ from ...scene.character import SideReference, parts_of, vertex_count, vertex_ran
 from ...storage.landmarks import add_landmarks, find_landmarks
 from .landmark_operator import pick_pair, steerable_pair
 from .landmark_picking import cast_ray, places_around
+from .viewports import viewport_at
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -29,9 +30,9 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from ...storage.landmarks import Landmark
     from .landmark_picking import Hit
+    from .viewports import Viewport
 
     _Operator = bpy.types.Operator
-    _Viewport = tuple[bpy.types.Region, bpy.types.SpaceView3D, Any]
 else:
     _Operator = object
 
@@ -121,7 +122,7 @@ class LandmarkClicks(_Operator):
                 self._done(context)
             return {"FINISHED"}
         pressed = event.type == "LEFTMOUSE" and event.value == "PRESS" and not event.alt
-        viewport = _viewport_at(context, event.mouse_x, event.mouse_y) if pressed else None
+        viewport = viewport_at(context, event.mouse_x, event.mouse_y) if pressed else None
         if viewport is None:
             return {"PASS_THROUGH"}
         meant_for_us = context.mode == "OBJECT"  # in another mode the click does there what it always does
@@ -143,16 +144,16 @@ class LandmarkClicks(_Operator):
             _say_in_viewports(screen, None)
         redraw_views(window_manager_of(context))
 
-    def _hit(self, context: bpy.types.Context, viewport: _Viewport, mouse: tuple[int, int]) -> Hit | None:
+    def _hit(self, context: bpy.types.Context, viewport: Viewport, mouse: tuple[int, int]) -> Hit | None:
         """Find what was clicked on, or just beside."""
-        region, space, view = viewport
+        region, view = viewport.region, viewport.view
         sides = self._found()
         asked = [[part for number in numbers for part in parts_of(sides[number])] for numbers in self._asked()]
         for x, y in places_around(_REACH * cast("Any", context.preferences).system.ui_scale):
             place = (mouse[0] - region.x + x, mouse[1] - region.y + y)
             origin = view3d_utils.region_2d_to_origin_3d(region, view, place)
             direction = view3d_utils.region_2d_to_vector_3d(region, view, place)
-            hits = (cast_ray(context, parts, origin, direction, space) for parts in asked)
+            hits = (cast_ray(context, parts, origin, direction, viewport.space) for parts in asked)
             hit = next(filter(None, hits), None)
             if hit is not None:
                 return hit
@@ -269,19 +270,3 @@ def _say_in_viewports(screen: bpy.types.Screen, text: str | None) -> None:
     for area in screen.areas:
         if area.type == "VIEW_3D":
             area.header_text_set(cast("str", text))
-
-
-def _viewport_at(context: bpy.types.Context, x: int, y: int) -> _Viewport | None:
-    """Find the 3D viewport at a place of the window, unless something lies over it there."""
-    screen = context.screen
-    for area in screen.areas if screen else ():
-        inside = [region for region in area.regions if _covers(region, x, y)]
-        if area.type == "VIEW_3D" and inside and all(region.type == "WINDOW" for region in inside):
-            space = cast("bpy.types.SpaceView3D", area.spaces.active)
-            view = space.region_3d if len(inside) == 1 else None
-            return None if view is None else (inside[0], space, inside[0].data or view)
-    return None
-
-
-def _covers(region: bpy.types.Region, x: int, y: int) -> bool:
-    return region.x <= x < region.x + region.width and region.y <= y < region.y + region.height and region.width > 1

@@ -10,6 +10,7 @@ import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.operators.steering import landmark_clicks
 from hiermatch.hiermatch_addon.operators.steering.landmark_picking import Hit, places_around
+from hiermatch.hiermatch_addon.operators.steering.viewports import Viewport
 from hiermatch.hiermatch_addon.overlay import overlay_io
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, clear_landmarks, find_landmarks
 
@@ -121,7 +122,7 @@ def test_nothing_waits_for_clicks_while_a_match_runs(clicks, monkeypatch):
 
 
 def test_a_click_in_another_mode_is_left_to_that_mode(clicks, pair, monkeypatch):
-    monkeypatch.setattr(landmark_clicks, "_viewport_at", lambda *_: (None, None, None))
+    monkeypatch.setattr(landmark_clicks, "viewport_at", lambda *_: Viewport(None, None, None))
     bpy.context.view_layer.objects.active = pair[0]
     bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
     try:
@@ -145,9 +146,9 @@ def test_a_click_just_beside_a_mesh_counts(clicks, pair, monkeypatch):
     monkeypatch.setattr(landmark_clicks, "cast_ray", cast_ray)
     region = SimpleNamespace(x=0, y=0)
     context = SimpleNamespace(preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)))
-    assert clicks._hit(context, (region, None, None), (5, 5)) == Hit(pair[0], 3)  # noqa: SLF001
+    assert clicks._hit(context, Viewport(region, None, None), (5, 5)) == Hit(pair[0], 3)  # noqa: SLF001
     assert asked[0] == (5, 5)
-    assert clicks._hit(context, (region, None, None), (-50, 5)) is None  # noqa: SLF001
+    assert clicks._hit(context, Viewport(region, None, None), (-50, 5)) is None  # noqa: SLF001
 
 
 def test_of_meshes_that_overlap_the_one_that_is_asked_for_is_meant(clicks, pair, monkeypatch):
@@ -160,7 +161,7 @@ def test_of_meshes_that_overlap_the_one_that_is_asked_for_is_meant(clicks, pair,
     monkeypatch.setattr(landmark_clicks, "view3d_utils", view3d)
     monkeypatch.setattr(landmark_clicks, "cast_ray", cast_ray)
     context = SimpleNamespace(preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)))
-    viewport = (SimpleNamespace(x=0, y=0), None, None)
+    viewport = Viewport(SimpleNamespace(x=0, y=0), None, None)
     for obj in pair:
         hit = clicks._hit(context, viewport, (5, 5))  # noqa: SLF001
         assert hit.obj == obj
