@@ -1424,6 +1424,13 @@ MESSAGES: Final[dict[str, str]] = {
         "このマッチングは「{0}」と「{1}」の左右を入れ替えているため、衣服とモーションは転写できません。"
         "「ミラーマッチングを使用」をもう一度押すか、マッチングし直してください。"
     ),
+    (
+        'That place of "{0}" is shown by its Mirror modifier. Click on the half that is a mesh, or apply the modifier '
+        "first."
+    ): (
+        "「{0}」のその場所はミラーモディファイアーが表示しています。メッシュそのものである半分をクリックするか、"
+        "先にモディファイアーを適用してください。"
+    ),
     "One of the two meshes was deleted. Press Esc and start again.": (
         "二つのメッシュの一方が削除されました。Escを押してやり直してください。"
     ),

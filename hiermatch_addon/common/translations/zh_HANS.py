@@ -1180,6 +1180,10 @@ MESSAGES: Final[dict[str, str]] = {
         'The match exchanges left and right between "{0}" and "{1}", and clothes and motion cannot be carried across '
         "it. Press Use Mirrored Match once more, or match again."
     ): ("该匹配交换了“{0}”与“{1}”的左右，衣物和动作无法通过它传递。请再按一次“使用镜像匹配”，或重新匹配。"),
+    (
+        'That place of "{0}" is shown by its Mirror modifier. Click on the half that is a mesh, or apply the modifier '
+        "first."
+    ): ("“{0}”的该处是由镜像修改器显示的。请点击网格本身的那一半，或先应用该修改器。"),
     "One of the two meshes was deleted. Press Esc and start again.": "两个网格之一被删除。请按 Esc 后重新开始。",
     "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
         "没有可改善的匹配。请选取两个网格作为源和目标并进行匹配。"

@@ -134,7 +134,7 @@ def cast_ray(
     Raises
     ------
     ObjectError
-        If modifiers show the mesh too far away from its own vertices.
+        If modifiers show the mesh too far away from its own vertices, as Mirror does with one half.
     """
     depsgraph = context.evaluated_depsgraph_get()
     best: tuple[float, bpy.types.Object, Vector] | None = None
@@ -156,6 +156,11 @@ def cast_ray(
     positions = shown_positions(context, obj)
     vertices, distances = _nearest(positions, np.array([world], np.float64))
     if distances[0] > _OFF * float(np.linalg.norm(np.ptp(positions, axis=0))):
+        if any(modifier.type == "MIRROR" and modifier.show_viewport for modifier in obj.modifiers):
+            raise ObjectError(
+                f'That place of "{obj.name}" is shown by its Mirror modifier. Click on the half that is a mesh, or '
+                "apply the modifier first."
+            )
         raise ObjectError(
             f'The modifiers of "{obj.name}" show it far away from its own vertices. Disable them in the viewport, or '
             "select a vertex on each mesh in Edit Mode."

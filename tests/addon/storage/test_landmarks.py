@@ -19,7 +19,7 @@ from hiermatch.hiermatch_addon.storage.excluded_regions import excluded_vertices
 from hiermatch.hiermatch_addon.storage.landmark_layer import LANDMARKS, read_marks, write_marks
 from hiermatch.hiermatch_addon.storage.landmarks import Landmark, add_landmarks, find_landmarks, landmark_array
 from hiermatch.hiermatch_addon.storage.written_names import written_names
-from mathutils import Vector
+from mathutils import Matrix, Vector
 from scipy.spatial import cKDTree
 
 from tests.addon.scenes import QUICK, add_pair, add_symmetric_pair, snapshot, weights_of
@@ -232,6 +232,15 @@ class TestEditing:
         source.hide_set(state=True)
         assert landmark_picking.cast_ray(bpy.context, (source,), place + 0.1 * outward, -outward) is None
         assert target
+
+    def test_a_click_on_the_half_that_a_modifier_mirrors(self, pair):
+        source = pair[0]
+        source.data.transform(Matrix.Translation((0, 0, 5)))
+        source.modifiers.new("Other half", "MIRROR").use_axis = (False, False, True)
+        bpy.context.view_layer.update()
+        assert landmark_picking.cast_ray(bpy.context, (source,), Vector((0, 0, 20)), Vector((0, 0, -1))) is not None
+        with pytest.raises(ObjectError, match="is shown by its Mirror modifier"):
+            landmark_picking.cast_ray(bpy.context, (source,), Vector((0, 0, -20)), Vector((0, 0, 1)))
 
     def test_a_click_on_a_subdivided_mesh(self, pair):
         source, _ = pair
