@@ -18,8 +18,6 @@ from hiermatch.hiermatch_addon.storage.landmarks import (
     rename_landmark,
 )
 
-from tests.addon.scenes import add_pair
-
 
 class Guided(guide_me.Guide):
     """The operator without Blender around it."""
@@ -35,13 +33,6 @@ class Guided(guide_me.Guide):
 
     def click(self, obj, vertex):
         self._take(bpy.context, None if obj is None else Hit(obj, vertex))
-
-
-@pytest.fixture
-def pair():
-    state = bpy.context.scene.hiermatch
-    state.source, state.target = add_pair()
-    return state.source, state.target
 
 
 @pytest.fixture

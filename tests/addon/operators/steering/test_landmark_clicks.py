@@ -14,8 +14,6 @@ from hiermatch.hiermatch_addon.operators.steering.viewports import Viewport
 from hiermatch.hiermatch_addon.overlay import overlay_io
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, clear_landmarks, find_landmarks
 
-from tests.addon.scenes import add_pair
-
 
 class Clicks(landmark_clicks.LandmarkClicks):
     """The operator without Blender around it."""
@@ -32,13 +30,6 @@ class Clicks(landmark_clicks.LandmarkClicks):
 
     def click(self, obj, vertex):
         self._take(bpy.context, Hit(obj, vertex))
-
-
-@pytest.fixture
-def pair():
-    state = bpy.context.scene.hiermatch
-    state.source, state.target = add_pair()
-    return state.source, state.target
 
 
 @pytest.fixture
