@@ -168,16 +168,6 @@ def _limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
     return [repaired, *others] if better else candidates
 
 
-def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
-    """Propose long bodies turned back about their axes, and how else they might lie, for all that may be chosen."""
-    chosen = contenders(contest, candidates)
-    ways = list(chain.from_iterable((yield from contest.follow.rolled_back_steps(chosen))))
-    if len(ways) == len(chosen) and all(map(is_, ways, chosen)):
-        return candidates
-    others = [candidate for candidate in candidates if not any(candidate is c for c in chosen)]
-    return sorted([*ways, *others], key=lambda candidate: candidate.score)
-
-
 def _turned_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
     """Propose a body that looks the other way: turned half around from where most of it is left in place.
 
@@ -190,6 +180,16 @@ def _turned_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[C
         return candidates
     turned = yield from contest.follow.half_turned_steps(placed[0])
     return sorted([*candidates, turned], key=attrgetter("score"))
+
+
+def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
+    """Propose long bodies turned back about their axes, and how else they might lie, for all that may be chosen."""
+    chosen = contenders(contest, candidates)
+    ways = list(chain.from_iterable((yield from contest.follow.rolled_back_steps(chosen))))
+    if len(ways) == len(chosen) and all(map(is_, ways, chosen)):
+        return candidates
+    others = [candidate for candidate in candidates if not any(candidate is c for c in chosen)]
+    return sorted([*ways, *others], key=lambda candidate: candidate.score)
 
 
 PROPOSERS = (

@@ -309,6 +309,13 @@ def test_a_body_of_a_library_is_dressed_as_long_as_nothing_is_written_on_it(dres
         assert wear("Shirt") == {"FINISHED"}
         assert made_copies() == ["Shirt on Target"]
     assert source.library is None
+    source.vertex_groups.new(name="neck").add(range(len(source.data.vertices)), 1.0, "REPLACE")
+    source.modifiers.new("Armature", "ARMATURE").object = add_armature("Rig")
+    bpy.context.view_layer.update()
+    before = snapshot()
+    with pytest.raises(RuntimeError, match="is linked from"):  # as it would get a rig
+        wear("Coat")
+    assert snapshot() == before
 
 
 def test_a_mirrored_match_is_refused_before_the_work(dressed_pair, monkeypatch):
