@@ -24,9 +24,9 @@ from .functional_maps import (
     refine_bijective_steps,
     spectral_sizes,
 )
-from .initial_maps import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
 from .map_energies import curvature_terms, distance_term, map_orientation, rigidity_term, spectral_terms
-from .rigid_maps import rigid_maps
+from .rough_maps.extremity_maps import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
+from .rough_maps.rigid_maps import rigid_maps
 from .spectral_domain import MapDomain
 
 _FINE_SIZES = spectral_sizes(15, 80, 9)

@@ -18,10 +18,10 @@ from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
 from .credibility import EVEN, LITTLE_RISE, RISE, is_clear_choice
 from .dense_hypotheses import USUAL, LandmarkStart, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
-from .initial_maps import RoughSearch
 from .landmark_selection import steered_hypotheses_steps
 from .proposers import Contest, are_distinct, contenders, proposed_steps
 from .registered_hypotheses import Candidate, CloseFit, Follower, Settling, at_vertices
+from .rough_maps.extremity_maps import RoughSearch
 
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""

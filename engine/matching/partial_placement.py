@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..dense.extremity_search import beam_matchings
-from ..dense.lifted_matchings import squared_differences
+from ..dense.rough_maps.extremity_search import beam_matchings
+from ..dense.rough_maps.lifted_matchings import squared_differences
 from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import signed_areas
 from ..runtime.arrays import Floats, Ints

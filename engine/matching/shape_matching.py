@@ -14,8 +14,8 @@ from scipy.spatial import cKDTree
 from ..dense.dense_hypotheses import USUAL, LandmarkStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
 from ..dense.densify import MEASURED, dense_match_steps
-from ..dense.initial_maps import RoughSearch
 from ..dense.quality import DenseMatch, with_alternatives
+from ..dense.rough_maps.extremity_maps import RoughSearch
 from ..hierarchical.hierarchy import refine_steps
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings

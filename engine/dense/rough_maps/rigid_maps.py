@@ -11,11 +11,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from ..geometry.best_distinct import best_distinct
-from ..geometry.procrustes import nearest_rotations
-from ..runtime.arrays import Floats, Ints
-from .functional_maps import PointMaps
-from .spectral_domain import MapDomain
+from ...geometry.best_distinct import best_distinct
+from ...geometry.procrustes import nearest_rotations
+from ...runtime.arrays import Floats, Ints
+from ..functional_maps import PointMaps
+from ..spectral_domain import MapDomain
 
 _TURNS = Rotation.create_group("I").as_matrix()
 """Rotations of an icosahedron, (60, 3, 3): any rotation is at most 45 degrees from one.  They contain those that turn

@@ -4,7 +4,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from engine.dense.lifted_matchings import LiftedMatchings
+from engine.dense.rough_maps.lifted_matchings import LiftedMatchings
 from tests.domains import domain
 from tests.shapes import creature
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import MatchSettings, TriangleMesh, match
-from engine.dense.rigid_maps import rigid_maps
+from engine.dense.rough_maps.rigid_maps import rigid_maps
 from tests.domains import domain
 from tests.shapes import compacted, creature, icosphere, rotation
 

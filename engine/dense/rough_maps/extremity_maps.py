@@ -9,16 +9,16 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from ..geometry.best_distinct import best_distinct
-from ..runtime.arrays import TINY, Floats, Ints
-from ..runtime.parallel_map import beside_steps, shared_steps
-from ..runtime.progress import Progress, Steps, in_turn, within
-from ..shapes.extremities import spread_extremities
+from ...geometry.best_distinct import best_distinct
+from ...runtime.arrays import TINY, Floats, Ints
+from ...runtime.parallel_map import beside_steps, shared_steps
+from ...runtime.progress import Progress, Steps, in_turn, within
+from ...shapes.extremities import spread_extremities
+from ..functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
+from ..map_energies import map_orientation, spectral_terms
+from ..spectral_domain import MapDomain
 from .extremity_search import beam_matchings
-from .functional_maps import PointMaps, fit_functional_maps, refine_bijective_steps, spectral_sizes
 from .lifted_matchings import LiftedMatchings
-from .map_energies import map_orientation, spectral_terms
-from .spectral_domain import MapDomain
 
 Own = TypeVar("Own")
 

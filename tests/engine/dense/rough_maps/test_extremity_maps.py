@@ -3,7 +3,13 @@ import numpy as np
 import pytest
 
 from engine.dense.functional_maps import PointMaps
-from engine.dense.initial_maps import MapLead, RoughSearch, distinct_leads, fitting_maps_steps, rough_maps_steps
+from engine.dense.rough_maps.extremity_maps import (
+    MapLead,
+    RoughSearch,
+    distinct_leads,
+    fitting_maps_steps,
+    rough_maps_steps,
+)
 from engine.runtime.progress import Progress, run
 from tests.bodies import octopus
 from tests.domains import domain
@@ -121,5 +127,5 @@ def test_of_many_arms_any_may_be_the_first(octopuses, monkeypatch):
     found = turns()
     assert 0 in found
     assert len(found) >= 3
-    monkeypatch.setattr("engine.dense.initial_maps._MANY_LIMBS", 99)
+    monkeypatch.setattr("engine.dense.rough_maps.extremity_maps._MANY_LIMBS", 99)
     assert len(turns()) < len(found)

@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.best_distinct import best_distinct
-from ..geometry.orientation import signed_areas
-from ..runtime.arrays import Floats, Ints
-from .functional_maps import PointMaps, nearest_both_ways
-from .spectral_domain import MapDomain
+from ...geometry.best_distinct import best_distinct
+from ...geometry.orientation import signed_areas
+from ...runtime.arrays import Floats, Ints
+from ..functional_maps import PointMaps, nearest_both_ways
+from ..spectral_domain import MapDomain
 
 _SIGNED_WEIGHT, _RELATIVE_SIGNED_WEIGHT = 1.0, 2.0
 """Of signed areas beside distances, and beside relative distances."""

@@ -4,7 +4,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from engine.dense.extremity_search import beam_matchings
+from engine.dense.rough_maps.extremity_search import beam_matchings
 
 
 def problem(seed, m, n):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..runtime.arrays import TINY, Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints
 
 
 def beam_matchings(
