@@ -77,9 +77,9 @@ def watch_matches(show: Callable[[float, str], None]) -> list[Any]:
     drives is replaced by one that tells.
     """
     outcomes: list[Any] = []
-    job = module("hiermatch_addon.jobs.job")
+    match_job = module("hiermatch_addon.jobs.match_job")
 
-    class WatchedJob(job.MatchJob):
+    class WatchedJob(match_job.MatchJob):
         def advance(self, *arguments: Any) -> bool:  # noqa: ANN401
             finished = super().advance(*arguments)
             show(self.progress.fraction, self.progress.label)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..common.access import view_layer_of
-from ..jobs.job import MatchJob, job_options
+from ..jobs.match_job import MatchJob, job_options
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
 from ..properties.summary import remember

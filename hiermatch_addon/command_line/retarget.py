@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import bpy
 
-from ..jobs.job import job_options
+from ..jobs.match_job import job_options
 from ..jobs.transfer_job import TransferJob, TransferOptions
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of

@@ -18,7 +18,7 @@ from ..storage.halves import find_common
 from ..storage.linked_matches import keep_linked, kept_linked
 from ..storage.stored_map import find_maps, keep_refined
 from ..storage.vertex_maps import MapPair, StoredMaps
-from .job import MatchJob
+from .match_job import MatchJob
 from .prepared_shapes import known_shapes
 from .stepped_job import SteppedJob
 from .transfer import Passage, TransferReport
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ..scene.armatures import SourceRig
     from ..scene.character import Side
     from ..storage.stored_match import Quality, StoredMatch
-    from .job import JobOptions, Outcome
+    from .match_job import JobOptions, Outcome
     from .transfer import Transfer
 
 __all__ = ["Carried", "TransferJob", "TransferOptions", "carry_fresh_match"]

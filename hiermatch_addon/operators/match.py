@@ -10,8 +10,8 @@ import bpy
 
 from ..common.access import layout_of, view_layer_of
 from ..common.translated_text import translated
-from ..jobs.job import MatchJob, job_options
 from ..jobs.job_operator import JobOperator
+from ..jobs.match_job import MatchJob, job_options
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
 from ..properties.panel_state import picked, state_of

@@ -9,7 +9,7 @@ from functools import cache
 import bpy
 import numpy as np
 from hiermatch.engine import MatchQuality, Progress, SurfaceMap
-from hiermatch.hiermatch_addon.jobs import job, transfer_job
+from hiermatch.hiermatch_addon.jobs import match_job, transfer_job
 from mathutils import Matrix
 
 from tests.addon.rigs import add_mesh, add_weights
@@ -83,7 +83,7 @@ def match_at_once(monkeypatch, confidence=0.9):
         maps = {"source_to_target": SurfaceMap.identity(target), "target_to_source": SurfaceMap.identity(source)}
         return replace(made_up_result(source, target), quality=quality, **maps)
 
-    monkeypatch.setattr(job, "match_steps", steps)
+    monkeypatch.setattr(match_job, "match_steps", steps)
     fit = transfer_job.fit_rig_steps
     monkeypatch.setattr(
         transfer_job, "fit_rig_steps", lambda *bodies, **names: fit(*bodies, **names | {"refine": False})

@@ -8,7 +8,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 from hiermatch.engine import CoarseMatch, MatchResult, SurfaceMap, SurfacePoints
-from hiermatch.hiermatch_addon.jobs import job
+from hiermatch.hiermatch_addon.jobs import match_job
 
 QUICK = {"points": 12, "coarse_points": 4, "coarse_candidates": 8, "samples": 48, "hypotheses": 2, "dense": False}
 """Settings with which a small mesh is matched in some tenths of a second."""
@@ -117,12 +117,12 @@ def made_up_maps(source_mesh, target_mesh, seed=2):
 
 def without_mirrored(monkeypatch):
     """Let all matches have one answer only."""
-    real = job.match_steps
+    real = match_job.match_steps
 
     def steps(*arguments, **names):
         return replace((yield from real(*arguments, **names)), alternatives=())
 
-    monkeypatch.setattr(job, "match_steps", steps)
+    monkeypatch.setattr(match_job, "match_steps", steps)
 
 
 def weights_of(obj):

@@ -12,8 +12,8 @@ import bpy
 from ...common.access import view_layer_of, window_manager_of
 from ...common.redraw import redraw_sidebars
 from ...common.translated_text import translated
-from ...jobs.job import job_options
 from ...jobs.job_operator import JobOperator
+from ...jobs.match_job import job_options
 from ...jobs.running import can_start, start_soon
 from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...panels.question import draw_question

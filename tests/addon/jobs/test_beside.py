@@ -14,7 +14,7 @@ import pytest
 from hiermatch.engine import HierMatchError, MatchSettings, close_helpers, use_processes
 from hiermatch.engine.mesh.closest_points import ClosestPoints
 from hiermatch.engine.runtime.worker import call_background
-from hiermatch.hiermatch_addon.jobs.job import JobOptions, MatchJob, job_options
+from hiermatch.hiermatch_addon.jobs.match_job import JobOptions, MatchJob, job_options
 from hiermatch.hiermatch_addon.jobs.transfer_job import TransferJob, TransferOptions
 from hiermatch.hiermatch_addon.scene.character import read_surface
 from hiermatch.hiermatch_addon.transfers.options.retarget import chosen_transfers

@@ -7,7 +7,7 @@ import bpy
 import pytest
 from hiermatch.engine import MatchSettings
 from hiermatch.engine.matching import matching
-from hiermatch.hiermatch_addon.jobs.job import JobOptions, MatchJob
+from hiermatch.hiermatch_addon.jobs.match_job import JobOptions, MatchJob
 from hiermatch.hiermatch_addon.jobs.prepared_shapes import forget_shapes, known_shapes
 from hiermatch.hiermatch_addon.properties.preferences import HIERMATCH_AP_preferences, shape_memory
 

@@ -303,7 +303,7 @@ class TestSwap:
         assert (back.source.vertices == there.target.vertices).all()
 
     def test_the_panel_calls_them_the_other_way_round(self, dense_pair, monkeypatch):
-        monkeypatch.setattr("hiermatch.hiermatch_addon.jobs.job.match_steps", None)  # nothing is computed
+        monkeypatch.setattr("hiermatch.hiermatch_addon.jobs.match_job.match_steps", None)  # nothing is computed
         state, before = bpy.context.scene.hiermatch, snapshot()
         arrays = [attributes(obj) for obj in dense_pair]
         assert bpy.ops.hiermatch.swap() == {"FINISHED"}

@@ -56,7 +56,7 @@ def no_matching(monkeypatch):
     def forbidden(*_arguments, **_names):
         raise AssertionError("matched again")
 
-    monkeypatch.setattr("hiermatch.hiermatch_addon.jobs.job.match_steps", forbidden)
+    monkeypatch.setattr("hiermatch.hiermatch_addon.jobs.match_job.match_steps", forbidden)
 
 
 def merge_part(obj):

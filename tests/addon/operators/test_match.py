@@ -266,7 +266,7 @@ def test_a_bug_is_not_swallowed(pair, monkeypatch):
     def broken(*_arguments, **_names):
         raise ZeroDivisionError("a bug")
 
-    monkeypatch.setattr("hiermatch.hiermatch_addon.jobs.job.contents_steps", broken)
+    monkeypatch.setattr("hiermatch.hiermatch_addon.jobs.match_job.contents_steps", broken)
     before = snapshot()
     with pytest.raises(RuntimeError, match=r"(?s)Traceback.*ZeroDivisionError: a bug"):
         match(source="Source", target="Target")

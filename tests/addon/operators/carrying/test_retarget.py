@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
-from hiermatch.hiermatch_addon.jobs import job
-from hiermatch.hiermatch_addon.jobs.job import job_options
+from hiermatch.hiermatch_addon.jobs import match_job
+from hiermatch.hiermatch_addon.jobs.match_job import job_options
 from hiermatch.hiermatch_addon.jobs.transfer_job import TransferJob, TransferOptions
 from hiermatch.hiermatch_addon.operators.carrying import transfer_operator
 from hiermatch.hiermatch_addon.scene.armatures import find_armature
@@ -238,8 +238,8 @@ def test_a_linked_source_is_carried_from_and_the_target_keeps_the_match(linked_s
         bpy.ops.hiermatch.match(source="Source", target="Target")
     # It is used by whatever is carried next, also in another session, until a mesh is edited.
     count = []
-    real = job.match_steps
-    monkeypatch.setattr(job, "match_steps", lambda *bodies, **names: count.append(1) or real(*bodies, **names))
+    real = match_job.match_steps
+    monkeypatch.setattr(match_job, "match_steps", lambda *bodies, **names: count.append(1) or real(*bodies, **names))
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "scene.blend"))
     target = bpy.data.objects["Target"]

@@ -5,7 +5,7 @@ import json
 
 import bpy
 import pytest
-from hiermatch.hiermatch_addon.jobs import job
+from hiermatch.hiermatch_addon.jobs import match_job
 
 from tests.addon.characters import add_person, match_at_once, someone
 
@@ -135,7 +135,7 @@ def test_a_collection_several_objects_and_the_picked_ones_are_taken_as_match_tak
 
 def test_parts_that_were_matched_are_enough(rigs, monkeypatch):
     bpy.ops.hiermatch.match(source="A Body", target="B Body")
-    monkeypatch.setattr(job, "match_steps", None)
+    monkeypatch.setattr(match_job, "match_steps", None)
     assert ops.pair_bones(source="A", target="B") == {"FINISHED"}
     found = {(source, rigs[target]) for source, target in table()}
     assert ("thigh.L", "thigh.L") in found

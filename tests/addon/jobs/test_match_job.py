@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hiermatch.engine import HierMatchError, MatchSettings, Preview, Progress
 from hiermatch.hiermatch_addon.common.errors import ObjectError
-from hiermatch.hiermatch_addon.jobs.job import JobOptions, MatchJob
+from hiermatch.hiermatch_addon.jobs.match_job import JobOptions, MatchJob
 from hiermatch.hiermatch_addon.jobs.shown_preview import preview
 from hiermatch.hiermatch_addon.operators.match import HIERMATCH_OT_match
 
