@@ -77,8 +77,8 @@ USUAL = Selection()
 
 
 @dataclass(frozen=True, eq=False)
-class LandmarkStart:
-    """Corresponding places that are already known, as distances from them.
+class SparseStart:
+    """A few corresponding places that a map starts from, each by the distances to it.
 
     Attributes
     ----------
@@ -157,7 +157,7 @@ class MapHypothesis(MapLead):
 def map_hypotheses_steps(
     x: Shape,
     y: Shape,
-    starts: Sequence[LandmarkStart] = (),
+    starts: Sequence[SparseStart] = (),
     *,
     search: bool = True,
     mirrored: bool = True,
@@ -178,7 +178,7 @@ def map_hypotheses_steps(
     x, y : Shape
         The surfaces, for which `Shape.sample_steps` and `Shape.spectrum_steps` were run; 512 samples and 120
         eigenpairs are used, or what there is.
-    starts : sequence of LandmarkStart
+    starts : sequence of SparseStart
         Correspondences from elsewhere that enter the comparison.
     search : bool
         Whether matchings of extremities and rigid motions are tried as well; without, there must be a start.
@@ -214,7 +214,7 @@ def map_hypotheses_steps(
         steps = rough_maps_steps(a, b) if mirrored else _keeping_leads_steps(a, b, searched)
         leads = yield from within(steps, 0.05, 0.4)
     candidates = [(_between_fine(a, b, _smooth_maps(a, b, lead.points)), lead.origin) for lead in leads]
-    candidates += [(_from_landmarks(a, b, start), start.origin) for start in starts]
+    candidates += [(_from_start(a, b, start), start.origin) for start in starts]
     if search:
         candidates += [(points, "rigid") for points in rigid_maps(a, b)]
     refined = yield from within(shared_steps(_refined_lead_steps, domains, candidates), 0.4, 1.0)
@@ -272,13 +272,13 @@ def _best_unrefined_steps(domains: tuple[MapDomain, MapDomain], way: int) -> Ste
     return best[0], images
 
 
-def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: LandmarkStart) -> MapHypothesis:
+def unrefined_hypothesis(domains: tuple[MapDomain, MapDomain], start: SparseStart) -> MapHypothesis:
     """Take a start as it is: every vertex goes to the one at the most similar distances from the known places.
 
     Functional maps join what looks alike, such as the one horn of two that is whole with itself in a map that mirrors.
     """
     x, y = domains
-    lead = _assessed(x, y, _from_landmarks(x, y, start), start.origin)
+    lead = _assessed(x, y, _from_start(x, y, start), start.origin)
     rows = (np.asarray(distances, np.float64).T for distances in (start.source_distances, start.target_distances))
     return hypothesis_of(domains, lead, nearest_both_ways(*rows))
 
@@ -355,7 +355,7 @@ def _between_fine(x: MapDomain, y: MapDomain, maps: FunctionalMaps) -> PointMaps
     return points_from_functions(maps, x.fine_basis.functions, y.fine_basis.functions)
 
 
-def _from_landmarks(x: MapDomain, y: MapDomain, start: LandmarkStart) -> PointMaps:
+def _from_start(x: MapDomain, y: MapDomain, start: SparseStart) -> PointMaps:
     """Map fine samples to those at the most similar distances from the landmarks."""
     return nearest_both_ways(
         np.asarray(start.source_distances, np.float64)[:, x.vertices].T,

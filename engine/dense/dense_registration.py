@@ -17,7 +17,7 @@ from ..runtime.progress import Preview, Progress, Steps, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
 from .credibility import EVEN, LITTLE_RISE, RISE, is_clear_choice
-from .dense_hypotheses import USUAL, LandmarkStart, MapHypothesis, Selection, map_hypotheses_steps, unrefined_hypothesis
+from .dense_hypotheses import USUAL, MapHypothesis, Selection, SparseStart, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
 from .proposers import Contest, are_distinct, contenders, proposed_steps
 from .registered_hypotheses import Candidate, CloseFit, Follower, Settling, at_vertices
@@ -112,7 +112,7 @@ class Rival:
 def registered_pair_steps(
     x: Shape,
     y: Shape,
-    starts: Sequence[LandmarkStart] = (),
+    starts: Sequence[SparseStart] = (),
     *,
     search: bool = True,
     as_they_are: bool = False,
@@ -126,7 +126,7 @@ def registered_pair_steps(
     ----------
     x, y : Shape
         The surfaces X and Y; their samples have been taken.
-    starts : sequence of LandmarkStart
+    starts : sequence of SparseStart
         Sparse correspondences that the map may start from.
     search : bool
         Whether other starts are looked for as well.

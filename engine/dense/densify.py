@@ -28,7 +28,7 @@ from ..shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_ste
 from .components.extended_maps import WholeMap, whole_maps_steps
 from .components.masked_maps import piece_of, with_pieces_only
 from .credibility import vertex_credibility
-from .dense_hypotheses import LandmarkStart
+from .dense_hypotheses import SparseStart
 from .dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from .functional_maps import nearest_both_ways
 from .quality import DenseMatch, assess_maps, with_alternatives, with_pieces
@@ -92,7 +92,7 @@ def densify_steps(
     y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     x, y = finer_shapes(x, y)
-    start = LandmarkStart(_rows(x, source_points), _rows(y, target_points), "given")
+    start = SparseStart(_rows(x, source_points), _rows(y, target_points), "given")
     yield from within(prepared_shapes_steps(x, y, Wanted(_SAMPLES, MEASURED, EIGENPAIRS)), 0.2, 0.35)
     mirrored = _mirrors(x, y, start)
     # Seen in a mirror, the source is matched by a map that keeps the orientation.
@@ -146,7 +146,7 @@ def _at_landmarks(found: SurfaceMap, image: TriangleMesh, vertices: Ints, partne
     return replace(found, points=points, confidence=confidence, has_partner=has_partner)
 
 
-def _mirrors(x: Shape, y: Shape, start: LandmarkStart) -> bool:
+def _mirrors(x: Shape, y: Shape, start: SparseStart) -> bool:
     """Whether a correspondence turns most of the surface over."""
     images = nearest_both_ways(start.source_distances.T, start.target_distances.T).on_y
     return SurfaceMap.from_points(y.mesh, SurfacePoints.at_vertices(y.mesh, images)).orientation(x.mesh, y.mesh) < 0

@@ -13,7 +13,7 @@ import numpy as np
 from ..runtime.progress import Steps, in_turn, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
-from .dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps
+from .dense_hypotheses import MapHypothesis, SparseStart, map_hypotheses_steps
 
 _PENALTY = 20.0
 """What a map's score rises by for each sqrt(area) that the images of landmarks are from their partners."""
@@ -79,7 +79,7 @@ def agrees(x: Shape, y: Shape, landmarks: Landmarks, hypothesis: MapHypothesis) 
 
 
 def steered_hypotheses_steps(
-    x: Shape, y: Shape, starts: Sequence[LandmarkStart], landmarks: Landmarks, *, search: bool = True
+    x: Shape, y: Shape, starts: Sequence[SparseStart], landmarks: Landmarks, *, search: bool = True
 ) -> Steps[Steered]:
     """Propose dense maps between two surfaces that agree with landmarks, most credible first.
 
@@ -91,7 +91,7 @@ def steered_hypotheses_steps(
     ----------
     x, y : Shape
         The surfaces, as for `map_hypotheses_steps`; their samples begin with the landmarks.
-    starts : sequence of LandmarkStart
+    starts : sequence of SparseStart
         Correspondences from elsewhere that enter the comparison.
     landmarks : Landmarks
         What is known.
@@ -105,7 +105,7 @@ def steered_hypotheses_steps(
     """
     count = len(landmarks)
     if count >= _START_LANDMARKS:
-        starts = [*starts, LandmarkStart(x.samples.rows[:count], y.samples.rows[:count], "landmarks")]
+        starts = [*starts, SparseStart(x.samples.rows[:count], y.samples.rows[:count], "landmarks")]
     hypotheses = yield from within(map_hypotheses_steps(x, y, starts, search=search), 0.0, 0.4)
     natural = next((h for h in hypotheses if h.orientation > 0), hypotheses[0])
     direct = _judged(x, y, landmarks, hypotheses)
@@ -122,7 +122,7 @@ def steered_hypotheses_steps(
 
 
 def _completed_steps(
-    x: Shape, y: Shape, starts: Sequence[LandmarkStart], landmarks: Landmarks, judged: list[MapHypothesis]
+    x: Shape, y: Shape, starts: Sequence[SparseStart], landmarks: Landmarks, judged: list[MapHypothesis]
 ) -> Steps[list[MapHypothesis]]:
     """Add what comes of the starts alone, unless there is a map that keeps the orientation and agrees.
 

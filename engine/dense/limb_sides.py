@@ -12,7 +12,7 @@ from ..runtime.progress import Steps
 from ..shapes.extremities import limb_tips, mean_distances
 from ..shapes.shape import Shape
 from ..shapes.surface_distances import measured_steps
-from .dense_hypotheses import LandmarkStart
+from .dense_hypotheses import SparseStart
 from .functional_maps import PointMaps
 
 _CENTRAL = 0.5
@@ -38,7 +38,7 @@ _ANCHORS = 40
 """Places of the middle of the body that the rest is found anew from."""
 
 
-def repaired_start_steps(x: Shape, y: Shape, maps: PointMaps) -> Steps[LandmarkStart | None]:
+def repaired_start_steps(x: Shape, y: Shape, maps: PointMaps) -> Steps[SparseStart | None]:
     r"""Look for limbs that a map exchanges, and say where a map that does not would start.
 
     A pose changes hardly anything about how far the tip i of a limb is from places s of the middle of the body.  With
@@ -59,7 +59,7 @@ def repaired_start_steps(x: Shape, y: Shape, maps: PointMaps) -> Steps[LandmarkS
 
     Returns
     -------
-    LandmarkStart or None
+    SparseStart or None
         Tips, each with the image it should have had, and places of the middle of the body, with those they have.  None
         if no limbs are exchanged.
     """
@@ -70,7 +70,7 @@ def repaired_start_steps(x: Shape, y: Shape, maps: PointMaps) -> Steps[LandmarkS
             return None
         found = back[::-1]
     rows = yield from shared_steps(measured_steps, None, list(zip((x.solver, y.solver), found, strict=True)))
-    return LandmarkStart(rows[0] / x.scale, rows[1] / y.scale, "limbs")
+    return SparseStart(rows[0] / x.scale, rows[1] / y.scale, "limbs")
 
 
 def exchanged_limbs(x: Shape, y: Shape, maps: PointMaps) -> tuple[bool, bool]:

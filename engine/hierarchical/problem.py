@@ -15,14 +15,14 @@ from ..runtime.errors import MatchError
 class MatchingProblem:
     r"""Match n points of X to m >= n candidates on Y, each x to one y and each y to at most one x.
 
-    .. math:: \mathrm{dis}(c) = \sum_x d_F(x, c(x)) + \lambda \sum_{x, x'} (d_X(x, x') - d_Y(c(x), c(x')))^2
+    .. math:: \mathrm{dis}(c) = \mu \sum_x d_F(x, c(x)) + \lambda \sum_{x, x'} (d_X(x, x') - d_Y(c(x), c(x')))^2
 
-    Both sums run over ordered pairs, so each unordered pair of points counts twice (equations 2-4 of [1]_).
+    The double sum counts each pair of points twice (equations 2-4 of [1]_).
 
     Parameters
     ----------
     linear : (n, m) array of float
-        d_F, the difference of the descriptors; ``inf`` forbids a pair.
+        mu d_F, the weighted difference of the descriptors; ``inf`` forbids a pair.
     source_distances : (n, n) array of float
         d_X between the points, symmetric with a zero diagonal.
     target_distances : (m, m) array of float

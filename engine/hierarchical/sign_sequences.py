@@ -40,7 +40,7 @@ class SignSequence:
 
 
 def consistent_sequences(
-    source: Floats, target: Floats, likeness: Floats, groups: Sequence[Sequence[int]], count: int
+    source: Floats, target: Floats, difference: Floats, groups: Sequence[Sequence[int]], count: int
 ) -> list[SignSequence]:
     r"""Find the sign sequences for which the eigenfunctions of two shapes agree best.
 
@@ -60,7 +60,7 @@ def consistent_sequences(
         The first k eigenfunctions that are not constant, at points of X, made comparable in size between the shapes.
     target : (m, k) array of float
         The same of Y.
-    likeness : (n, m) array of float
+    difference : (n, m) array of float
         Difference of descriptors that need no signs.
     groups : sequence of sequence of int
         Numbers of eigenfunctions whose eigenvalues are nearly equal, so that they may stand in any order.  Those in no
@@ -80,8 +80,8 @@ def consistent_sequences(
     """
     k = source.shape[1]
     voters = np.arange(0, len(source), max(1, len(source) // _PLACES))
-    size = min(_CLUSTER, likeness.shape[1])
-    cluster = np.argpartition(likeness[voters], size - 1, axis=1)[:, :size]  # (v, c)
+    size = min(_CLUSTER, difference.shape[1])
+    cluster = np.argpartition(difference[voters], size - 1, axis=1)[:, :size]  # (v, c)
     sequences = []
     for order in _orders(k, groups):
         # |a - s b|^2 = |a|^2 + |b|^2 - 2 sum_i s_i a_i b_i: for all signs at once, one product.

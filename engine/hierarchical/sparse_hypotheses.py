@@ -146,19 +146,19 @@ def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
         for number, start in enumerate(coarse):
             here = Progress(0.25 * ((sign < 0) + number / len(coarse)), "Comparing matchings")
             term = start.pair.orientation_term(start.matching.assignment, sign)
-            levels = yield from _at(here, refine_steps(start.pair, start.matching.assignment, screen, term))
+            levels = yield from _reporting(here, refine_steps(start.pair, start.matching.assignment, screen, term))
             cost = start.pair.problem(screen[-1], extra=term[: screen[-1]]).cost(levels[-1].assignment)
             screened.append(_Lead(start, term, levels, cost))
         leads += _best_distinct(screened, _KEPT_DENSE if settings.dense else _KEPT)
     hypotheses: list[Hypothesis] = []
     for number, lead in enumerate(leads):
         here = Progress(0.5 + 0.35 * number / len(leads), "Comparing matchings")
-        hypotheses.append((yield from _at(here, _follow_steps(lead, further))))
+        hypotheses.append((yield from _reporting(here, _follow_steps(lead, further))))
     hypotheses.sort(key=lambda hypothesis: hypothesis.score)
     if not coarse[0].pair.landmarks:  # which no symmetry of the source would respect
         missing = [sign for sign in (1, -1) if not any(h.orientation * sign > 0 for h in hypotheses)]
         steps = _reflected_steps(hypotheses, sizes, missing if settings.dense else [-1, 1])
-        hypotheses += yield from _at(Progress(0.85, "Comparing matchings"), steps)
+        hypotheses += yield from _reporting(Progress(0.85, "Comparing matchings"), steps)
     return two_answers(hypotheses)
 
 
@@ -227,7 +227,7 @@ def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int], wanted: lis
     return found
 
 
-def _at(here: Progress, steps: Steps[Result]) -> Steps[Result]:
+def _reporting(here: Progress, steps: Steps[Result]) -> Steps[Result]:
     """Report one fixed progress for every step of a short computation."""
     return (yield from within(steps, here.fraction, here.fraction, here.label))
 

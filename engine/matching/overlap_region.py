@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ..dense.credibility import may_reach
-from ..dense.dense_hypotheses import LandmarkStart, MapHypothesis, map_hypotheses_steps, unrefined_hypothesis
+from ..dense.dense_hypotheses import MapHypothesis, SparseStart, map_hypotheses_steps, unrefined_hypothesis
 from ..dense.dense_registration import EIGENPAIRS
 from ..dense.missing_parts import with_partner
 from ..dense.proposers import are_distinct
@@ -346,7 +346,7 @@ class _Fitter:
         piece = piece.limited(_SAMPLES, _MEASURED)
         places = whole.vertices[self.whole.samples.vertices[images[:_STARTS]]]
         rows = self.whole.samples.rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
-        start = LandmarkStart(rows, self.part.samples.rows[:_STARTS], "placement")
+        start = SparseStart(rows, self.part.samples.rows[:_STARTS], "placement")
         if known:
             domains = MapDomain(piece, EIGENPAIRS), MapDomain(self.part, EIGENPAIRS)
             return _Proposal(piece, unrefined_hypothesis(domains, start), places)

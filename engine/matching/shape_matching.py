@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
-from ..dense.dense_hypotheses import USUAL, LandmarkStart, map_domains
+from ..dense.dense_hypotheses import USUAL, SparseStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
 from ..dense.densify import MEASURED, dense_match_steps
 from ..dense.quality import DenseMatch, with_alternatives
@@ -170,7 +170,7 @@ def _dense_steps(
     for answer in followed:
         places = y.samples.rows[:, answer.points.nearest_vertices].argmin(axis=0)
         rows = finer[0].samples.rows[: len(places)], finer[1].samples.rows[places]
-        starts.append(LandmarkStart(*rows, "hierarchy"))
+        starts.append(SparseStart(*rows, "hierarchy"))
     if task.begun is not None:
         starts = [_begun_start(x, y, finer, task.begun)]
     selection, clock = replace(USUAL, least=task.least, least_softly=task.least_softly), task.clock
@@ -204,12 +204,12 @@ def _dense_steps(
     return direct, others, dense
 
 
-def _begun_start(x: Shape, y: Shape, finer: tuple[Shape, Shape], begun: SurfaceMap) -> LandmarkStart:
+def _begun_start(x: Shape, y: Shape, finer: tuple[Shape, Shape], begun: SurfaceMap) -> SparseStart:
     """Begin with where a map takes the samples that have a partner."""
     own = x.vertices[x.samples.vertices]
     shown = np.flatnonzero(begun.has_partner[own])
     nearest = cKDTree(y.original.vertices[y.vertices[y.samples.vertices]]).query(begun.positions[own[shown]])[1]
-    return LandmarkStart(finer[0].samples.rows[shown], finer[1].samples.rows[nearest], "overlap")
+    return SparseStart(finer[0].samples.rows[shown], finer[1].samples.rows[nearest], "overlap")
 
 
 def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple[Answer, Answer | None]]:

@@ -396,7 +396,7 @@ class MatchJob(SteppedJob):
 
 
 def _check_points(obj: Side, settings: MatchSettings) -> None:
-    """Make sure that there are vertices enough: a dense match takes fewer points by itself, where these are not."""
+    """Make sure that there are vertices enough; a dense match makes do with fewer points than it is asked for."""
     count, points = vertex_count(obj), settings.points
     if (min(settings.coarse_points, points) if settings.dense else points) > count:
         raise ObjectError(

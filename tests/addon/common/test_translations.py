@@ -180,7 +180,7 @@ def test_what_is_shown_is_found():
 
 def test_nothing_is_missing(messages):
     missing = [f"{text!r} ({where})" for text, where in needed().items() if text not in messages]
-    assert not missing, "To be added to hiermatch_addon/translations:\n" + "\n".join(missing)
+    assert not missing, "To be added to hiermatch_addon/common/translations:\n" + "\n".join(missing)
 
 
 def test_nothing_is_left_over(messages):

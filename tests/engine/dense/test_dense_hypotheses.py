@@ -9,7 +9,7 @@ import pytest
 from engine import Shape, TriangleMesh
 from engine.dense import dense_hypotheses as map_hypotheses
 from engine.dense.dense_hypotheses import (
-    LandmarkStart,
+    SparseStart,
     assessed_everywhere,
     map_hypotheses_steps,
     refined_hypothesis_steps,
@@ -170,7 +170,7 @@ def test_known_landmarks_enter_the_comparison(poses):
     x, y, rest = poses
     places = x.samples.vertices[20:60]  # not the extremities; the vertices of both poses have the same numbers
     rows_x, rows_y = (np.stack([_row(shape, place) for place in places]) for shape in (x, y))
-    found = hypotheses(x, y, [LandmarkStart(rows_x, rows_y, "friend")])
+    found = hypotheses(x, y, [SparseStart(rows_x, rows_y, "friend")])
     assert error(rest, found[0].images.on_y) < 0.02
     assert {h.origin for h in found} <= {"extremities", "friend"}
 
@@ -178,7 +178,7 @@ def test_known_landmarks_enter_the_comparison(poses):
 def test_landmarks_are_enough_without_a_search(poses):
     x, y, rest = poses
     rows = (np.stack([_row(shape, place) for place in x.samples.vertices[:30]]) for shape in (x, y))
-    (only,) = hypotheses(x, y, [LandmarkStart(*rows)], search=False)
+    (only,) = hypotheses(x, y, [SparseStart(*rows)], search=False)
     assert only.origin == "landmarks"
     assert error(rest, only.images.on_y) < 0.02
 
@@ -186,7 +186,7 @@ def test_landmarks_are_enough_without_a_search(poses):
 def test_a_start_can_be_taken_as_it_is(poses, proposed):
     x, y, rest = poses
     known = x.samples.vertices[:30]
-    start = LandmarkStart(x.solver.distances(known) / x.scale, y.solver.distances(known) / y.scale, "known")
+    start = SparseStart(x.solver.distances(known) / x.scale, y.solver.distances(known) / y.scale, "known")
     found = unrefined_hypothesis(proposed[0].domains, start)
     assert error(rest, found.images.on_y) < 0.02
     assert error(rest, found.images.on_x) < 0.02
@@ -251,7 +251,7 @@ def test_maps_between_all_vertices_are_scored_like_hypotheses(poses, proposed):
 def test_a_wrong_start_does_not_win(poses):
     x, y, rest = poses
     rng = np.random.default_rng(0)
-    start = LandmarkStart(x.samples.rows[:30], y.samples.rows[rng.permutation(30)], "stranger")
+    start = SparseStart(x.samples.rows[:30], y.samples.rows[rng.permutation(30)], "stranger")
     best = hypotheses(x, y, [start])[0]
     assert best.origin == "extremities"
     assert error(rest, best.images.on_y) < 0.02

@@ -11,7 +11,7 @@ from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
 from engine.dense import dense_registration as dense_map
 from engine.dense import proposers
 from engine.dense.credibility import probability_in_place, probability_turned
-from engine.dense.dense_hypotheses import LandmarkStart, Selection, assessed_everywhere, map_hypotheses_steps
+from engine.dense.dense_hypotheses import Selection, SparseStart, assessed_everywhere, map_hypotheses_steps
 from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from engine.dense.densify import dense_match_steps
 from engine.dense.functional_maps import PointMaps
@@ -42,7 +42,7 @@ def errors(points, triangles, own, other, area):
 
 def start_from(x, y, vertices_x, vertices_y, origin="given"):
     rows = x.solver.distances(np.asarray(vertices_x)) / x.scale
-    return LandmarkStart(rows, y.solver.distances(np.asarray(vertices_y)) / y.scale, origin)
+    return SparseStart(rows, y.solver.distances(np.asarray(vertices_y)) / y.scale, origin)
 
 
 @pytest.fixture(scope="module")

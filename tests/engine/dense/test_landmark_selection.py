@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine.dense import landmark_selection
-from engine.dense.dense_hypotheses import LandmarkStart
+from engine.dense.dense_hypotheses import SparseStart
 from engine.dense.functional_maps import PointMaps
 from engine.dense.landmark_selection import agrees, landmark_distance, steered_hypotheses_steps
 from engine.runtime.progress import Progress, run
@@ -134,7 +134,7 @@ def test_mirrored_maps_of_the_reflection_do_not_count(monkeypatch):
 def test_enough_landmarks_are_a_start_of_their_own(monkeypatch, count, own):
     x, y, landmarks = scene([(2, 2), (9, 9), (15, 15)][:count])
     asked = proposing(monkeypatch, [LineMap(SAME, SAME)], [])
-    other = LandmarkStart(x.samples.rows[:1], y.samples.rows[:1], "elsewhere")
+    other = SparseStart(x.samples.rows[:1], y.samples.rows[:1], "elsewhere")
     run(steered_hypotheses_steps(x, y, [other], landmarks, search=False))
     assert asked == [(False, ["elsewhere", *own], False, False)]
 
