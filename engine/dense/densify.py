@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From two registered surfaces to maps between all vertices of the meshes they stand for."""
+"""Maps between all vertices of two meshes, from the registered surfaces that stand for them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Proposers: other registered maps than the best so far, each of what may be wrong with it.
+"""Proposers: other registered maps than the best so far, each kind for one way in which it may be wrong.
 
 A proposer gets what is known of a pair of surfaces and the candidates so far, the best first, and returns them with
 what it proposes beside them or instead of them, the best first again.  All are compared by one score.  Another kind of

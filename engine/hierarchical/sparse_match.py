@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ways to match a pair: hierarchical, and the flat one and generalised multidimensional scaling beside it."""
+"""Sparse matching of a pair: hierarchical, flat, or by generalised multidimensional scaling."""
 
 from __future__ import annotations
 

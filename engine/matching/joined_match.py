@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Match bodies that were put together from pieces: piece by piece, or all pieces of a body as one surface."""
+"""Matching of bodies that consist of pieces: piece by piece, or all pieces of a body as one surface."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Match two surfaces: the engine's front door."""
+"""The engine's front door: matching of two surfaces."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ from .shape_matching import MatchTask, matched_steps
 _Unprepared = tuple[TriangleMesh, str, Bools | None]
 
 _FIRST, _FIRST_OF_CLOSED = 0.45, 0.95
-"""Part of the work after which surfaces have been matched as they are, if one of them may be a part of the other, and
-if they are closed."""
+"""Part of the work after which surfaces have been matched as they are: if one of them is open, and may be a part of the
+other, and if both are closed."""
 
 _CUT = 0.4
 """Length of a border, in sqrt(area), from which on much may have been cut off a surface: around a thigh."""
@@ -51,11 +51,11 @@ _SMALL_PART = 0.6
 """Part of a surface that is shared up to which more is missing on the other than faces here and there."""
 
 _OVERLAP, _FIRST_AFTER = 0.35, 0.6
-"""Parts of the work after which it is known what surfaces share, and then how they match as they are."""
+"""Parts of the work after which it is known what surfaces share, and how they match as they are."""
 
 _BEGUN, _AGREED, _CLOSER = 0.2, 0.6, 0.8
-"""Parts of the work with a part and the piece that it shares after which that is matched from the overlap, by another
-search, and anew."""
+"""Parts of the work in `_part_steps` after which the piece of the overlap has been matched from there, another search
+has looked for the piece, and that of the overlap has been matched anew."""
 
 _SURE = 0.9
 """Credibility of what surfaces share from which on no other map is looked for: of the 36 pairs of ``python -m
@@ -63,7 +63,7 @@ tests.benchmarks.partial_pairs --pairs 12 --kept 0.75,0.6,0.45`` 14 have as much
 one person that was turned back to front 0.65."""
 
 _HOPELESS = 0.1
-"""Confidence up to which a match of surfaces as they are is not worth more than one of what they might share."""
+"""Confidence that a match of all of two surfaces needs at least to be preferred to one of what they share."""
 
 _SMALL = 8000
 """Vertices up to which a mesh is prepared sooner than it is sent."""

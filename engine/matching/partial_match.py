@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Match surfaces one of which shows only a part of what the other does."""
+"""Matching of two surfaces one of which shows only a part of the other."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..runtime.progress import Steps, part_of, within
 from ..shapes.borders import has_border
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.shape import Shape
-from .overlap_region import CoveredPart, continued, covered_parts_steps
+from .covered_parts import CoveredPart, continued, covered_parts_steps
 from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
 

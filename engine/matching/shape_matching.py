@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Match two surfaces as they are: some points exactly, then more of them, then all vertices."""
+"""Matching of two surfaces as they are: some points exactly, then more of them, then all vertices."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Registers dense meshes once more, with details that the coarse surfaces that were matched do not have."""
+"""Second registration of dense meshes, for details that the coarse surfaces before did not have."""
 
 from __future__ import annotations
 

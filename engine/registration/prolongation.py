@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From the match of two coarse meshes to a map of every vertex of the dense ones."""
+"""Prolongation of the match of two coarse meshes to every vertex of the dense ones."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a mesh as artists leave it to surfaces that can be matched."""
+"""Cleaning: surfaces that can be matched, from a mesh as artists leave it."""
 
 from __future__ import annotations
 

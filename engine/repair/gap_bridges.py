@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Solids that are near each other made one."""
+"""Bridges across the gaps between solids that are near each other."""
 
 from __future__ import annotations
 

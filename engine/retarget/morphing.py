@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shapes between two poses of one surface: parts that turn go around, and are not shrunk on a straight way."""
+"""In-betweens of two poses of one surface: parts that turn do so, and do not shrink on a straight way."""
 
 from __future__ import annotations
 

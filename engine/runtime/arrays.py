@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Types of arrays by short names, the least divisor, and small functions of arrays of indices and of vectors."""
+"""Types of arrays by short names, and small functions of arrays."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps OpenBLAS, which NumPy and SciPy carry, to the thread that calls it."""
+"""Threads of the OpenBLAS libraries of NumPy and SciPy: kept to the one that calls them."""
 
 from __future__ import annotations
 

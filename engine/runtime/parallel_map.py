@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Do the same with several items, some of them in other processes."""
+"""The same work on several items, some of it in other processes."""
 
 from __future__ import annotations
 

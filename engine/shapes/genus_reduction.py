@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces cut open where they hang together and the ones that they are matched to do not."""
+"""Genus reduction: handles are cut that only one of two surfaces has, or that both have in different places."""
 
 from __future__ import annotations
 

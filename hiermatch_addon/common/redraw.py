@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Have something drawn again after what it shows has changed by itself."""
+"""Redrawing of sidebars and views whose content has changed by itself."""
 
 from __future__ import annotations
 

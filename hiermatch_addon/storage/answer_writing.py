@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write an answer of a match that is kept on two meshes anew: another answer, or other maps."""
+"""Writing of another answer, or of other maps, of a match that two meshes keep."""
 
 from __future__ import annotations
 

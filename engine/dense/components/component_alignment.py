@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lays a part of one mesh onto the part of another that it belongs to."""
+"""Alignment of a loose piece of one mesh with its partner on the other."""
 
 from __future__ import annotations
 

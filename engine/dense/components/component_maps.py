@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a map of the main part of a mesh to a map of every vertex: what is beside the main part follows it."""
+"""Maps of every vertex from the map of the main part: what is beside that follows it."""
 
 from __future__ import annotations
 

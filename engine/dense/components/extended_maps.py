@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From maps of the main parts of two meshes, there and back, to maps of all their vertices, and their confidence."""
+"""Maps of all vertices of two meshes, there and back, from those of their main parts, and their confidence."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeping a search away from a matching already found."""
+"""Exclusion of a matching already found from a search."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Match two surfaces that may share only a part of what they show."""
+"""Matching of two surfaces that may share only a part of what they show."""
 
 from __future__ import annotations
 

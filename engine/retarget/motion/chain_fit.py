@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bones that do together what others do in the source, turned so that all they carry lies where the source has it."""
+"""Rotations of chains of bones that stand for others of another number: what they carry lies as in the source."""
 
 from __future__ import annotations
 

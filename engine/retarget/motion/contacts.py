@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""When feet stand on the ground, and where they have to stay meanwhile."""
+"""Contacts of feet with the ground: when they stand, and where they have to stay meanwhile."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bones of a rig that are mirror images of each other, left and right, told by the joints; and what is so of both."""
+"""Bones of a rig that are mirror images of each other, by their joints, and rotations evened out between them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rest poses told apart from builds: trunks and feet that are turned a little are built unlike, and not bent unlike."""
+"""Rotations between rest poses: trunks and feet that differ little are built otherwise, and not posed otherwise."""
 
 from __future__ import annotations
 

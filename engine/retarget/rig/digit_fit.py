@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hands and paws: several digits that look alike are easily taken for one another, so that many poses are tried."""
+"""Fitting of hands and paws from many poses, as digits are easily taken for one another."""
 
 from __future__ import annotations
 

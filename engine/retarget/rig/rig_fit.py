@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A rig is fitted into another body, and the map between the two becomes better for it."""
+"""Fitting of a rig into another body, and a better map between the two by it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shape keys of a body, which what it wears follows: a wide belly, breasts, a squat."""
+"""Shape keys of clothes that follow those of the body: a wide belly, breasts, a squat."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from engine import (
     match,
     match_steps,
 )
-from engine.matching.overlap_region import CoveredPart
+from engine.matching.covered_parts import CoveredPart
 from engine.matching.partial_match import agreed_part_steps, part_matched_steps
 from engine.matching.refinement import refine_map
 from engine.matching.shape_matching import MatchTask, matched_steps

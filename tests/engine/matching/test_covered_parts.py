@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, SurfaceMap, SurfacePoints, TriangleMesh
-from engine.matching.overlap_region import best_and_rivals, continued, covered_parts_steps
+from engine.matching.covered_parts import best_and_rivals, continued, covered_parts_steps
 from engine.runtime.progress import run
 from tests.shapes import compacted, creature, cylinder
 

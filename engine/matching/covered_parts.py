@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The region of a surface that is covered by a part of it."""
+"""Covered parts: what of a whole surface is covered by a surface that shows only a part of it."""
 
 from __future__ import annotations
 
