@@ -14,6 +14,7 @@ from ..runtime.progress import Steps, in_turn, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
 from .dense_hypotheses import MapHypothesis, SparseStart, map_hypotheses_steps
+from .laid_start import laid_start
 
 _PENALTY = 20.0
 """What a map's score rises by for each sqrt(area) that the images of landmarks are from their partners."""
@@ -26,6 +27,11 @@ _START_LANDMARKS = 3
 
 _MIRROR = 1.0
 """By how much a mirrored map has to be more credible: seen from outside, surfaces correspond without mirroring."""
+
+_NEARER = 0.5
+"""And how near it has to take landmarks to their partners, in units of how near others do.  Between bodies of other
+proportions all rough maps are far off: without it, two of five matches of a knight with a large head, its hands and
+feet given, were mirrored, see ``python -m tests.benchmarks.maker_rigs --guided``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,22 +109,29 @@ def steered_hypotheses_steps(
     Steered
         Hypotheses with the source or its reflection, their scores raised by what contradicts the landmarks.
     """
-    count = len(landmarks)
-    if count >= _START_LANDMARKS:
-        starts = [*starts, SparseStart(x.samples.rows[:count], y.samples.rows[:count], "landmarks")]
-    hypotheses = yield from within(map_hypotheses_steps(x, y, starts, search=search), 0.0, 0.4)
-    natural = next((h for h in hypotheses if h.orientation > 0), hypotheses[0])
+    own = _starts(x, y, len(landmarks))
+    hypotheses = yield from within(map_hypotheses_steps(x, y, [*starts, *own], search=search), 0.0, 0.4)
+    natural = _natural(hypotheses) or hypotheses[0]
     direct = _judged(x, y, landmarks, hypotheses)
     if agrees(x, y, landmarks, natural):
         return Steered(x, mirrored=False, hypotheses=direct)
-    direct = yield from within(_completed_steps(x, y, starts, landmarks, direct), 0.4, 0.5)
+    direct = yield from within(_completed_steps(x, y, [*starts, *own], landmarks, direct), 0.4, 0.5)
     reflection = x.reflected()
+    starts = [*starts, *_starts(reflection, y, len(landmarks))]
     found = yield from within(map_hypotheses_steps(reflection, y, starts, search=search), 0.5, 0.9)
     mirrored = _judged(reflection, y, landmarks, found)
     mirrored = yield from within(_completed_steps(reflection, y, starts, landmarks, mirrored), 0.9, 1.0)
-    if _best(mirrored) + _MIRROR < _best(direct):
+    best, other = _natural(direct), _natural(mirrored)
+    if other is not None and (best is None or _contradicts((x, best), (reflection, other), y, landmarks)):
         return Steered(reflection, mirrored=True, hypotheses=mirrored)
     return Steered(x, mirrored=False, hypotheses=direct)
+
+
+def _starts(x: Shape, y: Shape, count: int) -> list[SparseStart]:
+    """Start from landmarks, if there are enough: as they are, and with what lies on each other where they coincide."""
+    if count < _START_LANDMARKS:
+        return []
+    return [SparseStart(x.samples.rows[:count], y.samples.rows[:count], "landmarks"), laid_start(x, y, count)]
 
 
 def _completed_steps(
@@ -140,6 +153,14 @@ def _judged(x: Shape, y: Shape, landmarks: Landmarks, hypotheses: Iterable[MapHy
     return sorted(judged, key=lambda h: h.score)
 
 
-def _best(hypotheses: list[MapHypothesis]) -> float:
-    """Score of the most credible map that keeps the orientation; inf if there is none."""
-    return min((h.score for h in hypotheses if h.orientation > 0), default=float("inf"))
+def _natural(hypotheses: list[MapHypothesis]) -> MapHypothesis | None:
+    """Return the most credible map that keeps the orientation, if there is one; they are sorted."""
+    return next((h for h in hypotheses if h.orientation > 0), None)
+
+
+def _contradicts(
+    direct: tuple[Shape, MapHypothesis], mirrored: tuple[Shape, MapHypothesis], y: Shape, landmarks: Landmarks
+) -> bool:
+    """Say whether landmarks ask for a mirrored map: it is more credible, and they speak clearly for it."""
+    near, far = (landmark_distance(x, y, landmarks, hypothesis) for x, hypothesis in (mirrored, direct))
+    return mirrored[1].score + _MIRROR < direct[1].score and near <= _NEARER * far

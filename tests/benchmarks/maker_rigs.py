@@ -51,7 +51,7 @@ ANIMALS = {
 LIMBS = {
     "upper_arm": r"upper_?arm|(left|right) arm",
     "lower_arm": r"lower_?arm|(left|right) elbow",
-    "hand": r"hand|wrist",
+    "hand": r"hand|(left |right )?wrist",
     "upper_leg": r"thigh|upper_?leg|(left|right) leg",
     "lower_leg": r"calf|lower_?leg|(left|right) knee",
     "foot": r"foot|(left|right) ankle",
@@ -171,6 +171,26 @@ def heights(meshes):
     return float(together.min()), float(together.max())
 
 
+def tips(rig, meshes):
+    """Numbers of the vertices at the ends of hands and feet, as a person clicks on them."""
+    ends = {}
+    for bone in rig.data.bones:
+        above = [one for one in (bone, *bone.parent_recursive) if (limb(one.name, LIMBS) or "-")[0] in ("hand", "foot")]
+        if above:
+            ends[bone.name] = limb(above[-1].name, LIMBS), rig.matrix_world @ above[-1].head_local
+    farthest, first = {}, 0
+    for obj in sorted(meshes, key=lambda obj: obj.name):
+        names = {group.index: group.name for group in obj.vertex_groups}
+        for vertex in obj.data.vertices:
+            most = max(vertex.groups, key=lambda group: group.weight, default=None)
+            if most is not None and names[most.group] in ends:
+                what, joint = ends[names[most.group]]
+                far = (obj.matrix_world @ vertex.co - joint).length
+                farthest[what] = max(farthest.get(what, (0.0, -1)), (far, first + vertex.index))
+        first += len(obj.data.vertices)
+    return {what: number for what, (_, number) in farthest.items()}
+
+
 def paired(rows, source, target):
     """How many limb bones of the target are paired right, of how many, and how many with the other side."""
     known = {limb(bone.name) for bone in source.data.bones} - {None}
@@ -203,6 +223,12 @@ def row(folder, names, options):
     bpy.context.view_layer.update()
     rests = [heights(meshes) for meshes in (its, others)]
     source.data.pose_position = "POSE"
+    if options.guided:
+        here, there = tips(source, its), tips(target, others)
+        for what in sorted(here.keys() & there.keys()):
+            bpy.ops.hiermatch.add_landmark(
+                source=source.name, target=target.name, source_vertex=here[what], target_vertex=there[what]
+            )
     begin = time.process_time()
     bpy.ops.hiermatch.pair_bones(source=source.name, target=target.name, accept_doubtful=True)
     between = time.process_time()
@@ -247,6 +273,7 @@ def main():
     parser.add_argument("--data", type=Path, required=True, help="folder with the characters")
     parser.add_argument("--only", help="pairs of files, SOURCE:TARGET,... (default: all of other makers)")
     parser.add_argument("--feet", action="store_true", help="keep feet on the ground")
+    parser.add_argument("--guided", action="store_true", help="give the tips of hands and feet as landmarks")
     parser.add_argument("--save", type=Path, help="folder for a .blend of each pair")
     parser.add_argument("--strips", type=Path, help="folder for a picture of each pair")
     options = parser.parse_args()

@@ -9,7 +9,7 @@ import pytest
 
 from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
 from engine.dense import dense_registration as dense_map
-from engine.dense import proposers
+from engine.dense import proposers, registered_hypotheses
 from engine.dense.credibility import probability_in_place, probability_turned
 from engine.dense.dense_hypotheses import Selection, SparseStart, assessed_everywhere, map_hypotheses_steps
 from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
@@ -21,6 +21,7 @@ from engine.geometry.procrustes import agreement_in_place
 from engine.registration.elastic import ElasticSurface
 from engine.registration.positional_constraints import Ties
 from engine.registration.registration import SOFT, register_steps
+from engine.runtime.parallel_map import here_steps
 from engine.shapes.landmarks import LandmarkPlaces, Landmarks
 from tests.bodies import fish, mirrored_body
 from tests.shapes import icosphere, rotation
@@ -43,6 +44,13 @@ def errors(points, triangles, own, other, area):
 def start_from(x, y, vertices_x, vertices_y, origin="given"):
     rows = x.solver.distances(np.asarray(vertices_x)) / x.scale
     return SparseStart(rows, y.solver.distances(np.asarray(vertices_y)) / y.scale, origin)
+
+
+@pytest.fixture(autouse=True)
+def here(request):
+    """Where a function is replaced, register all in this process: another one would not know of that."""
+    if "monkeypatch" in request.fixturenames:
+        request.getfixturevalue("monkeypatch").setattr(registered_hypotheses, "shared_steps", here_steps)
 
 
 @pytest.fixture(scope="module")

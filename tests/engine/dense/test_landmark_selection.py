@@ -69,7 +69,11 @@ def proposing(monkeypatch, direct, mirrored, alone=()):
         yield Progress(0.0, "Proposing")
         return list(alone if domains is not None else mirrored if x.is_reflection else direct)
 
+    def laid(x, y, count):
+        return SparseStart(x.samples.rows[:count], y.samples.rows[:count], "mirrored" if x.is_reflection else "laid")
+
     monkeypatch.setattr(landmark_selection, "map_hypotheses_steps", steps)
+    monkeypatch.setattr(landmark_selection, "laid_start", laid)
     return asked
 
 
@@ -130,8 +134,8 @@ def test_mirrored_maps_of_the_reflection_do_not_count(monkeypatch):
     assert not run(steered_hypotheses_steps(x, y, [], landmarks)).mirrored
 
 
-@pytest.mark.parametrize(("count", "own"), [(2, []), (3, ["landmarks"])])
-def test_enough_landmarks_are_a_start_of_their_own(monkeypatch, count, own):
+@pytest.mark.parametrize(("count", "own"), [(2, []), (3, ["landmarks", "laid"])])
+def test_enough_landmarks_are_starts_of_their_own(monkeypatch, count, own):
     x, y, landmarks = scene([(2, 2), (9, 9), (15, 15)][:count])
     asked = proposing(monkeypatch, [LineMap(SAME, SAME)], [])
     other = SparseStart(x.samples.rows[:1], y.samples.rows[:1], "elsewhere")
@@ -144,11 +148,13 @@ def test_starts_are_followed_alone_where_no_map_agrees(monkeypatch):
     better = LineMap(MIRROR, MIRROR, 5.0, 1.0, "alone")
     asked = proposing(monkeypatch, [LineMap(SAME, SAME)], [LineMap(SAME, SAME, 1.0)], [better])
     found = run(steered_hypotheses_steps(x, y, [], landmarks))
-    assert [(mirrored, alone) for mirrored, _, _, alone in asked] == [
-        (False, False),
-        (False, True),
-        (True, False),
-        (True, True),
+    assert [(mirrored, origins) for mirrored, origins, _, _ in asked] == [
+        (False, ["landmarks", "laid"]),
+        (False, ["landmarks"]),
+        (False, ["laid"]),
+        (True, ["landmarks", "mirrored"]),
+        (True, ["landmarks"]),
+        (True, ["mirrored"]),
     ]
     assert not any(search for _, _, search, alone in asked if alone)
     assert not found.mirrored
@@ -161,4 +167,13 @@ def test_progress_grows(monkeypatch):
     proposing(monkeypatch, [LineMap(SAME, SAME)], [LineMap(SAME, SAME)], [LineMap(SAME, SAME)])
     fractions = [step.fraction for step in steered_hypotheses_steps(x, y, [], landmarks)]
     assert fractions == sorted(fractions)
-    assert len(set(fractions)) == 4
+    assert len(set(fractions)) == 6
+
+
+@pytest.mark.parametrize(("off", "mirrored"), [(2, True), (4, False)])
+def test_a_mirrored_map_is_taken_only_if_it_is_clearly_nearer_to_the_landmarks(monkeypatch, off, mirrored):
+    x, y, landmarks = scene([(4, 9)])  # five vertices from where the direct map leads
+    other = np.full(COUNT, 9 + off)
+    back = np.full(COUNT, 4 + off)
+    proposing(monkeypatch, [LineMap(SAME, SAME, 9.0)], [LineMap(other, back, 1.0)])
+    assert run(steered_hypotheses_steps(x, y, [], landmarks)).mirrored is mirrored

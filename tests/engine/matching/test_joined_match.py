@@ -101,6 +101,17 @@ def test_wrong_landmarks_are_refused_in_words(whole, modular):
         match(whole[0], modular.mesh, QUICK, landmarks=[(0, 10**6)])
 
 
+def test_of_landmarks_on_pieces_that_is_named_which_is_on_none_of_the_body(whole, modular):
+    paw = int(np.linalg.norm(whole[1] - [0.45, 0.2, -1.03], axis=1).argmin())
+    target = int(np.linalg.norm(modular.rest - [0.45, 0.2, -1.03], axis=1).argmin())
+    body = modular.mesh.vertices, modular.mesh.triangles
+    ball, faces = icosphere(1)
+    mesh = TriangleMesh(*together(body, (0.02 * ball + [5.0, 5.0, 5.0], faces)))
+    stray = mesh.vertex_count - 1
+    with pytest.raises(MatchError, match=f"Landmark 2 is at vertex {stray} of the target"):
+        match(whole[0], mesh, QUICK, landmarks=[(paw, target), (0, stray)])
+
+
 def test_points_and_maps_of_joined_bodies_are_understood(result, whole, modular):
     """What a match gave can be extended, measured and refined, though much of it is not on the main piece."""
     meshes = whole[0], modular.mesh
