@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -50,6 +52,11 @@ def ranges(starts: Ints, counts: Ints) -> Ints:
     """List so many numbers, (k,), from each of some starts (k,) on, one range after the other."""
     before = np.cumsum(counts) - counts
     return np.arange(counts.sum()) + np.repeat(starts - before, counts)
+
+
+def slices(count: int, size: int) -> Iterator[slice]:
+    """Part so many rows into slices of a size, of which the last may be shorter."""
+    return (slice(start, min(start + size, count)) for start in range(0, count, size))
 
 
 def unit_vectors(vectors: Floats, least: float = 0.0) -> Floats:

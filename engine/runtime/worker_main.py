@@ -20,17 +20,13 @@ from .progress import Preview, Progress, Steps, run, told
 READY = b"A helper of HierMatch is ready.\n"
 """What is written before the first reply."""
 
-_IDLE = 60.0
-"""Seconds after which a helper that nothing is asked of ends: it holds some hundred megabytes."""
-
-
 _TOLD = 0.05
 """Least time in seconds between two messages that say how far the work is."""
 
 Result = TypeVar("Result")
 
 
-def serve(idle: float = _IDLE) -> None:
+def serve(idle: float) -> None:
     """Carry out one order after the other until the other side is gone, or wants nothing for long.
 
     An order is a message with two lists of numbers, what to forget and what comes new, and whether it is followed: then

@@ -5,12 +5,27 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from engine.runtime.arrays import group_means, group_sums, marked, numbered, ranges, squared_differences, unit_vectors
+from engine.runtime.arrays import (
+    group_means,
+    group_sums,
+    marked,
+    numbered,
+    ranges,
+    slices,
+    squared_differences,
+    unit_vectors,
+)
 
 
 def test_places_are_marked_whatever_the_shape_of_their_array():
     np.testing.assert_array_equal(marked(np.array([[0, 2], [2, 3]]), 5), [True, False, True, True, False])
     assert not marked(np.empty(0, np.int64), 2).any()
+
+
+def test_slices_part_all_rows():
+    assert [list(range(10))[part] for part in slices(10, 4)] == [[0, 1, 2, 3], [4, 5, 6, 7], [8, 9]]
+    assert list(slices(4, 4)) == [slice(0, 4)]
+    assert list(slices(0, 4)) == []
 
 
 def test_places_are_numbered_in_their_order():
