@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from ..runtime.arrays import TINY, Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints, ranges, slices
 from ..runtime.errors import MeshError
 from ..runtime.worker import search_threads
 from .triangle_mesh import TriangleMesh
@@ -359,8 +359,7 @@ class ClosestPoints:
             raise MeshError("A search along the surface starts at a vertex without a triangle. Delete loose vertices.")
         k = len(points)
         triangles, barycentric, squared_distances = np.empty(k, np.int64), np.empty((k, 3)), np.empty(k)
-        for first in range(0, k, _BLOCK):
-            part = slice(first, first + _BLOCK)
+        for part in slices(k, _BLOCK):
             penalty = None
             if normals is not None and normal_weight:
                 chunk = np.ascontiguousarray(normals[part].T)
@@ -410,10 +409,7 @@ class _Rings:
     def around(self, vertices: Ints) -> tuple[Ints, Ints]:
         """Places around vertices (k,): all of them (p,), and how many each vertex has (k,)."""
         counts = self.counts.take(vertices)
-        ends = np.cumsum(counts)
-        places: Ints = np.repeat(self.starts.take(vertices) - ends + counts, counts)
-        places += np.arange(len(places))
-        return places, counts
+        return ranges(self.starts.take(vertices), counts), counts
 
 
 @dataclass(frozen=True, eq=False)

@@ -41,13 +41,11 @@ class MirrorPlane:
 
     def reflected(self, points: Floats) -> Floats:
         """Mirror points (n, 3)."""
-        away: Floats = points - 2 * np.outer((points - self.middle) @ self.axis, self.axis)
-        return away
+        return points - 2 * np.outer((points - self.middle) @ self.axis, self.axis)
 
     def reflected_directions(self, directions: Floats) -> Floats:
         """Mirror directions (n, 3), which have no place."""
-        away: Floats = directions - 2 * np.outer(directions @ self.axis, self.axis)
-        return away
+        return directions - 2 * np.outer(directions @ self.axis, self.axis)
 
     def is_along(self, other: MirrorPlane, cosine: float = _SAME_AXIS) -> bool:
         """Tell whether another plane has nearly the same direction."""

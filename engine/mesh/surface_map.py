@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, slices
 from ..runtime.errors import MatchError
 from .closest_points import ClosestPoints
 from .surface_points import SurfacePoints
@@ -180,7 +179,7 @@ class SurfaceMap:
             return array[self.nearest_vertices]
         flat = array.reshape(len(array), -1)
         carried = np.empty((len(self), flat.shape[1]), np.result_type(flat, np.float64))
-        for part in _parts(len(self)):
+        for part in slices(len(self), _CHUNK):
             weights, corners = self.barycentric[part], self.corners[part]
             carried[part] = weights[:, :1] * flat[corners[:, 0]]
             for corner in (1, 2):
@@ -280,7 +279,7 @@ class SurfaceMap:
         self._check(domain, image)
         normals = self.transfer(image.vertex_normals)
         signs = np.empty(domain.triangle_count, np.int8)
-        for part in _parts(domain.triangle_count):
+        for part in slices(domain.triangle_count, _CHUNK):
             corners = domain.triangles[part]
             a, b, c = (self.positions[corner] for corner in corners.T)
             sides = np.stack([b - a, c - a, c - b])
@@ -309,8 +308,3 @@ class SurfaceMap:
                 f"The map leads to a mesh of {self.image_vertex_count} vertices, "
                 f"but the mesh given as its image has {image.vertex_count}."
             )
-
-
-def _parts(count: int) -> Iterator[slice]:
-    """Slices of so many rows."""
-    return (slice(start, start + _CHUNK) for start in range(0, count, _CHUNK))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import coo_array, csr_array, diags_array, eye_array
 
 from ...runtime.arrays import Floats, Ints
 from ..triangle_mesh import TriangleMesh
@@ -24,6 +24,12 @@ def pair_matrix(pairs: Ints, values: Floats, count: int) -> csr_array:
     """Return the symmetric matrix (count, count) with a value (k,) for each of some pairs of indices, (k, 2)."""
     ends = np.concatenate([pairs, pairs[:, ::-1]]).T
     return csr_array(coo_array((np.tile(values, 2), ends), shape=(count, count)))
+
+
+def averaging(neighbours: csr_array) -> csr_array:
+    """Make of ones between neighbours, (n, n), the matrix that mixes each by half with the mean of its neighbours."""
+    degrees = np.maximum(neighbours.sum(axis=1), 1)
+    return csr_array(eye_array(len(degrees)) / 2 + diags_array(0.5 / degrees) @ neighbours)
 
 
 def edge_means(mesh: TriangleMesh, values: Floats) -> Floats:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.mesh.connectivity.adjacency import edge_graph, neighbour_means, vertex_adjacency
+from engine.mesh.connectivity.adjacency import averaging, edge_graph, neighbour_means, vertex_adjacency
 from tests.shapes import icosphere, permuted, plane
 
 
@@ -33,6 +33,12 @@ def test_the_matrix_joins_just_the_corners_of_triangles(mesh):
     for vertex, others in enumerate(neighbours(mesh)):
         expected[vertex, list(others)] = 1
     np.testing.assert_array_equal(matrix, expected)
+
+
+def test_averaging_takes_half_of_each_and_half_of_its_neighbours(mesh):
+    values = mesh.vertices @ [1.0, 2.0, 3.0]
+    around = [np.mean(values[list(others)]) if others else 0.0 for others in neighbours(mesh)]
+    np.testing.assert_allclose(averaging(vertex_adjacency(mesh)) @ values, (values + around) / 2, atol=1e-12)
 
 
 def test_edges_have_their_lengths_in_both_directions(mesh):
