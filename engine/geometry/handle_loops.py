@@ -8,7 +8,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
 from ..mesh.connectivity.adjacency import neighbour_means
-from ..mesh.connectivity.boundary_loops import boundary_loops
+from ..mesh.connectivity.boundary_loops import BoundaryLoops, boundary_loops
 from ..mesh.connectivity.edge_chains import way_to_root
 from ..mesh.connectivity.halfedges import twins_of
 from ..mesh.triangle_mesh import TriangleMesh
@@ -26,18 +26,14 @@ tests.benchmarks.fused_bodies``)."""
 _SADDLE = 0.1
 """By how much the angles around a vertex exceed a full turn, in radians, for a narrow place to count as a crease."""
 
-_SMOOTHING = 1
-"""How often curvature is averaged over neighbours."""
-
 _LAST_ROOTS = 12
 """The same of the shortest of those."""
 
 
 def genus(mesh: TriangleMesh) -> int:
     """Count the handles of a connected, oriented manifold: 0 for a sphere or a disc, 1 for a torus."""
-    ends = _Ends(mesh).count
     characteristic = mesh.vertex_count - len(mesh.edges) + mesh.triangle_count
-    return (2 - ends - characteristic) // 2
+    return (2 - _ends(mesh)[1].count - characteristic) // 2
 
 
 def shortest_handle_loop_steps(mesh: TriangleMesh, lids: Bools | None = None) -> Steps[Ints]:
@@ -81,23 +77,20 @@ def shortest_handle_loop_steps(mesh: TriangleMesh, lids: Bools | None = None) ->
     return best[1]
 
 
-class _Ends:
-    """The loops in which a surface ends."""
-
-    def __init__(self, mesh: TriangleMesh) -> None:
-        twins = twins_of(mesh.vertices, mesh.triangles)
-        loops = boundary_loops(mesh.vertices, mesh.triangles, np.flatnonzero(twins < 0))
-        self.twins, self.half_edges, self.labels, self.count = twins, loops.half_edges, loops.labels, loops.count
+def _ends(mesh: TriangleMesh) -> tuple[Ints, BoundaryLoops]:
+    """Pair the half-edges of a surface, and find the loops in which it ends."""
+    twins = twins_of(mesh.vertices, mesh.triangles)
+    return twins, boundary_loops(mesh.vertices, mesh.triangles, np.flatnonzero(twins < 0))
 
 
 class _Loops:
     """Finds the shortest loops through a vertex that no disc is spanned by."""
 
     def __init__(self, mesh: TriangleMesh, lids: Bools | None = None) -> None:
-        ends = _Ends(mesh)
+        twins, ends = _ends(mesh)
         tails = mesh.triangles.ravel()
         heads = np.roll(mesh.triangles, -1, axis=1).ravel()
-        once = np.flatnonzero((ends.twins < 0) | (ends.twins > np.arange(len(tails))))
+        once = np.flatnonzero((twins < 0) | (twins > np.arange(len(tails))))
         self._tails, self._heads = tails[once], heads[once]
         lengths = np.linalg.norm(mesh.vertices[self._tails] - mesh.vertices[self._heads], axis=1)
         creased = _creased(mesh)
@@ -108,7 +101,7 @@ class _Loops:
         lengths = np.maximum(lengths, float(np.finfo(float).eps * lengths.max()))
         self._lengths = np.where(in_crease, _CREASE * lengths, lengths)
         # On either side of an edge is a triangle, or what would close the loop that the surface ends in.
-        other = ends.twins // 3
+        other = twins // 3
         other[ends.half_edges] = mesh.triangle_count + ends.labels
         self._sides = np.sort(np.stack([once // 3, other[once]], axis=1), axis=1)
         self._side_count = mesh.triangle_count + ends.count
@@ -161,9 +154,7 @@ def _creased(mesh: TriangleMesh) -> Bools:
         sines = np.linalg.norm(np.cross(first, second), axis=1)
         angles = np.arctan2(sines, np.einsum("md,md->m", first, second))
         excess += np.bincount(vertices, angles, mesh.vertex_count)
-    for _ in range(_SMOOTHING):
-        mean, excess = neighbour_means(mesh, mean), neighbour_means(mesh, excess)
-    return (mean < 0) | (excess > _SADDLE)
+    return (neighbour_means(mesh, mean) < 0) | (neighbour_means(mesh, excess) > _SADDLE)
 
 
 def _closed(one: list[int], other: list[int]) -> Ints:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..runtime.arrays import TINY, Bools, Floats, unit_vectors
+from ..runtime.arrays import TINY, Bools, Floats, slices, unit_vectors
 
 _TURNS = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], np.float64)
 """No turn and the half turns around the axes: after one of them any rotation is less than 121 degrees from none."""
@@ -129,8 +129,7 @@ def nearest_rotations(matrices: Floats) -> Floats:
     if len(matrices) <= _FEW:
         return _by_singular_values(matrices)
     rotations = np.empty(matrices.shape)
-    for first in range(0, len(matrices), _BLOCK):
-        part = slice(first, first + _BLOCK)
+    for part in slices(len(matrices), _BLOCK):
         rotations[part] = _of_block(matrices[part])
     return rotations
 
