@@ -9,8 +9,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..mesh.area_samples import even_samples
-from ..mesh.connectivity.components import triangle_components
-from ..mesh.connectivity.halfedges import twins_of
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats
@@ -73,8 +71,7 @@ def body_pieces(pieces: Sequence[TriangleMesh]) -> Bools:
 def _seen(mesh: TriangleMesh, area: float) -> tuple[Floats, Floats]:
     """Spread points over a piece, each of which stands for an area: places and outward normals, (s, 3) each."""
     samples = even_samples(mesh, area)
-    twins = twins_of(mesh.vertices, mesh.triangles)
-    components = triangle_components(twins)
-    inward = (enclosed_volumes(mesh.vertices, mesh.triangles, twins, components) < 0)[components]
+    components, volumes = enclosed_volumes(mesh)
+    inward = (volumes < 0)[components]
     outward = np.where(inward[:, None], -mesh.triangle_normals, mesh.triangle_normals)
     return samples.positions, outward[samples.triangles]

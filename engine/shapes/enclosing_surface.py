@@ -11,8 +11,6 @@ from scipy.spatial import cKDTree
 
 from ..mesh.area_samples import even_samples
 from ..mesh.closest_points import ClosestPoints, facing
-from ..mesh.connectivity.components import triangle_components
-from ..mesh.connectivity.halfedges import twins_of
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.triangle_mesh import TriangleMesh
@@ -234,8 +232,7 @@ def _skin_steps(pieces: tuple[SurfacePart, ...], taking_part: Bools, thin: Bools
 def _midst(piece: SurfacePart, spacing: float) -> Floats:
     """Spread points (k, 3) within a piece, below its surface by its volume over its area; none in a sheet."""
     mesh = _Body.of([piece]).mesh
-    twins = twins_of(mesh.vertices, mesh.triangles)
-    volume = enclosed_volumes(mesh.vertices, mesh.triangles, twins, triangle_components(twins)).sum()
+    volume = enclosed_volumes(mesh)[1].sum()
     if volume < _FLAT * mesh.area**1.5:
         return np.zeros((0, 3))
     samples = even_samples(mesh, spacing**2 / 4)
@@ -251,8 +248,7 @@ def _between(pieces: tuple[SurfacePart, ...], reached: Bools, lost: Bools) -> Bo
         for number in np.flatnonzero(side):
             tree = cKDTree(samples[number])
             counts += [np.isfinite(tree.query(own, distance_upper_bound=near)[0]).any() for own in samples]
-    found: Bools = ((touching[1] > 0) | (areas <= areas[lost].max())) & (touching.sum(axis=0) > 1)
-    return found
+    return ((touching[1] > 0) | (areas <= areas[lost].max())) & (touching.sum(axis=0) > 1)
 
 
 def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> Bools:
@@ -291,9 +287,7 @@ class _Body:
     def of(cls, pieces: list[SurfacePart]) -> _Body:
         """Turn pieces outward."""
         together = TriangleMesh.concatenated([piece.mesh for piece in pieces])
-        twins = twins_of(together.vertices, together.triangles)
-        components = triangle_components(twins)
-        volumes = enclosed_volumes(together.vertices, together.triangles, twins, components)
+        components, volumes = enclosed_volumes(together)
         inward = (volumes < 0)[components]
         areas = np.bincount(components, together.triangle_areas)
         has_inside = (np.abs(volumes) >= _FLAT * areas**1.5) | (areas == areas.max())

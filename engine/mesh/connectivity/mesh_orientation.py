@@ -9,8 +9,10 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
 from ...runtime.arrays import Bools, Floats, Ints, marked, numbered
+from ..triangle_mesh import TriangleMesh
 from .boundary_loops import BoundaryLoops, boundary_loops
 from .components import neighbour_graph, symmetric_components, triangle_components, triangle_neighbours
+from .halfedges import twins_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,13 +159,15 @@ def inward_components(vertices: Floats, triangles: Ints, twins: Ints, components
     return volumes < -doubt
 
 
-def enclosed_volumes(vertices: Floats, triangles: Ints, twins: Ints, components: Ints) -> Floats:
-    """Volumes of components, (c,), with lids on their openings: below zero if their triangles look inward.
+def enclosed_volumes(mesh: TriangleMesh) -> tuple[Ints, Floats]:
+    """Component of each triangle, (m,), and volumes of the components with lids on their openings, (c,).
 
-    The parameters are those of `inward_components`.
+    A volume is below zero if the triangles look inward.
     """
-    loops = boundary_loops(vertices, triangles, np.flatnonzero(twins < 0))
-    return _enclosed_volumes(vertices, triangles, components, loops)
+    twins = twins_of(mesh.vertices, mesh.triangles)
+    components = triangle_components(twins)
+    loops = boundary_loops(mesh.vertices, mesh.triangles, np.flatnonzero(twins < 0))
+    return components, _enclosed_volumes(mesh.vertices, mesh.triangles, components, loops)
 
 
 def _enclosed_volumes(vertices: Floats, triangles: Ints, components: Ints, loops: BoundaryLoops) -> Floats:
