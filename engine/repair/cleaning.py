@@ -12,7 +12,7 @@ from ..mesh.connectivity.mesh_orientation import inward_components, orient_consi
 from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.connectivity.vertex_welding import weld_boundaries
 from ..mesh.triangle_mesh import TriangleMesh, triangle_areas
-from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked, numbered
+from ..runtime.arrays import Bools, Floats, Ints, group_means, marked, numbered
 from ..runtime.errors import MeshError
 from .border_seams import seam_partners
 from .clean_surface import CleanSurface, SurfacePart
@@ -152,11 +152,9 @@ def _merged(work: _Work, groups: EdgeGroups, representatives: Ints) -> tuple[Edg
     # A welded vertex lies in the middle of its copies, so that their order does not matter.
     involved = np.unique(np.concatenate([moved, representatives[moved]]))
     homes, number = np.unique(representatives[involved], return_inverse=True)
-    shares = np.bincount(number)
     offsets = work.vertices[involved] - work.vertices[representatives[involved]]
-    shift = group_sums(number, offsets, len(homes)) / shares[:, None]
     vertices = work.vertices.copy()
-    vertices[homes] += shift
+    vertices[homes] += group_means(number, offsets, len(homes))
     work.triangles = triangles = representatives[work.triangles]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     work.move(vertices, involved)
@@ -277,11 +275,10 @@ def _in_parts(mesh: TriangleMesh, work: _Work, inward: Bools, representatives: I
         pieces.append(SurfacePart(part_mesh, original_vertices, original_triangles, turned))
 
     images = _images(vertex_parts, work.copied, representatives)
-    parts_of_vertices = vertex_parts[images]
     counts.inverted = bool(inward[order[0]])
     counts.parts = len(areas) - 1
     notes = cleaning_notes(name, counts)
-    return CleanSurface(mesh, tuple(pieces), parts_of_vertices, local[images], notes, counts)
+    return CleanSurface(mesh, tuple(pieces), vertex_parts[images], local[images], notes, counts)
 
 
 def _main_first(work: _Work, areas: Floats) -> Ints:

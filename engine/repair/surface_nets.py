@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.arrays import Floats, Ints, group_sums
+from ..runtime.arrays import Floats, Ints, group_means
 
 _RING = (0, 0), (-1, 0), (-1, -1), (0, -1)
 """Cells around an edge of the grid, by their offsets along the two other axes."""
@@ -60,8 +60,7 @@ def surface_net(values: NDArray[np.float32], level: float = 0.0) -> tuple[Floats
     quads, crossings = np.concatenate(rings), np.repeat(np.concatenate(points), 4, axis=0)
     used, inverse = np.unique(quads, return_inverse=True)
     owners: Ints = inverse.reshape(-1).astype(np.int64)
-    sums = group_sums(owners, crossings, len(used)).astype(np.float64)
-    vertices = sums / np.bincount(owners, minlength=len(used))[:, None].astype(np.float64) - 1
+    vertices = group_means(owners, crossings, len(used)) - 1
     a, b, c, d = owners.reshape(-1, 4).T
     shorter = np.linalg.norm(vertices[a] - vertices[c], axis=1) < np.linalg.norm(vertices[b] - vertices[d], axis=1)
     first = np.where(shorter[:, None], np.stack([a, b, c], axis=1), np.stack([a, b, d], axis=1))
