@@ -147,8 +147,7 @@ class PreparedSurface:
         """
         if not self.proxy.is_identity:
             points = self.proxy.points
-            dense = sum(points.barycentric[:, i] * values[..., points.corners[:, i]] for i in range(3))
-            values = np.asarray(dense)
+            values = np.asarray(sum(points.barycentric[:, i] * values[..., points.corners[:, i]] for i in range(3)))
         whole = np.full((*values.shape[:-1], self.original.vertex_count), outside, np.float64)
         main = self.cleaned.vertex_parts == 0
         whole[..., main] = values[..., self.cleaned.vertex_images[main]]

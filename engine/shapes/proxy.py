@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 
 from ..geometry.symmetric_factor import symmetric_factor
-from ..mesh.closest_points import ClosestPoints
+from ..mesh.closest_points import ClosestPoints, FoundPoints
 from ..mesh.connectivity.components import joined_components
 from ..mesh.edge_splitting import split_longest_edges
-from ..mesh.surface_points import SurfacePoints
+from ..mesh.surface_points import SurfacePoints, interpolation_matrix
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints, group_sums, marked, numbered
+from ..runtime.arrays import Floats, Ints, group_means, marked, numbered, slices
 from ..runtime.progress import Progress, Steps, within
 from .remeshing.dual_triangulation import manifold_part
 from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
@@ -179,13 +179,11 @@ def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
     border = near[np.isin(keys, low * n + high)]
     tail, head = tail[border], head[border]
     loops = np.unique(joined_components(n, tail, head)[tail], return_inverse=True)[1].reshape(-1)
-    lengths = np.bincount(loops, np.linalg.norm(mesh.vertices[tail] - mesh.vertices[head], axis=1))
-    small = lengths < perimeter
+    small = np.bincount(loops, np.linalg.norm(mesh.vertices[tail] - mesh.vertices[head], axis=1)) < perimeter
     closing = small[loops]
     if not closing.any():
         return mesh
-    sizes = np.bincount(loops)
-    centres = group_sums(loops, mesh.vertices[tail], len(sizes)) / sizes[:, None]
+    centres = group_means(loops, mesh.vertices[tail], len(small))
     number = n + np.cumsum(small) - 1
     fans = np.stack([head[closing], tail[closing], number[loops[closing]]], axis=1)
     return TriangleMesh(np.concatenate([mesh.vertices, centres[small]]), np.concatenate([mesh.triangles, fans]))
@@ -212,17 +210,15 @@ def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: Ints) -> Steps[Pr
         part = slice(None, None, _FITS - fit)  # at first, fewer do
         wanted = mesh.vertices[samples[part]]
         found = search.walk(wanted, place[samples[part]])
-        positions = _fitted_positions(search, found.triangles, found.barycentric, wanted, weights[part])
-        search = search.moved(positions)
+        search = search.moved(_fitted_positions(search, found, wanted, weights[part]))
         yield Progress(0.65 + 0.05 * fit, "Simplifying the mesh")
 
     coarse = TriangleMesh(search.vertices, triangles)
     lost = np.flatnonzero(place < 0)
     place[lost] = search.nearest_vertices(mesh.vertices[lost])
     where, barycentric = np.empty(n, np.int64), np.empty((n, 3))
-    for start in range(0, n, _STEP):
-        yield Progress(0.75 + 0.25 * start / n, "Simplifying the mesh")
-        part = slice(start, start + _STEP)
+    for part in slices(n, _STEP):
+        yield Progress(0.75 + 0.25 * part.start / n, "Simplifying the mesh")
         found = search.walk(mesh.vertices[part], place[part])
         where[part], barycentric[part] = found.triangles, found.barycentric
 
@@ -245,15 +241,13 @@ def _first_positions(regions: VoronoiRegions) -> Floats:
     return cells.positions[np.where(cells.at_boundary[ends], ends, seeds)]
 
 
-def _fitted_positions(
-    search: ClosestPoints, triangles: Ints, barycentric: Floats, wanted: Floats, weights: Floats
-) -> Floats:
+def _fitted_positions(search: ClosestPoints, points: FoundPoints, wanted: Floats, weights: Floats) -> Floats:
     """Positions of the vertices, (k, 3), so that points of the surface come as near to where they are wanted as can be.
 
-    The points, (s,), are given by triangles and coordinates, with positions `wanted`, (s, 3), and weights, (s,).
+    The points, (s,), have positions `wanted`, (s, 3), and weights, (s,).
     """
-    k, s = len(search.vertices), len(triangles)
-    interpolate = csr_array((barycentric.ravel(), search.triangles[triangles].ravel(), np.arange(s + 1) * 3), (s, k))
+    k = len(search.vertices)
+    interpolate = interpolation_matrix(points.barycentric, search.triangles[points.triangles], k)
     weighted = csr_array(interpolate.T @ diags_array(weights))
     tether = np.full(k, _TETHER * weights.sum() / k)
     system = weighted @ interpolate + diags_array(tether)

@@ -15,7 +15,7 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import shared_steps
-from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.progress import Progress, Steps, within
 from .shape import Shape
 
 _MEMORY = 256_000_000  # bytes of rows that are kept
@@ -88,7 +88,7 @@ class SurfaceDistances:
         self._rows: dict[int, NDArray[np.float32]] = {}
 
     def prepare_steps(self, points: SurfacePoints) -> Steps[None]:
-        """Compute the rows that distances from some points need, in short steps; see `prepare`."""
+        """Compute the rows that distances from some points need, in short steps, if they are not there yet."""
         needed = np.unique(points.corners[points.barycentric > 0])
         shape = self._shape
         missing = np.setdiff1d(needed, [*self._rows, *shape.samples.vertices[: shape.samples.measured]])
@@ -102,10 +102,6 @@ class SurfaceDistances:
         for part, distances in zip(parts, found, strict=True):
             rows = (distances / shape.scale).astype(np.float32)
             self._rows.update(zip(part.tolist(), rows, strict=True))
-
-    def prepare(self, points: SurfacePoints) -> None:
-        """Compute the rows that distances from some points need, if they are not there yet."""
-        run(self.prepare_steps(points))
 
     def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
         """Compute the rows of the vertices nearest to some points, a third of all that `prepare_steps` computes."""

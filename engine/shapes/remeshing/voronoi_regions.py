@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, group_sums, marked
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, marked, numbered
 from ...runtime.progress import Progress, Steps
 from .dual_triangulation import DualTriangulation, dual_triangulation
 from .sizing_field import vertex_density
@@ -170,6 +170,4 @@ def _nearest_seeds(cells: SurfaceCells, seeds: Ints, limit: float = np.inf) -> t
     distances, _, sources = dijkstra(
         cells.graph, directed=True, indices=seeds, min_only=True, return_predecessors=True, limit=limit
     )
-    number = np.zeros(cells.count, np.int64)
-    number[seeds] = np.arange(len(seeds))
-    return distances, number[np.maximum(sources, 0)]
+    return distances, np.maximum(numbered(seeds, cells.count)[np.maximum(sources, 0)], 0)

@@ -29,7 +29,7 @@ def test_in_the_plane_distances_are_straight(flat):
     points = random_points(flat.mesh, 60)
     # some in one triangle, and some in two that share an edge
     points = SurfacePoints.from_barycentric(flat.mesh, np.append(points.triangles[:40], [0] * 20), points.barycentric)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     # What is left is the error of fast marching at some needles: edges are 0.07 long.
     straight = np.linalg.norm(points.positions[:, None] - points.positions, axis=2) / 3.0
     error = np.abs(distances.between(points) - straight)
@@ -46,7 +46,7 @@ def test_distances_of_a_triangle_to_itself_are_exact(flat):
     random = np.random.default_rng(1)
     points = SurfacePoints.from_barycentric(flat.mesh, np.full(10, 7), random.dirichlet([1, 1, 1], 10))
     distances = SurfaceDistances(flat)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     straight = np.linalg.norm(points.positions[:, None] - points.positions, axis=2) / 3.0
     np.testing.assert_allclose(distances.between(points), straight, atol=1e-6)
 
@@ -55,7 +55,7 @@ def test_on_a_sphere_they_are_closer_than_those_of_the_nearest_vertices():
     shape = shape_of(icosphere(8))
     points = random_points(shape.mesh, 80)
     distances = SurfaceDistances(shape)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     unit = points.positions / np.linalg.norm(points.positions, axis=1, keepdims=True)
     great_circle = np.arccos(np.clip(unit @ unit.T, -1, 1)) / shape.scale
     smooth = great_circle * shape.scale < 2.8  # beyond, other shortest paths are as short
@@ -70,7 +70,7 @@ def test_by_nearest_vertices_they_are_almost_the_same(surface):
     shape = shape_of(surface)
     points = random_points(shape.mesh, 50)
     distances, fewer = SurfaceDistances(shape), SurfaceDistances(shape)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     run(fewer.prepare_nearest_steps(points))
     exact, near = (
         np.square(symmetric_roots(d)) for d in (distances.squares_between(points), fewer.squares_by_nearest(points))
@@ -87,7 +87,7 @@ def test_at_vertices_they_are_the_solvers():
     vertices = np.array([3, 50, 120, 121])
     points = SurfacePoints.at_vertices(shape.mesh, vertices)
     distances = SurfaceDistances(shape)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     rows = shape.solver.distances(vertices) / shape.scale
     squares = distances.squares_to_vertices(points, np.arange(shape.mesh.vertex_count))
     np.testing.assert_allclose(squares, rows**2, atol=1e-6)
@@ -107,7 +107,7 @@ def test_they_are_symmetric_and_continuous_across_edges():
         mesh, np.append(sides, others.triangles), np.concatenate([on_edge.barycentric, others.barycentric])
     )
     distances = SurfaceDistances(shape)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     between = distances.between(points)
     np.testing.assert_array_equal(between, between.T)
     np.testing.assert_allclose(between[0], between[1], atol=1e-6)
@@ -121,17 +121,17 @@ def test_rows_are_computed_once_and_their_memory_is_bounded(monkeypatch):
     monkeypatch.setattr(shape.solver, "distances_in_blocks", lambda rows: asked.extend(rows) or original(rows))
     distances = SurfaceDistances(shape)
     points = random_points(shape.mesh, 30)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     expected = distances.between(points)
     assert sorted(asked) == sorted(set(points.corners.ravel()))
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     assert len(asked) == len(set(asked))
 
     small = SurfaceDistances(shape, memory=4 * shape.mesh.vertex_count * 100)
     for seed in range(6):
-        small.prepare(random_points(shape.mesh, 30, seed))
+        run(small.prepare_steps(random_points(shape.mesh, 30, seed)))
         assert len(small._rows) <= 100  # noqa: SLF001
-    small.prepare(points)
+    run(small.prepare_steps(points))
     np.testing.assert_array_equal(small.between(points), expected)
 
 
@@ -141,7 +141,7 @@ def test_rows_of_the_samples_are_used(monkeypatch):
     monkeypatch.setattr(shape.solver, "distances_in_blocks", lambda rows: pytest.fail("again") if len(rows) else ())
     distances = SurfaceDistances(shape)
     points = SurfacePoints.at_vertices(shape.mesh, shape.samples.vertices)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     np.testing.assert_allclose(distances.between(points), shape.samples.distances, atol=1e-5)
 
 
@@ -151,7 +151,7 @@ def test_estimates_from_the_samples_are_not_used():
     estimated = shape.limited(30, 10)
     distances = SurfaceDistances(estimated)
     points = SurfacePoints.at_vertices(shape.mesh, estimated.samples.vertices)
-    distances.prepare(points)
+    run(distances.prepare_steps(points))
     true = shape.solver.distances(estimated.samples.vertices)[:, estimated.samples.vertices] / shape.scale
     np.testing.assert_allclose(distances.between(points), (true + true.T) / 2, atol=1e-5)
 

@@ -39,7 +39,7 @@ def rest_errors(result, bodies):
 def differences(result, bodies):
     source, target = bodies[:2]
     distances = SurfaceDistances(target)
-    distances.prepare(result.target_points)
+    run(distances.prepare_steps(result.target_points))
     count = len(result.target_points)
     return distances.between(result.target_points) - source.samples.distances[:count, :count]
 
@@ -70,7 +70,7 @@ def test_from_a_true_start_the_points_come_close_to_the_truth(bodies):
     # Rounded to vertices, the same points keep the distances less well.
     rounded = SurfacePoints.at_vertices(bodies[1].mesh, found.target_points.nearest_vertices)
     distances = SurfaceDistances(bodies[1])
-    distances.prepare(rounded)
+    run(distances.prepare_steps(rounded))
     at_vertices = np.square(distances.between(rounded) - bodies[0].samples.distances[:40, :40]).sum()
     assert found.quadratic < 0.7 * at_vertices
 

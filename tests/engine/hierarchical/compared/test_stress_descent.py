@@ -47,7 +47,7 @@ def test_points_at_their_places_stay_there(patch):
         patch.mesh, random.integers(0, patch.mesh.triangle_count, 10), random.dirichlet([1, 1, 1], 10)
     )
     distances = SurfaceDistances(patch)
-    distances.prepare(places)
+    run(distances.prepare_steps(places))
     settled = run(settle_steps(distances, places, Stress(distances.between(places))))
     assert settled.stress == settled.start == 0
     np.testing.assert_array_equal(settled.points.barycentric, places.barycentric)
