@@ -357,10 +357,11 @@ def _rigid_misfits(rest: Floats, images: Floats, weights: Floats) -> tuple[Float
 
 
 def _twists(rotations: Floats, axes: Floats) -> Floats:
-    """Angles (k - 1,) about the axis by which each of the rotations (k, 3, 3) turns more than the one before."""
+    """Angles (k - 1,), -pi to pi, about the axis by which each of the rotations (k, 3, 3) turns more than the last."""
     between = Rotation.from_matrix(rotations[1:] @ rotations[:-1].transpose(0, 2, 1)).as_quat()
     along = np.einsum("kd,kd->k", between[:, :3], unit_vectors(axes[1:] + axes[:-1]))
-    return _wrapped(2 * np.arctan2(along, between[:, 3]))
+    angles = 2 * np.arctan2(along, between[:, 3])
+    return (angles + np.pi) % (2 * np.pi) - np.pi
 
 
 def _best_angles(limb: _Limb, costs: Floats, twists: Floats, gain: float) -> tuple[Floats, list[Floats]]:
@@ -429,8 +430,3 @@ def _between(limb: _Limb, values: Floats) -> Floats:
     """Interpolate values (k, 3) at the rings for the vertices, (v, 3)."""
     at = [ring.distance for ring in limb.rings]
     return np.stack([np.interp(limb.distances, at, column) for column in values.T], axis=1)
-
-
-def _wrapped(angles: Floats) -> Floats:
-    """Angles from -pi to pi."""
-    return (angles + np.pi) % (2 * np.pi) - np.pi

@@ -12,6 +12,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.procrustes import nearest_rotations
 from ..geometry.symmetric_factor import symmetric_factor
+from ..mesh.connectivity.adjacency import averaging
 from ..runtime.arrays import TINY, Floats
 
 _LEAST_WEIGHT = 1e-4
@@ -76,9 +77,7 @@ class ElasticSurface:
         self._divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
         self._covariance = self._covariances(self._weights)
         one_way = csr_array((np.ones(count), (self._tails, self._heads)), shape=(n, n))
-        neighbours = csr_array(one_way + one_way.T)
-        degree = np.maximum(neighbours.sum(axis=1), 1)
-        self._average = csr_array((diags_array(np.ones(n)) + diags_array(1 / degree) @ neighbours) / 2)
+        self._average = averaging(csr_array(one_way + one_way.T))
         self._edge_length = float(np.sqrt(np.square(self._edges).sum(axis=1).mean())) if count else 1.0
         self._resist(self._weights)
 

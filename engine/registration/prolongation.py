@@ -4,17 +4,17 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array, eye_array
+from scipy.sparse import csr_array
 
 from ..mesh.closest_points import ClosestPoints
-from ..mesh.connectivity.adjacency import vertex_adjacency
+from ..mesh.connectivity.adjacency import averaging, vertex_adjacency
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import TINY, Bools, Floats, Ints, group_sums, unit_vectors
+from ..runtime.arrays import TINY, Bools, Floats, Ints, group_sums, slices, unit_vectors
 from ..runtime.progress import Progress, Steps, within
 from ..shapes.proxy import Proxy
 from .torn_patches import NearVertices, with_patches_mended
-from .untangling import follow_neighbours, heaviest_corners, located, torn_vertices, untangle_steps
+from .untangling import follow_neighbours, torn_vertices, untangle_steps
 
 _ROTATION_ROUNDS = 2  # of averaging rotation and scale over the proxy
 _FIELD_ROUNDS = 2  # of averaging the whole motion over the proxy
@@ -97,7 +97,7 @@ def lift_steps(
     lift = _Lift(source, source_proxy, target, ClosestPoints(target) if search is None else search)
     if target_proxy is not None and proxy_map is not None:
         lift.restrict(target_proxy, proxy_map)
-    average = _averaging(source_proxy.mesh)
+    average = averaging(vertex_adjacency(source_proxy.mesh))
     motion = _motion(source_proxy, registered, average)
     n, k = source.vertex_count, source_proxy.mesh.vertex_count
     samples = np.arange(0, n, max(1, n // (_SAMPLES * k)))
@@ -121,14 +121,16 @@ def lift_steps(
             starts[part], positions[part], lift.turned(motion, part)
         )
         astray[part] = agreement <= _NORMAL_GATE
-    astray |= torn_vertices(source, located(target, triangles, barycentric))
+    reached = SurfacePoints.from_barycentric(target, triangles, barycentric)
+    astray |= torn_vertices(source, reached.positions)
     yield Progress(0.85, _LABEL)
-    starts = follow_neighbours(source, heaviest_corners(target, triangles, barycentric), astray)
+    starts = follow_neighbours(source, reached.nearest_vertices, astray)
+    del reached  # of a million vertices, what is not needed any more counts
     again = np.flatnonzero(astray)
-    for start in range(0, len(again), _CHUNK):
-        part = again[start : start + _CHUNK]
-        triangles[part], barycentric[part], _ = lift.search_from(
-            starts[part], positions[part], lift.turned(motion, part)
+    for part in slices(len(again), _CHUNK):
+        some = again[part]
+        triangles[some], barycentric[some], _ = lift.search_from(
+            starts[some], positions[some], lift.turned(motion, some)
         )
     yield Progress(0.9, _LABEL)
     if untangled:
@@ -198,12 +200,12 @@ class _Lift:
         """Shift of the proxy's vertices, (k, 3), that brings samples (q,) of the dense mesh nearer to the target."""
         k = average.shape[0]
         steps, trust = np.empty((len(samples), 3)), np.empty(len(samples))
-        for start in range(0, len(samples), _CHUNK):
-            part = slice(start, start + _CHUNK)
+        for part in slices(len(samples), _CHUNK):
             positions, normals = self.moved(motion, samples[part])
             starts, _ = self.starts(samples[part], positions, normals)
             triangles, barycentric, agreement = self.search_from(starts, positions, normals)
-            steps[part] = located(self.target, triangles, barycentric) - positions
+            reached = SurfacePoints.from_barycentric(self.target, triangles, barycentric)
+            steps[part] = reached.positions - positions
             trust[part] = np.maximum(agreement, 0) ** 2
         lengths = np.linalg.norm(steps, axis=1)
         trust *= lengths <= _FAR * np.median(lengths)
@@ -215,14 +217,6 @@ class _Lift:
         for _ in range(_CORRECTION_ROUNDS):
             sums = average @ sums
         return sums[:, :3] / np.maximum(sums[:, 3:], TINY)
-
-
-def _averaging(mesh: TriangleMesh) -> csr_array:
-    """Matrix (k, k) that takes half of each vertex and half of the mean of its neighbours."""
-    k = mesh.vertex_count
-    neighbours = vertex_adjacency(mesh)
-    degrees = np.maximum(neighbours.sum(axis=1), 1)
-    return csr_array(eye_array(k) / 2 + diags_array(0.5 / degrees) @ neighbours)
 
 
 def _motion(proxy: Proxy, registered: Floats, average: csr_array) -> Floats:

@@ -19,7 +19,6 @@ from .deformable import DeformableSurface
 from .elastic import ElasticSurface
 from .positional_constraints import Ties
 
-Find = Callable[[ClosestPoints, Floats], FoundPoints]
 Guides = tuple[Floats, Floats]
 Matches = tuple[FoundPoints, FoundPoints]
 
@@ -228,25 +227,24 @@ class _Matcher:
 
         A helper matches the target, which takes longer.
         """
-        searches = _nearest_vertices, _around_nearest_vertices, _anywhere
         better = last + _are_coarse(self.source, self.target) * (2 if self.source.ends or self.target.ends else 1)
-        find = searches[min(_MATCHED.index(self.stage.matched) + better, 2)]
+        matched = _MATCHED[min(_MATCHED.index(self.stage.matched) + better, 2)]
 
         def own_steps() -> Steps[tuple[FoundPoints, Floats]]:
             """Match the source, and find the rotations."""
             yield Progress(0.0, "Fitting the surfaces")
-            return find(self.target_search, source.vertices), rotate()
+            return _found(self.target_search, source.vertices, matched), rotate()
 
-        found = yield from beside_steps(own_steps(), _matched_back_steps, (self, find), [positions])
+        found = yield from beside_steps(own_steps(), _matched_back_steps, (self, matched), [positions])
         (there, rotations), (back,) = found
         return (there, back), rotations
 
 
-def _matched_back_steps(common: tuple[_Matcher, Find], positions: Floats) -> Steps[FoundPoints]:
+def _matched_back_steps(common: tuple[_Matcher, str], positions: Floats) -> Steps[FoundPoints]:
     """Match the vertices of the target, where the source has these positions."""
-    matcher, find = common
+    matcher, matched = common
     yield Progress(0.0, "Fitting the surfaces")
-    return find(matcher.source_search(positions)[0], matcher.target_features)
+    return _found(matcher.source_search(positions)[0], matcher.target_features, matched)
 
 
 def _are_coarse(source: DeformableSurface, target: DeformableSurface) -> bool:
@@ -254,16 +252,12 @@ def _are_coarse(source: DeformableSurface, target: DeformableSurface) -> bool:
     return min(len(source.vertices), len(target.vertices)) < COARSE
 
 
-def _nearest_vertices(search: ClosestPoints, points: Floats) -> FoundPoints:
-    return search.at_vertices(points, search.nearest_vertices(points))
-
-
-def _around_nearest_vertices(search: ClosestPoints, points: Floats) -> FoundPoints:
-    return search.walk(points, search.nearest_vertices(points), steps=1)
-
-
-def _anywhere(search: ClosestPoints, points: Floats) -> FoundPoints:
-    return search.nearest(points)
+def _found(search: ClosestPoints, points: Floats, matched: str) -> FoundPoints:
+    """Find what is closest to points, as `Stage.matched` says."""
+    if matched == "anywhere":
+        return search.nearest(points)
+    nearest = search.nearest_vertices(points)
+    return search.at_vertices(points, nearest) if matched == "vertices" else search.walk(points, nearest, steps=1)
 
 
 def smooth_start(source: DeformableSurface, target: DeformableSurface, images: Ints, functions: Floats) -> Floats:
@@ -381,9 +375,7 @@ def register_steps(
     .. [1] B. Amberg, S. Romdhani, T. Vetter, "Optimal step nonrigid ICP algorithms for surface registration",
        CVPR 2007.
     """
-    positions = start
-    if posed is None:
-        posed = start
+    positions, posed = start, start if posed is None else posed
     sparse, coarse = isometry, _are_coarse(source, target)
     if coarse:
         # The few vertices around a limb could not tell which way round it is, nor those of a joint how it is strained.
@@ -392,8 +384,7 @@ def register_steps(
     total = sum(map(len, rounds))
     done = 0
     matches = first
-    further = _EVENER * (1 - isometry)
-    evened = [replace(stage, rotation_radius=stage.rotation_radius + further) for stage in stages]
+    evened = [replace(each, rotation_radius=each.rotation_radius + _EVENER * (1 - isometry)) for each in stages]
     stiff = source.elastic if elastic is None else elastic
     for stage, weights in zip(evened, rounds, strict=True):
         matcher = _Matcher(source, target, stage, guides)

@@ -8,8 +8,9 @@ from scipy.sparse import csr_array
 
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
+from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints, marked, numbered, unit_vectors
+from ..runtime.arrays import Bools, Floats, Ints, group_means, marked, numbered, slices, unit_vectors
 from ..runtime.progress import Progress, Steps
 
 _ROUNDS = 11  # none of them is the last after averaging, which others have to put right
@@ -103,8 +104,8 @@ def flipped_triangles(
     """
     among = np.arange(source.triangle_count) if among is None else among
     flipped = [among[:0]]
-    for start in range(0, len(among), _CHUNK):
-        part = among[start : start + _CHUNK]
+    for chunk in slices(len(among), _CHUNK):
+        part = among[chunk]
         image = _Image(source, target, triangles, barycentric, part)
         flipped.append(part[image.areas(image.positions) < 0])
     return np.concatenate(flipped)
@@ -118,10 +119,9 @@ class _Image:
     ) -> None:
         self.vertices, corners = np.unique(source.triangles[among], return_inverse=True)
         self.corners = corners.reshape(-1, 3)  # numbers in `vertices`
-        self.triangles, self.barycentric = triangles[self.vertices], barycentric[self.vertices]
-        self.positions = located(target, self.triangles, self.barycentric)
-        there = target.triangles[self.triangles]
-        normals = np.einsum("vc,vcd->vd", self.barycentric, target.vertex_normals[there])[self.corners].sum(axis=1)
+        points = SurfacePoints.from_barycentric(target, triangles[self.vertices], barycentric[self.vertices])
+        self.positions, self.nearest_vertices = points.positions, points.nearest_vertices
+        normals = points.interpolate(target.vertex_normals)[self.corners].sum(axis=1)
         self.normals = unit_vectors(normals)  # (f, 3)
 
     def areas(self, positions: Floats) -> Floats:
@@ -138,24 +138,10 @@ class _Image:
     def average(self, chosen: Bools) -> None:
         """Move chosen ones of the vertices (v,) to the mean of their neighbours, some times."""
         for _ in range(_SWEEPS):
-            around = np.zeros_like(self.positions)
-            for axis in range(3):
-                values = self.positions[:, axis][self.corners]
-                others = values.sum(axis=1, keepdims=True) - values
-                around[:, axis] = np.bincount(self.corners.ravel(), others.ravel(), len(around))
-            counts = 2 * np.bincount(self.corners.ravel(), minlength=len(around))
-            self.positions[chosen] = (around / counts[:, None])[chosen]
-
-
-def located(mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -> Floats:
-    """Positions (k, 3) of points given by triangles (k,) and barycentric coordinates (k, 3)."""
-    return np.einsum("kc,kcd->kd", barycentric, mesh.vertices[mesh.triangles[triangles]])
-
-
-def heaviest_corners(mesh: TriangleMesh, triangles: Ints, barycentric: Floats) -> Ints:
-    """For each point, the corner of its triangle with the largest coordinate, (k,)."""
-    corner = barycentric.argmax(axis=1)
-    return mesh.triangles[triangles, corner]
+            places = self.positions.T.take(self.corners, axis=1)  # (3, f, 3 corners)
+            others = (places.sum(axis=2, keepdims=True) - places).reshape(3, -1).T
+            around = group_means(self.corners.ravel(), others, len(self.positions)) / 2
+            self.positions[chosen] = around[chosen]
 
 
 def untangle_steps(
@@ -218,9 +204,7 @@ def untangle_steps(
         if number % _AVERAGED == _AVERAGED - 1:
             image.average(np.isin(image.vertices, source.triangles[flipped]))
         members = image.vertices[free]
-        found = search.walk(
-            _opened(image, rest, free), heaviest_corners(target, image.triangles[free], image.barycentric[free])
-        )
+        found = search.walk(_opened(image, rest, free), image.nearest_vertices[free])
         triangles[members], barycentric[members] = found.triangles, found.barycentric
         flipped = flipped_triangles(source, target, triangles, barycentric, around[counted[around]])
         yield Progress((number + 1) / _ROUNDS, "Mapping every vertex")
