@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,20 @@ def group_sums(groups: Ints, values: Floats, count: int) -> Floats:
 def group_means(groups: Ints, values: Floats, count: int) -> Floats:
     """Mean of the rows of values (k, d) of each group, none of them empty: (count, d); see `group_sums`."""
     return group_sums(groups, values, count) / np.bincount(groups, minlength=count)[:, None]
+
+
+def group_largest(groups: Ints, values: NDArray[Any], count: int, least: float = 0.0) -> NDArray[Any]:
+    """Largest of the values (k,) of each of some groups, by their numbers (k,), or what is least: (count,)."""
+    largest = np.full(count, least)
+    np.maximum.at(largest, groups, values)
+    return largest
+
+
+def group_smallest(groups: Ints, values: NDArray[Any], count: int, most: float = np.inf) -> NDArray[Any]:
+    """Smallest of the values (k,) of each of some groups, by their numbers (k,), or what is most: (count,)."""
+    smallest = np.full(count, most)
+    np.minimum.at(smallest, groups, values)
+    return smallest
 
 
 def group_extents(groups: Ints, points: Floats, count: int) -> Floats:

@@ -6,7 +6,9 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from engine.runtime.arrays import (
+    group_largest,
     group_means,
+    group_smallest,
     group_sums,
     marked,
     numbered,
@@ -31,6 +33,16 @@ def test_slices_part_all_rows():
 def test_places_are_numbered_in_their_order():
     np.testing.assert_array_equal(numbered(np.array([3, 0]), 4), [1, -1, -1, 0])
     assert (numbered(np.empty(0, np.int64), 2) == -1).all()
+
+
+def test_the_largest_and_the_smallest_of_each_group_are_found():
+    groups, values = np.array([2, 0, 2]), np.array([5.0, -1, 7])
+    np.testing.assert_array_equal(group_largest(groups, values, 4), [0, 0, 7, 0])
+    np.testing.assert_array_equal(group_largest(groups, values, 3, -np.inf), [-1, -np.inf, 7])
+    np.testing.assert_array_equal(group_smallest(groups, values, 4), [-1, np.inf, 5, np.inf])
+    numbers = group_smallest(groups, np.array([4, 3, 1]), 3, 9)
+    np.testing.assert_array_equal(numbers, [3, 9, 1])
+    assert numbers.dtype == np.int64
 
 
 def test_rows_are_summed_by_group():
