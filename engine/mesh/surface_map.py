@@ -219,8 +219,7 @@ class SurfaceMap:
             )
         other._check_image(image)
         search = search or ClosestPoints(image)
-        starts = other.nearest_vertices[self.nearest_vertices]
-        found = search.walk(self.transfer(other.positions), starts)
+        found = search.walk(self.transfer(other.positions), other.nearest_vertices[self.nearest_vertices])
         # Rounding may leave an interpolated one above one.
         confidence = np.minimum(self.confidence * self.transfer(other.confidence), 1)
         partners = self.has_partner & self.transfer(other.has_partner)

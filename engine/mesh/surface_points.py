@@ -131,12 +131,12 @@ def interpolation_matrix(barycentric: Floats, corners: Ints, count: int) -> csr_
 
     Parameters
     ----------
-    barycentric : (k, 3) array of float
-        Barycentric coordinates of the points.
-    corners : (k, 3) array of int
+    barycentric : (k, c) array of float
+        Barycentric coordinates of the points, or other weights.
+    corners : (k, c) array of int
         The vertices that they belong to.
     count : int
         How many vertices the mesh has.
     """
-    starts = np.arange(0, corners.size + 1, 3)
+    starts = np.arange(0, corners.size + 1, corners.shape[1])
     return csr_array((barycentric.ravel(), corners.ravel(), starts), shape=(len(corners), count))

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..runtime.arrays import Bools, Floats, Ints, numbered, unit_vectors
+from ..runtime.arrays import Bools, Floats, Ints, group_smallest, numbered, unit_vectors
 from ..runtime.errors import MeshError
 from .connectivity.components import joined_components
 
@@ -117,8 +117,7 @@ class TriangleMesh:
 
     def sum_at_vertices(self, values: Floats) -> Floats:
         """Sum a value per triangle, (m,), over the triangles around each vertex, (n,)."""
-        sums: NDArray[Any] = np.bincount(self.triangles.ravel(), np.repeat(values, 3), self.vertex_count)
-        return sums
+        return np.bincount(self.triangles.ravel(), np.repeat(values, 3), self.vertex_count)
 
     @cached_property
     def _edge_table(self) -> tuple[Ints, Ints]:
@@ -159,8 +158,7 @@ class TriangleMesh:
         labels = joined_components(n, *self.edges.T)
         areas = np.bincount(labels, self.vertex_areas)
         # Ties by the first vertex, so that the numbering never depends on how the graph search walks.
-        first = np.full(len(areas), n)
-        np.minimum.at(first, labels, np.arange(n))
+        first = group_smallest(labels, np.arange(n), len(areas), n)
         return numbered(np.lexsort((first, -areas)), len(areas))[labels]
 
     @property

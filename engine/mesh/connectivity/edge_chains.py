@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,7 +53,7 @@ def edge_chains(edges: Ints) -> list[tuple[list[int], list[int]]]:
     return chains
 
 
-def way_to_root(before: NDArray[np.int32], vertex: int) -> list[int]:
+def way_to_root(before: NDArray[np.integer[Any]], vertex: int) -> list[int]:
     """Follow a tree from a vertex to its root, by the vertex before each one; that of the root is negative."""
     way = [int(vertex)]
     while before[way[-1]] >= 0:

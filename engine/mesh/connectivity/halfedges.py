@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import Bools, Floats, Ints, ranges, unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, group_smallest, ranges, unit_vectors
 from .components import triangle_components
 
 _MOST_TRIANGLES = 64
@@ -176,9 +176,7 @@ def _greedy(one: Ints, other: Ints, count: int) -> Ints:
     """Choose pairs, given best first, so that none of `count` members is in two: indices of the chosen."""
     left, chosen = np.arange(len(one)), []
     while len(left):
-        best = np.full(count, len(one))
-        np.minimum.at(best, one[left], left)
-        np.minimum.at(best, other[left], left)
+        best = group_smallest(np.concatenate([one[left], other[left]]), np.tile(left, 2), count, len(one))
         mutual = left[(best[one[left]] == left) & (best[other[left]] == left)]
         chosen.append(mutual)
         taken = np.zeros(count, bool)

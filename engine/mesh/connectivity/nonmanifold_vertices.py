@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...runtime.arrays import Bools, Ints, numbered
+from ...runtime.arrays import Bools, Ints, group_smallest, numbered
 from .components import joined_components
 from .halfedges import following
 
@@ -48,8 +48,7 @@ def split_fans(triangles: Ints, twins: Ints, vertex_count: int) -> tuple[Ints, I
     count = int(fans.max()) + 1
     vertex_of_fan = np.empty(count, np.int64)
     vertex_of_fan[fans] = tail[corners]
-    first = np.full(count, len(tail))
-    np.minimum.at(first, fans, corners)
+    first = group_smallest(fans, corners, count, len(tail))
     order = np.lexsort((first, -np.bincount(fans), vertex_of_fan))
     extra = order[1:][vertex_of_fan[order][1:] == vertex_of_fan[order][:-1]]
     new_vertex = vertex_of_fan.copy()

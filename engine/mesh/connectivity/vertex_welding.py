@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, group_smallest
 from .components import joined_components
 from .halfedges import EdgeGroups, triangle_slots
 
@@ -50,13 +50,11 @@ def weld_boundaries(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> In
 
     places, first = _equal_rows(vertices[boundary])
     shortest = _shortest_edges(vertices, triangles, groups, at_boundary)
-    radius = np.full(len(first), np.inf)
-    np.minimum.at(radius, places, _TOLERANCE * shortest[boundary])
+    radius = group_smallest(places, _TOLERANCE * shortest[boundary], len(first))
     one, other = _close_pairs(vertices[boundary[first]], radius)
     clusters = joined_components(len(first), one, other)[places]
 
-    earliest = np.full(int(clusters.max()) + 1, len(vertices))
-    np.minimum.at(earliest, clusters, boundary)
+    earliest = group_smallest(clusters, boundary, int(clusters.max()) + 1, len(vertices))
     representatives[boundary] = earliest[clusters]
     return representatives
 
@@ -84,10 +82,7 @@ def _shortest_edges(vertices: Floats, triangles: Ints, groups: EdgeGroups, wante
     tail, head = tail[near], head[near]
     lengths = np.linalg.norm(vertices[tail] - vertices[head], axis=1)
     lengths[lengths == 0] = np.inf
-    shortest = np.full(len(vertices), np.inf)
-    for end in (tail, head):
-        np.minimum.at(shortest, end, lengths)
-    return shortest
+    return group_smallest(np.concatenate([tail, head]), np.tile(lengths, 2), len(vertices))
 
 
 def _close_pairs(points: Floats, radius: Floats) -> tuple[Ints, Ints]:

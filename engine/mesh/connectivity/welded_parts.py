@@ -44,13 +44,11 @@ class WeldedParts:
     def of(cls, mesh: TriangleMesh) -> WeldedParts:
         """Weld a mesh along its seams and find its parts."""
         groups = group_half_edges(mesh.triangles, mesh.vertex_count)
-        representatives = weld_boundaries(mesh.vertices, mesh.triangles, groups)
-        _, welded = np.unique(representatives, return_inverse=True)
+        _, welded = np.unique(weld_boundaries(mesh.vertices, mesh.triangles, groups), return_inverse=True)
         welded = welded.ravel()
         triangles = welded[mesh.triangles]
         triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-        count = int(welded.max()) + 1
-        labels = joined_components(count, triangles[:, :2].ravel(), triangles[:, 1:].ravel())
+        labels = joined_components(int(welded.max()) + 1, triangles[:, :2].ravel(), triangles[:, 1:].ravel())
         return cls(mesh, welded, triangles, labels)
 
     @property
