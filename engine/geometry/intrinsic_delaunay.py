@@ -10,7 +10,7 @@ import numpy as np
 from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import group_half_edges
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import TINY, Bools, Floats, Ints, numbered
+from ..runtime.arrays import TINY, Bools, Floats, Ints, group_largest, numbered
 
 _SLACK = 1e-6
 """By how much two sides of a triangle are at least longer than the third, in mean edge lengths."""
@@ -192,12 +192,9 @@ def _bad_sides(sides: Ints, twins: Ints, cotangents: Floats) -> Ints:
 
 def _independent(sides: Ints, twins: Ints, lengths: Floats) -> Ints:
     """Choose edges of which no two share a triangle: those that are the longest in both their triangles."""
-    order = np.lexsort((sides, lengths.ravel()[sides]))
-    rank = numbered(order, len(sides))
-    longest = np.full(len(lengths), -1)
+    rank = numbered(np.lexsort((sides, lengths.ravel()[sides])), len(sides))
     here, there = sides // 3, twins[sides] // 3
-    np.maximum.at(longest, here, rank)
-    np.maximum.at(longest, there, rank)
+    longest = group_largest(np.concatenate([here, there]), np.tile(rank, 2), len(lengths), -1)
     return sides[(longest[here] == rank) & (longest[there] == rank)]
 
 

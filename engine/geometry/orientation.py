@@ -76,6 +76,12 @@ def signed_areas(directions: Floats) -> Floats:
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 
+def signed_area_tables(directions: Floats) -> Floats:
+    """Signed areas of the directions (k, s, 2) of all pairs in either order, (k, s, s); see `signed_areas`."""
+    u, v = directions[:, :, None], directions[:, None]
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
 def orientation_agreement(source_directions: Floats, target_directions: Floats) -> Floats:
     r"""Measure at each point whether a correspondence keeps or mirrors the surface.
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from engine import TriangleMesh
 from engine.geometry.geodesics import geodesic_distances
-from engine.geometry.orientation import orientation_agreement, signed_areas, tangent_gradient
+from engine.geometry.orientation import orientation_agreement, signed_area_tables, signed_areas, tangent_gradient
 from tests.shapes import icosphere, plane, rotation
 
 
@@ -54,6 +54,9 @@ def test_agreement_is_the_correlation_of_the_signed_areas(seed):
         for w in (u, v)
     )
     np.testing.assert_allclose(signed_areas(u), first, atol=1e-12)
+    tables, (one, other) = signed_area_tables(u), np.triu_indices(5, 1)
+    np.testing.assert_array_equal(tables[:, one, other], signed_areas(u))
+    np.testing.assert_array_equal(tables, -tables.transpose(0, 2, 1))
     expected = (first * second).sum(axis=1) / np.sqrt((first**2).sum(axis=1) * (second**2).sum(axis=1))
     np.testing.assert_allclose(orientation_agreement(u, v), expected, atol=1e-9)
 
