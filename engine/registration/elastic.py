@@ -13,7 +13,7 @@ from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.procrustes import nearest_rotations
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.adjacency import averaging
-from ..runtime.arrays import TINY, Floats
+from ..runtime.arrays import TINY, Floats, Ints
 
 _LEAST_WEIGHT = 1e-4
 """Least weight of an edge: one without would let its ends drift apart where all triangles around are right-angled."""
@@ -65,10 +65,7 @@ class ElasticSurface:
     def __init__(self, vertices: Floats, laplace: LaplaceBeltrami, edges: Floats | None = None) -> None:
         n = len(vertices)
         self._vertices, self._laplace = vertices, laplace
-        entries = coo_array(laplace.stiffness)
-        between = entries.row < entries.col
-        self._tails, self._heads = entries.row[between], entries.col[between]
-        self._weights = np.maximum(-entries.data[between], _LEAST_WEIGHT)  # (e,)
+        self._tails, self._heads, self._weights = weighted_edges(laplace)  # (e,) each
         self._edges = vertices[self._tails] - vertices[self._heads] if edges is None else edges  # (e, 3)
         count = len(self._tails)
         ends = (np.concatenate([self._tails, self._heads]), np.tile(np.arange(count), 2))
@@ -259,3 +256,10 @@ class ElasticSurface:
         """Squared distance of each edge from what it would be by the rotations alone, (e,)."""
         apart = positions[self._tails] - positions[self._heads] - self._at_edges(rotations)
         return np.square(apart).sum(axis=1)
+
+
+def weighted_edges(laplace: LaplaceBeltrami) -> tuple[Ints, Ints, Floats]:
+    """Both ends of the edges of an operator, (e,) each, and their weights, none below a least one, (e,)."""
+    entries = coo_array(laplace.stiffness)
+    between = entries.row < entries.col
+    return entries.row[between], entries.col[between], np.maximum(-entries.data[between], _LEAST_WEIGHT)

@@ -172,8 +172,7 @@ class _Lift:
         return self._turned(self._blended(motion, vertices), vertices)
 
     def _turned(self, blended: Floats, vertices: Ints) -> Floats:
-        normals = np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertex_normals[vertices])
-        return unit_vectors(normals)
+        return unit_vectors(np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertex_normals[vertices]))
 
     def starts(self, vertices: Ints, positions: Floats, normals: Floats) -> tuple[Ints, Bools]:
         """Vertices of the target from which to search for those of the source, (q,), and which are astray, (q,)."""
@@ -193,8 +192,7 @@ class _Lift:
         )
         # Not the normal of the triangle: which of two a point is in, on their edge, is for rounding to decide.
         there = found.interpolate(self.target.triangles, self.target.vertex_normals)
-        agreement = np.einsum("qd,qd->q", normals, there)
-        return found.triangles, found.barycentric, agreement
+        return found.triangles, found.barycentric, np.einsum("qd,qd->q", normals, there)
 
     def correction(self, motion: Floats, samples: Ints, average: csr_array) -> Floats:
         """Shift of the proxy's vertices, (k, 3), that brings samples (q,) of the dense mesh nearer to the target."""
@@ -232,8 +230,7 @@ def _motion(proxy: Proxy, registered: Floats, average: csr_array) -> Floats:
         ],
         axis=1,
     )
-    ends = np.concatenate([a, b])
-    sums = group_sums(ends, np.tile(products, (2, 1)), k)
+    sums = group_sums(np.concatenate([a, b]), np.tile(products, (2, 1)), k)
     for _ in range(_ROTATION_ROUNDS):
         sums = average @ sums
     u, _, vt = np.linalg.svd(sums[:, :9].reshape(k, 3, 3))
