@@ -172,8 +172,7 @@ def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Bo
         return None, 0.0
     areas = triangle_areas(vertices, triangles)
     area = float(areas.sum())
-    n = len(vertices)
-    pieces = joined_components(n, triangles[:, :2].ravel(), triangles[:, 1:].ravel())
+    pieces = joined_components(len(vertices), triangles[:, :2].ravel(), triangles[:, 1:].ravel())
     sizes = np.bincount(pieces[triangles[:, 0]], areas, minlength=int(pieces.max()) + 1)
     tails, heads, tops = (triangle_slots(triangles, open_edges, shift) for shift in (0, 1, 2))
     large = sizes[pieces[tails]] > _SMALLEST * area

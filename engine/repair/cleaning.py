@@ -134,8 +134,7 @@ class _Work:
 
 def _weld(work: _Work) -> tuple[EdgeGroups, Ints]:
     """Weld vertices along seams and gaps: the edges then, and the vertex that stands for each (n,)."""
-    n = len(work.vertices)
-    groups = group_half_edges(work.triangles, n)
+    groups = group_half_edges(work.triangles, len(work.vertices))
     representatives = weld_boundaries(work.vertices, work.triangles, groups)
     groups, work.counts.welded = _merged(work, groups, representatives)
     partners = seam_partners(work.vertices, work.triangles, groups)
@@ -243,8 +242,7 @@ def _in_parts(mesh: TriangleMesh, work: _Work, inward: Bools, representatives: I
     if not len(order):
         raise MeshError("Nothing of the mesh has an area once repeated and degenerate faces are left out.")
     order = order[: _MOST_PARTS + 1]
-    rank = numbered(order, len(areas))
-    triangle_parts = rank[components]
+    triangle_parts = numbered(order, len(areas))[components]
 
     vertex_parts = np.full(len(work.vertices), -1)
     vertex_parts[work.triangles] = triangle_parts[:, None]

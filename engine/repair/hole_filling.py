@@ -45,8 +45,7 @@ def small_holes(vertices: Floats, triangles: Ints, loops: BoundaryLoops, area: f
     a, b = vertices[loops.tails], vertices[loops.heads]
     middle = loops.centres[loops.labels]
     # The lid runs against the boundary; its area vector is that of the loop, whatever surface spans it.
-    fans = np.cross(b - middle, a - middle)
-    lids = group_sums(loops.labels, fans, loops.count)
+    lids = group_sums(loops.labels, np.cross(b - middle, a - middle), loops.count)
     corners = vertices[triangles[loops.half_edges // 3]]
     beside = unit_vectors(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     lengths = np.linalg.norm(b - a, axis=1)

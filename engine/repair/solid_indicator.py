@@ -11,6 +11,7 @@ from scipy.fft import fftfreq, irfftn, next_fast_len, rfftfreq, rfftn
 from scipy.sparse import csc_array
 
 from ..mesh.area_samples import area_samples
+from ..mesh.surface_points import interpolation_matrix
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats
 
@@ -104,5 +105,4 @@ def _spreading(places: Floats, shape: tuple[int, ...]) -> csc_array:
     for number, (i, j, k) in enumerate(np.ndindex(2, 2, 2)):
         rows[:, number] = first + steps @ (i, j, k)
         weights[:, number] = ends[i, :, 0] * ends[j, :, 1] * ends[k, :, 2]
-    starts = np.arange(0, rows.size + 1, 8)
-    return csc_array((weights.ravel(), rows.ravel(), starts), shape=(int(np.prod(shape)), len(places)))
+    return csc_array(interpolation_matrix(weights, rows, int(np.prod(shape))).T)
