@@ -84,8 +84,7 @@ def _spectra_apart_steps(x: Shape, y: Shape) -> Steps[float]:
     logarithms = []
     for shape in (x, y):
         spectrum = yield from eigenpairs_steps(shape.laplace, min(_COMPARED + 1, shape.mesh.vertex_count))
-        values = spectrum.values[1:] * shape.laplace.area
-        logarithms.append(np.log(np.maximum(values, TINY)))
+        logarithms.append(np.log(np.maximum(spectrum.values[1:] * shape.laplace.area, TINY)))
     count = min(map(len, logarithms))
     return float(np.abs(logarithms[0][:count] - logarithms[1][:count]).mean())
 

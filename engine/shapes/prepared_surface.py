@@ -96,8 +96,7 @@ class PreparedSurface:
         """Place points of the surface that is matched on the original mesh."""
         triangles, barycentric = points.triangles, points.barycentric
         if not self.proxy.is_identity:
-            starts = self.proxy.vertices[points.nearest_vertices]
-            found = self.dense_search.walk(points.positions, starts)
+            found = self.dense_search.walk(points.positions, self.proxy.vertices[points.nearest_vertices])
             triangles, barycentric = found.triangles, found.barycentric
         triangles, barycentric = self.cleaned.main.to_original(triangles, barycentric)
         return SurfacePoints.from_barycentric(self.original, self.kept_triangles[triangles], barycentric)
@@ -110,8 +109,7 @@ class PreparedSurface:
         MatchError
             If a point does not lie on the main part of the mesh.
         """
-        starts = self.mesh_vertices(points.nearest_vertices)
-        found = ClosestPoints(self.mesh).walk(points.positions, starts)
+        found = ClosestPoints(self.mesh).walk(points.positions, self.mesh_vertices(points.nearest_vertices))
         return SurfacePoints.from_barycentric(self.mesh, found.triangles, found.barycentric)
 
     def mesh_vertices(self, vertices: Ints) -> Ints:

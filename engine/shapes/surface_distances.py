@@ -100,8 +100,7 @@ class SurfaceDistances:
         parts = np.array_split(missing, 2 if len(missing) >= _PARTED else 1)
         found = yield from shared_steps(measured_steps, None, [(shape.solver, part) for part in parts])
         for part, distances in zip(parts, found, strict=True):
-            rows = (distances / shape.scale).astype(np.float32)
-            self._rows.update(zip(part.tolist(), rows, strict=True))
+            self._rows.update(zip(part.tolist(), (distances / shape.scale).astype(np.float32), strict=True))
 
     def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
         """Compute the rows of the vertices nearest to some points, a third of all that `prepare_steps` computes."""

@@ -86,8 +86,7 @@ def dual_triangulation(cells: SurfaceCells, regions: Ints, count: int) -> DualTr
     faulty[crowded] = True
     faulty |= _fan_counts(triangles, count) != 1
     at_boundary = marked(regions[cells.at_boundary], count)
-    at_end = marked(open_ends, count)
-    faulty |= at_boundary != at_end
+    faulty |= at_boundary != marked(open_ends, count)
     return DualTriangulation(triangles, faulty)
 
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ...mesh.connectivity.adjacency import pair_matrix
 from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, group_sums, marked, numbered
+from ...runtime.arrays import Bools, Floats, Ints, group_smallest, group_sums, marked, numbered
 
 _LEAST_LENGTH = 1e-9  # of sqrt(area): an edge of length zero is no edge for a sparse graph
 _ASIDE = (1e-5, 3e-5, 2e-5)  # of sqrt(area): any direction that edges of a mesh are unlikely to have
@@ -75,7 +73,7 @@ class SurfaceCells:
         sizes = np.bincount(labels, minlength=count)
         vectors = mesh.vertices, mesh.vertex_normals
         positions, normals = (group_sums(labels, values, count) / sizes[:, None] for values in vectors)
-        areas: NDArray[Any] = np.bincount(labels, mesh.vertex_areas, count)
+        areas = np.bincount(labels, mesh.vertex_areas, count)
         at_boundary = marked(labels[mesh.boundary_edges], count)
 
         low, high = np.sort(labels[mesh.edges], axis=1).T
@@ -131,8 +129,7 @@ class SurfaceCells:
 
 def nearest_members(groups: Ints, distances: Floats, count: int) -> Ints:
     """For each of `count` groups, the member with the least distance: the first of several; -1 for an empty group."""
-    least = np.full(count, np.inf)
-    np.minimum.at(least, groups, distances)
+    least = group_smallest(groups, distances, count)
     candidates = np.flatnonzero(distances == least[groups])[::-1]
     nearest = np.full(count, -1)
     nearest[groups[candidates]] = candidates  # the last written, the first in order, stays
@@ -155,8 +152,7 @@ def grid_labels(mesh: TriangleMesh, size: float) -> Ints:
         Label of each vertex.  Labels are numbered by place in space, whatever the order of the vertices.  Sheets of
         the surface that pass through the same cube have different labels, so that fingers that touch stay apart.
     """
-    lowest = mesh.vertices.min(axis=0)
-    cubes = np.floor((mesh.vertices - lowest) / size).astype(np.int64)
+    cubes = np.floor((mesh.vertices - mesh.vertices.min(axis=0)) / size).astype(np.int64)
     _, ny, nz = cubes.max(axis=0) + 1
     keys = (cubes[:, 0] * ny + cubes[:, 1]) * nz + cubes[:, 2]
     a, b = mesh.edges.T

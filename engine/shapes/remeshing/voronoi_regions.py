@@ -83,8 +83,7 @@ class VoronoiRegions:
             if not len(added) or repair % _DISSOLVING == 0:
                 in_faulty = faulty[labels] & (np.bincount(cells.labels, minlength=cells.count) > 1)
                 if in_faulty.any():
-                    heads = cells.nearest_vertices(mesh.vertices)
-                    chosen = heads[np.concatenate([seeds, added])]
+                    chosen = cells.nearest_vertices(mesh.vertices)[np.concatenate([seeds, added])]
                     cells = cells.dissolved(mesh, in_faulty)
                     regions = VoronoiRegions.around(cells, cells.labels[chosen])
                     continue
@@ -156,8 +155,7 @@ def _poisson_disk(cells: SurfaceCells, count: int, density: Floats) -> Ints:
     # As if one after the other: whoever has nobody undecided ahead is chosen, and rules out all behind.
     chosen, undecided = np.zeros(len(candidates), bool), np.ones(len(candidates), bool)
     while undecided.any():
-        waits = marked(ahead[:, 1], len(candidates))
-        new = undecided & ~waits
+        new = undecided & ~marked(ahead[:, 1], len(candidates))
         chosen |= new
         undecided &= ~new
         undecided[ahead[new[ahead[:, 0]], 1]] = False
