@@ -64,8 +64,7 @@ def refine_steps(
     """
     levels = []
     for number, size in enumerate(sizes):
-        extra = None if orientation_term is None else orientation_term[:size]
-        problem = pair.problem(size, extra=extra)
+        problem = pair.problem(size, extra=None if orientation_term is None else orientation_term[:size])
         assignment = _add_points(problem, assignment)
         here = Progress(number / len(sizes), f"Matching {size} points")
         assignment, iterations = yield from _converge(problem, assignment, pair.settings.neighbourhood, here)

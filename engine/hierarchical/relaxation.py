@@ -5,10 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment, minimize
 from scipy.sparse import csr_array
 
@@ -68,7 +66,7 @@ class RelaxedMatching:
         weight = self.problem.quadratic_weight
         rows = self._mixing
         rows.data[:] = mixture.ravel()
-        mass: NDArray[Any] = np.bincount(column.ravel(), mixture.ravel(), len(used))
+        mass = np.bincount(column.ravel(), mixture.ravel(), len(used))
         cross = np.take_along_axis(self.problem.source_distances @ (rows @ self._target), column, axis=1)
         row_sums = mixture.sum(axis=1)
         interaction = (source_squared @ row_sums)[:, None] - 2 * cross + (target_squared @ mass)[column]

@@ -176,5 +176,4 @@ def _scaled(difference: Floats) -> Floats:
 
 def _signature_difference(first: Floats, second: Floats) -> Floats:
     """Compare kernel signatures (s, d) and (t, d) by their logarithms, because they span decades: (s, t)."""
-    smallest = TINY
-    return bin_difference(*(np.log(np.maximum(signature, smallest)) for signature in (first, second)))
+    return bin_difference(*(np.log(np.maximum(signature, TINY)) for signature in (first, second)))

@@ -259,5 +259,4 @@ def assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
     residual = max(float(misfits.distances[np.arange(len(lifted)), lifted].mean()), TINY)
     orientation = mean_orientation(source, target, assignment, lifted)
     score = float(np.log(residual) - CURVATURE_WEIGHT * curvature_agreement(source, target, lifted))
-    cost = pair.problem(len(assignment)).cost(assignment)
-    return Hypothesis(coarse, levels, cost, orientation, score)
+    return Hypothesis(coarse, levels, pair.problem(len(assignment)).cost(assignment), orientation, score)

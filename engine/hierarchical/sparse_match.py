@@ -128,8 +128,7 @@ def _gmds_steps(hypothesis: Hypothesis) -> Steps[Answer]:
     at_coarse = target.samples.vertices[hypothesis.levels[0].assignment]
     start = SurfacePoints.at_vertices(target.original, target.vertices[at_coarse])
     wanted = pair.source_distances[:points, :points]
-    steps = gmds_steps(pair.source, target, points, start=start, wanted=wanted, distances=pair.target_metric)
-    found = yield from steps
+    found = yield from gmds_steps(pair.source, target, points, start=start, wanted=wanted, distances=pair.target_metric)
     levels = tuple(Level(level.points, level.sweeps, level.stress, level.target_points) for level in found.levels)
     placed, distances = target.surface.on_mesh(found.target_points), found.distances
     if pair.landmarks:

@@ -293,8 +293,7 @@ def _charge_exclusions(model: PairModel) -> None:
 def _forbid_again(model: PairModel) -> None:
     """Give whatever is forbidden its full cost again: the ascent spreads it over the tables."""
     model.unary[~model.alive] = model.cap
-    k = len(model.points)
-    for i in range(k):
+    for i in range(len(model.points)):
         same = model.labels[i][:, None, None] == model.labels  # (K, k, K)
         same[:, i] = False
         model.pair[i][same] = model.cap

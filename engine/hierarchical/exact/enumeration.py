@@ -97,8 +97,7 @@ class Enumeration:
         if not len(children.bound):
             return children.bound, children.chosen
         if children.matched[0].all():
-            points = np.arange(children.chosen.shape[1])
-            return children.bound, self._model.labels[points, children.chosen]
+            return children.bound, self._model.labels[np.arange(children.chosen.shape[1]), children.chosen]
         self._stack.append(children)
         return np.zeros(0), np.zeros((0, children.chosen.shape[1]), dtype=np.int64)
 
