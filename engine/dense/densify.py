@@ -197,8 +197,7 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     whole = yield from within(steps, 0.85, 1.0)
     del there, back  # of a million vertices, what is not needed any more counts
     forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)
-    alone = max(whole.there.alone, whole.back.alone)
-    quality = with_pieces(quality, alone, whole.there.share)
+    quality = with_pieces(quality, max(whole.there.alone, whole.back.alone), whole.there.share)
     if pair.landmarks is not None:
         given, partners = pair.landmarks.source.original, pair.landmarks.target.original
         forward = _at_landmarks(forward, y.original, given, partners)

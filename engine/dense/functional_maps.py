@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr, solve_triangular
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, slices
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, run
 
@@ -250,21 +249,14 @@ def _nearest_steps(left: Floats, right: Floats, squares_x: Floats, squares_y: Fl
     right = np.column_stack([right, np.ones(n), -squares_y]).astype(np.float32)
     on_y, on_x = np.empty(m, np.int64), np.zeros(n, np.int64)
     best = np.full(n, -np.inf, np.float32)
-    for first, last in _blocks(m, n):
-        likeness = left[first:last] @ right.T
-        on_y[first:last] = likeness.argmax(axis=1)
+    for part in slices(m, max(_BLOCK // n, 1)):
+        likeness = left[part] @ right.T
+        on_y[part] = likeness.argmax(axis=1)
         rows, values = _largest_of_columns(likeness)
         better = values > best
-        on_x[better], best[better] = first + rows[better], values[better]
-        yield Progress(last / m, "Comparing maps")
+        on_x[better], best[better] = part.start + rows[better], values[better]
+        yield Progress(part.stop / m, "Comparing maps")
     return PointMaps(on_y, on_x)
-
-
-def _blocks(m: int, n: int) -> Iterator[tuple[int, int]]:
-    """First and last of the rows of an (m, n) product that fit into memory together."""
-    step = max(_BLOCK // n, 1)
-    for first in range(0, m, step):
-        yield first, min(first + step, m)
 
 
 def _largest_of_columns(product: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:

@@ -141,8 +141,7 @@ def rigidity_term(x: MapDomain, y: MapDomain, points: PointMaps, size: int) -> f
         count = min(size, basis.size)
         rough = np.concatenate([here.places, here.normals, there.places[images], there.normals[images]], axis=1)
         smoothed = basis.functions[:, :count] @ basis.coefficients(rough, count)
-        defects = _rigid_defects(here.patches, *np.split(smoothed, 4, axis=1))
-        logarithms.append(np.log(defects + _RIGID).mean())
+        logarithms.append(np.log(_rigid_defects(here.patches, *np.split(smoothed, 4, axis=1)) + _RIGID).mean())
     return float(np.exp(np.mean(logarithms)))
 
 

@@ -82,8 +82,7 @@ def _gaps(places: Floats, target: TriangleMesh, back: SurfacePoints) -> Floats:
     reached = back.positions
     if len(reached) < _DENSE:
         reached = np.concatenate([reached, reached[target.triangles].mean(axis=1)])
-    tree = cKDTree(reached, balanced_tree=False, compact_nodes=False)
-    return tree.query(places)[0]
+    return cKDTree(reached, balanced_tree=False, compact_nodes=False).query(places)[0]
 
 
 def _parts(mesh: TriangleMesh, chosen: Bools) -> Ints:

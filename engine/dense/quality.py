@@ -138,8 +138,7 @@ def map_confidence(
         hundredths of sqrt(area) from the true ones.  Zero for what has no partner on the target.
     """
     known = with_partner(source, target, there, back)
-    trips = _trips(source, there, back, doubt)
-    return _confidence(source, target, there, known, trips) * credibility
+    return _confidence(source, target, there, known, _trips(source, there, back, doubt)) * credibility
 
 
 def trip_confidence(distances: Floats) -> Floats:

@@ -396,8 +396,7 @@ class Follower:
         """
         if not self.are_closed:
             return 0.0
-        points = self.source.mesh.vertices
-        return probability_in_place(agreement_in_place(points, positions, self.source.mass))
+        return probability_in_place(agreement_in_place(self.source.mesh.vertices, positions, self.source.mass))
 
     def credit(self, positions: Floats) -> float:
         """By how much a score is smaller because of what is in place, be it after a half turn, see `place_credit`."""

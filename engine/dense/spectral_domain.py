@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.orientation import tangent_directions, tangent_gradient
 from ..hierarchical.spectral_descriptors import automatic_energies, wave_kernel_signatures
-from ..runtime.arrays import TINY, Floats, Ints
+from ..runtime.arrays import TINY, Floats, Ints, group_sums
 from ..shapes.shape import Shape
 from .functional_maps import PointMaps, SampledBasis
 
@@ -137,12 +137,10 @@ class MapDomain:
         for corner in range(3):
             opposite = corners[:, (corner + 2) % 3] - corners[:, (corner + 1) % 3]
             pull = np.cross(mesh.triangle_normals, opposite) / 2
-            for axis in range(3):
-                gradient[:, axis] += np.bincount(mesh.triangles[:, corner], pull[:, axis], mesh.vertex_count)
+            gradient += group_sums(mesh.triangles[:, corner], pull, mesh.vertex_count)
         integrated = np.einsum("nd,nd->n", gradient, mesh.vertex_normals)
         coefficients = np.exp(-_HEAT_TIME * self.values) * (self.functions.T @ integrated)
-        size = np.linalg.norm(coefficients)
-        return self.functions[self.vertices] @ coefficients / max(size, TINY)
+        return self.functions[self.vertices] @ coefficients / max(np.linalg.norm(coefficients), TINY)
 
     @cached_property
     def signatures(self) -> Floats:

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..dense.rough_maps.extremity_search import beam_matchings
-from ..dense.rough_maps.lifted_matchings import squared_differences
+from ..dense.rough_maps.lifted_matchings import described, squared_differences
 from ..geometry.best_distinct import best_distinct
-from ..geometry.orientation import signed_areas
+from ..geometry.orientation import signed_area_tables, signed_areas
 from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Progress, Steps
 from ..shapes.shape import Shape
@@ -107,10 +107,7 @@ class _Carrier:
         self._first, self._second = np.triu_indices(len(matched), 1)
         self._whole, self._part = whole.samples.distances, part.samples.distances[:, : len(matched)]
         self._part_sides = signed_areas(part.samples.directions[:, matched])
-        self._sides = np.zeros((len(self._whole), len(offered), len(offered)))
-        first, second = np.triu_indices(len(offered), 1)
-        self._sides[:, first, second] = signed_areas(whole.samples.directions[:, offered])
-        self._sides[:, second, first] = -self._sides[:, first, second]
+        self._sides = signed_area_tables(whole.samples.directions[:, offered])
 
     def matchings(self, unit: float) -> Ints:
         """Match samples of the part, whose distances are in `unit` of those of the whole: images (r, m)."""
@@ -121,23 +118,16 @@ class _Carrier:
     def carried(self, images: Ints, unit: float) -> _Matching:
         """Carry a matching over to the scouts."""
         rows = self._part_rows()[:_SCOUTS].astype(np.float32)
-        there = self._whole_rows(images, unit).astype(np.float32)
-        squares = squared_differences(rows, there)
+        squares = squared_differences(rows, self._whole_rows(images, unit).astype(np.float32))
         return _Matching(images, unit, float(squares.min(axis=1).mean()), squares.argmin(axis=1))
 
     def everywhere(self, matching: _Matching) -> Ints:
         """Carry a matching over to all samples of the part: numbers of samples of the whole."""
-        tree = cKDTree(self._whole_rows(matching.images, matching.unit))
-        return tree.query(self._part_rows())[1]
+        return cKDTree(self._whole_rows(matching.images, matching.unit)).query(self._part_rows())[1]
 
     def _part_rows(self) -> Floats:
-        return self._rows(self._part, self._part_sides)
+        return described(self._part, self._part_sides, _SIGNED_WEIGHT)
 
     def _whole_rows(self, images: Ints, unit: float) -> Floats:
         sides = self._sides[:, images[self._first], images[self._second]]
-        return self._rows(self._whole[:, images] / unit, sides)
-
-    def _rows(self, distances: Floats, sides: Floats) -> Floats:
-        """Describe points by their distances (k, m) to what is matched, and by the signed areas (k, m (m - 1) / 2)."""
-        columns = distances / np.sqrt(distances.shape[1]), _SIGNED_WEIGHT * sides / np.sqrt(max(sides.shape[1], 1))
-        return np.concatenate(columns, axis=1)
+        return described(self._whole[:, images] / unit, sides, _SIGNED_WEIGHT)

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
@@ -181,8 +180,8 @@ def _coarser(places: _Places) -> _Places | None:
     if count < _FEWEST:
         return None
     # A least area, so that cells of needles only have a mean as well.
-    areas: NDArray[Any] = np.maximum(places.areas, 1e-9 * places.areas.mean())
-    totals: NDArray[Any] = np.bincount(number, areas, count)
+    areas = np.maximum(places.areas, 1e-9 * places.areas.mean())
+    totals = np.bincount(number, areas, count)
     vectors = (places.positions, places.images, places.normals, places.image_normals)
     positions, images, normals, image_normals = (
         group_sums(number, areas[:, None] * values, count) / totals[:, None] for values in vectors

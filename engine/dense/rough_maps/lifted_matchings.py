@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.best_distinct import best_distinct
-from ...geometry.orientation import signed_areas
+from ...geometry.orientation import signed_area_tables, signed_areas
 from ...runtime.arrays import Floats, Ints
 from ..functional_maps import PointMaps, nearest_both_ways
 from ..spectral_domain import MapDomain
@@ -51,11 +51,9 @@ class LiftedMatchings:
         self._distances = _in_means(there) if relative else there
         self._weight = _RELATIVE_SIGNED_WEIGHT if relative else _SIGNED_WEIGHT
         # Those of all pairs in either order, so that each matching finds its own.
-        self._sides = np.zeros((len(there), len(of_y), len(of_y)))
-        first, second = np.triu_indices(len(of_y), 1)
-        self._sides[:, first, second] = signed_areas(y.directions(of_y))
-        self._sides[:, second, first] = -self._sides[:, first, second]
-        self._rows_x = self._rows(_in_means(here) if relative else here, signed_areas(x.directions(of_x)))
+        self._sides = signed_area_tables(y.directions(of_y))
+        own = _in_means(here) if relative else here
+        self._rows_x = described(own, signed_areas(x.directions(of_x)), self._weight)
 
     def maps(self, images: Ints, sign: int) -> PointMaps:
         """Carry a matching over both surfaces.
@@ -149,14 +147,14 @@ class LiftedMatchings:
 
     def _rows_y(self, images: Ints, sign: int) -> Floats:
         first, second = np.triu_indices(len(images), 1)
-        return self._rows(self._distances[:, images], sign * self._sides[:, images[first], images[second]])
+        sides = sign * self._sides[:, images[first], images[second]]
+        return described(self._distances[:, images], sides, self._weight)
 
-    def _rows(self, distances: Floats, sides: Floats) -> Floats:
-        """Describe points by their distances (k, m) to samples, and by the signed areas (k, m (m - 1) / 2)."""
-        columns = [distances / np.sqrt(max(distances.shape[1], 1))]
-        if sides.shape[1]:
-            columns.append(self._weight * sides / np.sqrt(sides.shape[1]))
-        return np.column_stack(columns)
+
+def described(distances: Floats, sides: Floats, weight: float) -> Floats:
+    """Describe points by their distances (k, m) to samples, and by the signed areas (k, m (m - 1) / 2), so weighted."""
+    columns = distances / np.sqrt(max(distances.shape[1], 1)), weight * sides / np.sqrt(max(sides.shape[1], 1))
+    return np.concatenate(columns, axis=1)
 
 
 def _in_means(distances: Floats) -> Floats:

@@ -63,8 +63,7 @@ class _Motions(NamedTuple):
 
     def back(self, places: Floats) -> Floats:
         """Take places of Y, (k, 3), to X, (r, k, 3)."""
-        found: Floats = (places - self.translations[:, None]) @ self.rotations
-        return found / self.scales[:, None, None]
+        return (places - self.translations[:, None]) @ self.rotations / self.scales[:, None, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,8 +178,7 @@ def rigid_maps(x: MapDomain, y: MapDomain) -> list[PointMaps]:
     pair = _RigidPair(x, y)
     motions = pair.starts()
     for count, rounds in _ROUNDS:
-        matches = pair.matches(motions, _PLACES)
-        motions = motions.of(matches.order[:count])
+        motions = motions.of(pair.matches(motions, _PLACES).order[:count])
         for _ in range(rounds):
             motions = pair.nearer(pair.matches(motions, _PLACES))
     found = pair.matches(motions)
