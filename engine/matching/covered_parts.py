@@ -22,7 +22,7 @@ from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.deformable import DeformableSurface
-from ..runtime.arrays import TINY, Bools, Floats, Ints
+from ..runtime.arrays import TINY, Bools, Floats, Ints, group_largest
 from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, part_of, within
@@ -166,8 +166,7 @@ def covered_parts_steps(
     first_images = fitter.nearest_samples(places)
     kept = there.confidence[whole.vertices[coarse.vertices]] > 0
     starts = [(kept, first_images)]
-    searching = part_placements_steps(fitter.whole, fitter.part, _PLACEMENTS)
-    placements = yield from within(searching, 0.2, 0.25)
+    placements = yield from within(part_placements_steps(fitter.whole, fitter.part, _PLACEMENTS), 0.2, 0.25)
     starts += [(fitter.roughly_covered(images), images) for images in placements]
     fits = yield from within(_registered_steps(fitter, starts), 0.25, 0.75)
     if not any(may_reach(least, fit.likeness, 0.0) for fit in fits):
@@ -250,15 +249,14 @@ def continued(whole: Shape, part: Shape, places: Floats, overhanging: Bools, uni
     hanging = np.flatnonzero(overhanging & (roots >= 0))
     lengths, roots = lengths[hanging], roots[hanging]
     ends, numbers = np.unique(cKDTree(whole.mesh.vertices).query(places[roots])[1], return_inverse=True)
-    longest = np.zeros(len(ends))
-    np.maximum.at(longest, numbers, unit * lengths)
+    longest = group_largest(numbers, unit * lengths, len(ends))
     distances = dijkstra(whole.solver.graph, directed=False, indices=ends, limit=float(longest.max()))
     return (distances <= longest[:, None]).any(axis=0)
 
 
 def _registered_steps(fitter: _Fitter, starts: list[tuple[Bools, Ints]]) -> Steps[list[_Fit]]:
     """Compare pieces with the part, and register the most credible ones and their rivals."""
-    proposed = yield from within(shared_steps(_proposed_steps, fitter, starts), 0.0, 0.6)
+    proposed = yield from within(shared_steps(_Fitter.proposal_steps, fitter, starts), 0.0, 0.6)
     proposals = [proposal for proposal in proposed if proposal is not None]
     scores = np.array([proposal.hypothesis.score for proposal in proposals])
     places = np.array([proposal.places for proposal in proposals]) / fitter.whole.scale
@@ -267,18 +265,13 @@ def _registered_steps(fitter: _Fitter, starts: list[tuple[Bools, Ints]]) -> Step
     return (yield from within(steps, 0.6, 1.0))
 
 
-def _proposed_steps(fitter: _Fitter, start: tuple[Bools, Ints]) -> Steps[_Proposal | None]:
-    """Compare a piece with the part."""
-    return (yield from fitter.proposal_steps(*start))
-
-
 def _refined_steps(fitter: _Fitter, start: tuple[Bools, Ints, int]) -> Steps[list[_Fit]]:
     """Register a piece where it is known to lie, then again, so many times, what that covers."""
     refined: list[_Fit] = []
     covered, images, rounds = start
     for again in range(rounds):
         begin, end = part_of(again, rounds)
-        proposal = yield from within(fitter.proposal_steps(covered, images, known=True), begin, (begin + end) / 2)
+        proposal = yield from within(fitter.proposal_steps((covered, images), known=True), begin, (begin + end) / 2)
         if proposal is None:
             break
         refined.append((yield from within(fitter.fit_steps(proposal), (begin + end) / 2, end)))
@@ -304,8 +297,7 @@ class _Fitter:
         """Tell which vertices of the whole (n,) are near to the part's vertices or the middles of its triangles."""
         mesh = self.whole.mesh
         places = np.concatenate([fit.places, fit.places[self.part.mesh.triangles].mean(axis=1)])
-        spacing = np.sqrt(mesh.area / mesh.vertex_count)
-        return cKDTree(places).query(mesh.vertices)[0] < _SPACINGS * spacing
+        return cKDTree(places).query(mesh.vertices)[0] < _SPACINGS * np.sqrt(mesh.area / mesh.vertex_count)
 
     def grown(self, fit: _Fit) -> Bools:
         """Tell where the whole (n,) goes on beyond a piece, see `continued`."""
@@ -329,11 +321,13 @@ class _Fitter:
         areas = self.whole.mesh.vertex_areas
         return float(areas @ (first & second)) / max(float(areas @ (first | second)), TINY)
 
-    def proposal_steps(self, covered: Bools, images: Ints, *, known: bool = False) -> Steps[_Proposal | None]:
+    def proposal_steps(self, start: tuple[Bools, Ints], *, known: bool = False) -> Steps[_Proposal | None]:
         """Cut a piece out of the whole and compare it with the part; None if it is too small for that.
 
-        If the images of the part's samples are known well, functional maps would only make them worse.
+        A start is which vertices of the whole, (n,), are the piece, and the images of the part's samples on the whole.
+        If these are known well, functional maps would only make them worse.
         """
+        covered, images = start
         whole = self.whole.mesh
         kept = whole.triangles[covered[whole.triangles].all(axis=1)]
         vertices, triangles = np.unique(kept, return_inverse=True)

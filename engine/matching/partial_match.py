@@ -114,8 +114,7 @@ def agreed_part_steps(
     agrees = bool(pieces) and not pieces[0].is_new
     task = replace(task, begun=known.source_to_target) if agrees else task
     found = [(piece, of_source) for piece in pieces[: 1 if agrees else _MOST]]
-    result = yield from within(_best_piece_steps(known, x, y, task, found, least=CREDIBLE), _FOUND, 1.0)
-    return result, agrees
+    return (yield from within(_best_piece_steps(known, x, y, task, found, least=CREDIBLE), _FOUND, 1.0)), agrees
 
 
 def _best_piece_steps(
@@ -214,8 +213,7 @@ def _cut_steps(shape: Shape, covered: Bools, name: str) -> Steps[Shape]:
     mesh, kept = shape.original, shape.surface.kept_triangles
     excluded = ~covered
     if len(kept) < mesh.triangle_count:
-        used = marked(mesh.triangles[kept], mesh.vertex_count)
-        excluded |= ~used
+        excluded |= ~marked(mesh.triangles[kept], mesh.vertex_count)
     cut = yield from within(Shape.steps(mesh, name, excluded=excluded), 0.0, 0.7)
     if shape.surface.cleaned.stand_in is None:
         return cut

@@ -47,19 +47,15 @@ class PiecedBody:
     @cached_property
     def shares(self) -> Floats:
         """Area of each piece as a part of the body's, (p,)."""
-        return self._on_pieces(self.pieces, self.areas)
+        return self.on_pieces(self.pieces, self.areas)
 
     def without(self, pieces: Ints) -> PiecedBody:
         """Return the body without some pieces."""
         return PiecedBody(self.mesh, np.where(np.isin(self.pieces, pieces), -1, self.pieces))
 
-    def carried_shares(self, images: Ints, areas: Floats) -> Floats:
-        """Sum areas (k,) that go to vertices (k,) of the mesh, for each piece, (p,)."""
-        return self._on_pieces(self.pieces[images], areas)
-
-    def _on_pieces(self, pieces: Ints, areas: Floats) -> Floats:
-        sums: Floats = np.bincount(pieces + 1, areas, int(self.pieces.max()) + 2).astype(np.float64)
-        return sums[1:]
+    def on_pieces(self, pieces: Ints, areas: Floats) -> Floats:
+        """Sum areas (k,) that are on pieces (k,), -1 for none, for each piece, (p,)."""
+        return np.bincount(pieces + 1, areas, int(self.pieces.max()) + 2).astype(np.float64)[1:]
 
 
 def common_cut(first: PiecedBody, second: PiecedBody) -> float:
@@ -76,8 +72,7 @@ def common_cut(first: PiecedBody, second: PiecedBody) -> float:
 def without_partner(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> Ints:
     """Tell which pieces of a body but the first have none of the other: a map takes most of them to its first piece."""
     main = target.pieces[found.nearest_vertices] == 0
-    shares = np.bincount(source.pieces + 1, source.areas * main, int(source.pieces.max()) + 2)[1:]
-    alone = np.flatnonzero(shares > source.shares / 2)
+    alone = np.flatnonzero(source.on_pieces(source.pieces, source.areas * main) > source.shares / 2)
     return alone[alone > 0]
 
 
@@ -97,7 +92,7 @@ def resized_share(source: PiecedBody, target: PiecedBody, found: SurfaceMap) -> 
         Half of the sum over pieces of the target of how much their shares of its area differ from the shares of the
         source's that are mapped there (the distance in total variation).  Near zero for bodies that are cut alike.
     """
-    carried = target.carried_shares(found.nearest_vertices, source.areas)
+    carried = target.on_pieces(target.pieces[found.nearest_vertices], source.areas)
     return float(np.abs(carried - target.shares).sum() / 2)
 
 

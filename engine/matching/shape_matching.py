@@ -117,8 +117,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     sparse_end = 0.5 if settings.dense else 1.0
     sampled = 0.2 if settings.dense else 0.6
     eigenpairs = settings.eigenpairs if Pair.needs_spectrum(settings) else EIGENPAIRS if settings.dense else 0
-    wanted = Wanted(samples, measured, eigenpairs)
-    yield from within(prepared_shapes_steps(x, y, wanted), 0.0, sampled)
+    yield from within(prepared_shapes_steps(x, y, Wanted(samples, measured, eigenpairs)), 0.0, sampled)
     clock.lap("geodesics")
     limited = x.limited(samples, measured), y.limited(samples, measured)
     pair = Pair(*limited, settings, 0 if known is None else len(known))
@@ -227,8 +226,7 @@ def _agreeing_steps(answers: list[Answer], images: SurfacePoints) -> Steps[tuple
     direct = answers[nearest]
     mirrored = next((answers[i] for i in order if i != nearest and answers[i].orientation <= 0), None)
     if far[nearest] > _AGREEING:
-        rows = y.samples.rows[:, images.nearest_vertices]
-        start = _distinct_samples(rows, pair.landmarks)
+        start = _distinct_samples(y.samples.rows[:, images.nearest_vertices], pair.landmarks)
         levels = yield from refine_steps(pair, start, [count])
         direct = at_samples(direct, levels)
         mirrored = mirrored or next((a for a in answers if a.orientation <= 0), None)

@@ -229,9 +229,8 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) 
     curvature = curvature_agreement(shape, shape, images)
     # A map that moves points by little cannot change distances by much, as the flip of a thin body from front to back:
     # what counts is the change for the way that the points go.
-    tiny = TINY
     way = float(np.square(distances[images, everywhere]).mean())
-    score = np.log(max(float(np.square(change).mean()), tiny) / max(way, tiny))
+    score = np.log(max(float(np.square(change).mean()), TINY) / max(way, TINY))
     score += (involution / _INVOLUTION_SCALE) ** 2 - CURVATURE_WEIGHT * curvature
     return _Candidate(coarse, images, orientation, involution, curvature, float(score))
 
@@ -249,8 +248,7 @@ def _result(shape: Shape, candidate: _Candidate, count: int) -> SymmetryResult:
         image_rows = shape.solver.distances(images) / shape.scale
     points = shape.samples.vertices[:count]
     change = rows[:, points] - image_rows[:, images]
-    sides = _sides(shape, rows - image_rows)
-    whole_sides = shape.surface.spread(sides * shape.scale, np.nan)
+    whole_sides = shape.surface.spread(_sides(shape, rows - image_rows) * shape.scale, np.nan)
     return SymmetryResult(
         source_points=SurfacePoints.at_vertices(shape.original, shape.vertices[points]),
         target_points=SurfacePoints.at_vertices(shape.original, shape.vertices[images]),

@@ -161,7 +161,8 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
         return None
     best = found[0]
     margin = best.score - found[1].score if len(found) > 1 else _NO_RIVAL
-    fits = yield from within(_fine_fits_steps(pair, best), 0.86, 1.0)
+    placed = [(fit.positions, back) for back, fit in enumerate(best.fits)]
+    fits = yield from within(shared_steps(_fine_fit_steps, pair, placed), 0.86, 1.0)
     members, agreement = _members_of_both(pair.surfaces, fits)
     if not (members[0].any() and members[1].any()):
         return None
@@ -272,13 +273,6 @@ def _turned_fit_steps(pair: CoarsePair, registered: tuple[Fit, int]) -> Steps[Sc
     return scored_fit(other, coarse, register_parts(other, coarse, positions, TURNED, marks=marks))
 
 
-def _fine_fits_steps(pair: CoarsePair, best: _MutualFit) -> Steps[tuple[Fit, Fit]]:
-    """Follow registrations of coarse surfaces in full resolution."""
-    items = [(fit.positions, back) for back, fit in enumerate(best.fits)]
-    there, back = yield from shared_steps(_fine_fit_steps, pair, items)
-    return there, back
-
-
 def _fine_fit_steps(pair: CoarsePair, placed: tuple[Floats, int]) -> Steps[Fit]:
     """Register the first surface (0) or the second (1) from where the coarse one that stands for it is."""
     yield Progress(0.0, _LABEL)
@@ -297,9 +291,7 @@ def _fine_fit_steps(pair: CoarsePair, placed: tuple[Floats, int]) -> Steps[Fit]:
     return register_parts(source, target, factor.solve(elastic.pull(rotations) + right), FINE)
 
 
-def _members_of_both(
-    surfaces: tuple[PartSurface, PartSurface], fits: tuple[Fit, Fit]
-) -> tuple[tuple[Bools, Bools], float]:
+def _members_of_both(surfaces: tuple[PartSurface, PartSurface], fits: list[Fit]) -> tuple[tuple[Bools, Bools], float]:
     """Say which vertices of either surface have a partner by both registrations, and how far these agree."""
     said = (fits[0].members, fits[1].members_back), (fits[1].members, fits[0].members_back)
     images = fits[0].there.images, fits[1].there.images

@@ -209,8 +209,7 @@ def _on_main(shape: Shape, members: Bools) -> Bools:
     if proxy.is_identity:
         return members
     points = proxy.points
-    shares = np.einsum("nc,nc->n", points.barycentric, members[points.corners].astype(np.float64))
-    return shares > 1 / 2
+    return np.einsum("nc,nc->n", points.barycentric, members[points.corners].astype(np.float64)) > 1 / 2
 
 
 def _whole_map_steps(pair: tuple[Shape, Shape], shared: _Shared, here: int) -> Steps[SurfaceMap]:
@@ -256,8 +255,7 @@ def _result_steps(
     """Show the map by points that are spread over what is shared."""
     (x, y), (forward, backward) = pair, maps
     settings = task.settings
-    members = np.flatnonzero(overlap.members[0])
-    vertices = _spread(x, members, settings.points)
+    vertices = _spread(x, np.flatnonzero(overlap.members[0]), settings.points)
     own = x.vertices[vertices]
     images = SurfacePoints.from_barycentric(y.original, forward.triangles[own], forward.barycentric[own])
     on_main = (y.surface.cleaned.vertex_parts[images.nearest_vertices] == 0).all()
@@ -302,7 +300,6 @@ def _spread(shape: Shape, members: Ints, count: int) -> Ints:
     centre = shape.mesh.vertices[members].mean(axis=0)
     first = members[int(np.square(shape.mesh.vertices[members] - centre).sum(axis=1).argmax())]
     sampler = FarthestPointSampler(graph, int(first))
-    inside = marked(members, shape.mesh.vertex_count)
-    sampler.distances[~inside] = -1.0
+    sampler.distances[~marked(members, shape.mesh.vertex_count)] = -1.0
     sampler.extend(max(min(count, len(members)), min(_LEAST_POINTS, len(members))))
     return np.array(sampler.samples)

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ...geometry.best_distinct import best_distinct
 from ...runtime.arrays import Floats
 from ...runtime.progress import Progress, Steps, within
-from .consistent_sets import PLANS, ConsistentSet, consistent_sets
+from .consistent_sets import PLANS, consistent_sets
 from .oriented_patches import OrientedPatches
 from .overlap_score import overlap_score
 from .part_registration import FAST, REST, Fit, Landmarks, Round, placed, register_parts
@@ -139,8 +139,7 @@ def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
     nearest = cKDTree(coarse.vertices).query(here.vertices[patches[0].vertices])[1]
     starts: list[_Start] = []
     for number, plan in enumerate(PLANS):
-        sets: list[ConsistentSet] = consistent_sets(candidates, together, patches, shares, plan)
-        for each in sets:
+        for each in consistent_sets(candidates, together, patches, shares, plan):
             first, second = candidates.first[each.members], candidates.second[each.members]
             paths = patches[0].paths[first][:, coarse.ids]
             marks = Landmarks(

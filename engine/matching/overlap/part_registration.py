@@ -242,8 +242,7 @@ def register_parts(
     there, back = _matched(source, target, positions, _FOUND)
     rotations = elastic.rotations(positions, _ROTATION_RADIUS)
     energies = elastic.energies(positions, rotations)
-    members = _members(source, there), _members(target, back)
-    return Fit(positions, rotations, energies, there, back, *members)
+    return Fit(positions, rotations, energies, there, back, *(_members(source, there), _members(target, back)))
 
 
 def _matched(

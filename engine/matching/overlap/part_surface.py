@@ -120,15 +120,11 @@ class PartSurface:
         """Distance of each vertex to where the surface was cut, (n,); `_UNREACHED` where it was not."""
         if not self.border.any():
             return np.full(self.count, _UNREACHED)
-        return np.minimum(self.nearest_path(np.flatnonzero(self.border)), _UNREACHED)
+        return np.minimum(dijkstra(self.graph, indices=np.flatnonzero(self.border), min_only=True), _UNREACHED)
 
     def paths(self, vertices: Ints) -> Floats:
         """Lengths of the shortest paths from vertices (k,) to all, (k, n); infinite where there is none."""
         return dijkstra(self.graph, indices=vertices)
-
-    def nearest_path(self, vertices: Ints) -> Floats:
-        """Length of the shortest path from any of some vertices (k,) to each, (n,)."""
-        return dijkstra(self.graph, indices=vertices, min_only=True)
 
     def samples(self, count: int) -> Ints:
         """Take vertices far from each other, at most so many, that do not depend on the order of the vertices."""
@@ -148,7 +144,6 @@ class PartSurface:
 
     def largest_piece(self, chosen: Bools) -> Bools:
         """Keep of the chosen vertices (n,) those of the connected piece with the largest area."""
-        edges = self.mesh.edges[chosen[self.mesh.edges].all(axis=1)]
-        pieces = joined_components(self.count, *edges.T)
+        pieces = joined_components(self.count, *self.mesh.edges[chosen[self.mesh.edges].all(axis=1)].T)
         areas = np.bincount(pieces, self.mass * chosen)
         return chosen & (pieces == areas.argmax())

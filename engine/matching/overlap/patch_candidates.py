@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, slices
 from .oriented_patches import TURNS, OrientedPatches
 from .part_surface import PartSurface
 
@@ -137,8 +137,7 @@ def compatibilities(
     ]
     rotations, credit = candidates.rotations.astype(np.float32), candidates.credit.astype(np.float32)
     together = np.empty((len(candidates), len(candidates)), np.float32)
-    for start in range(0, len(candidates), _ROWS):
-        rows = slice(start, start + _ROWS)
+    for rows in slices(len(candidates), _ROWS):
         block = np.exp(-_doubts((sides[0], sides[1]), rotations, rows))
         block[candidates.first[rows, None] == candidates.first] = 0
         together[rows] = block * (credit[rows, None] * credit)
