@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import interpolation_matrix
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, group_largest
 from ...runtime.errors import MatchError, RigError
 
 _STEEPNESS = 4
@@ -114,10 +114,7 @@ def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> c
     the one to go, and neighbours that differ a little in their weights do so afterwards as well.  Weights that
     are as large as the first that goes are shared out evenly if there are no others.
     """
-    free = _free(locked, weights.shape[1])
-    result = _clean(weights.copy())
-    rows = _rows(result)
-    is_free = free[result.indices]
+    result, rows, is_free = _entries(weights, locked)
     room = np.maximum(count - np.bincount(rows[~is_free], minlength=result.shape[0]), 0)
     entries = np.flatnonzero(is_free)
     crowded = np.bincount(rows[entries], minlength=result.shape[0]) > room
@@ -129,8 +126,7 @@ def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> c
     row, value = rows[entries], result.data[entries]
     starts = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
     lengths = np.diff(np.append(starts, len(row)))
-    rank = np.arange(len(row)) - np.repeat(starts, lengths)
-    kept = rank < room[row]
+    kept = (np.arange(len(row)) - np.repeat(starts, lengths)) < room[row]
     first_out = np.repeat(value[starts + room[row[starts]]], lengths)
     faded = np.where(kept, value * (1 - (first_out / value) ** _STEEPNESS), 0.0)
     flat = np.repeat(np.add.reduceat(faded, starts) <= 0, lengths)
@@ -157,12 +153,9 @@ def pruned(weights: csr_array, threshold: float, *, locked: Bools | None = None)
     (m, g) csr_array of float
         The others, unchanged.
     """
-    result = _clean(weights.copy())
-    rows = _rows(result)
-    largest = np.zeros(result.shape[0])
-    np.maximum.at(largest, rows, result.data)
-    tiny = (result.data < threshold) & (result.data < largest[rows]) & _free(locked, result.shape[1])[result.indices]
-    result.data[tiny] = 0
+    result, rows, is_free = _entries(weights, locked)
+    largest = group_largest(rows, result.data, result.shape[0])
+    result.data[(result.data < threshold) & (result.data < largest[rows]) & is_free] = 0
     return _clean(result)
 
 
@@ -181,10 +174,7 @@ def normalised(weights: csr_array, *, locked: Bools | None = None) -> csr_array:
     (m, g) csr_array of float
         The weights.  A vertex that has none, or none but locked ones, stays as it is.
     """
-    free = _free(locked, weights.shape[1])
-    result = _clean(weights.copy())
-    rows = _rows(result)
-    is_free = free[result.indices]
+    result, rows, is_free = _entries(weights, locked)
     taken = np.bincount(rows[~is_free], result.data[~is_free], result.shape[0])
     given = np.bincount(rows[is_free], result.data[is_free], result.shape[0])
     room = np.maximum(1 - taken, 0)
@@ -223,6 +213,12 @@ def with_rows(weights: csr_array, rows: Ints, new: csr_array) -> csr_array:
 def _rows(weights: csr_array) -> Ints:
     """Row of each entry."""
     return np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
+
+
+def _entries(weights: csr_array, locked: Bools | None) -> tuple[csr_array, Ints, Bools]:
+    """Copy weights (m, g), and say of each entry in which row it is, (k,), and whether it is not locked, (k,)."""
+    result = _clean(weights.copy())
+    return result, _rows(result), _free(locked, result.shape[1])[result.indices]
 
 
 def _free(locked: Bools | None, count: int) -> Bools:

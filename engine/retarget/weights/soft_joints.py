@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
+from ...runtime.arrays import group_largest
 from .skin_weights import row_differences
 from .weight_filling import filled
 
@@ -66,8 +64,6 @@ def with_soft_joints(
     count = parts.welded_count
     graph = csr_array((lengths, (one, other)), shape=(count, count))
     begin = np.unique(parts.edges[joint])
-    away: NDArray[Any] = dijkstra(graph, directed=False, indices=begin, min_only=True, limit=float(reach.max()))
-    farthest = np.zeros(source_parts.part_count)
-    np.maximum.at(farthest, plate, away)
-    soft = (away <= reach) & (away < farthest[plate])
+    away = dijkstra(graph, directed=False, indices=begin, min_only=True, limit=float(reach.max()))
+    soft = (away <= reach) & (away < group_largest(plate, away, source_parts.part_count)[plate])
     return filled(weights, ~soft[parts.welded], parts)

@@ -65,8 +65,7 @@ def standing_weights(mesh: TriangleMesh, skeleton: Skeleton, deforming: Bools) -
     operator = laplace_beltrami(mesh)
     extent = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     heat = operator.mass / np.maximum(nearest[:, 0], 1e-4 * extent) ** 2
-    loose = operator.mass <= 0
-    heat[loose] = 1.0
+    heat[operator.mass <= 0] = 1.0
     system = (operator.stiffness + diags_array(heat)).tocsc()
     weights = splu(system).solve(heat[:, None] * shares)
     weights[weights < _LEAST_WEIGHT] = 0.0

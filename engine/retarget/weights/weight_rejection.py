@@ -10,7 +10,7 @@ from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Ints
+from ...runtime.arrays import Bools, Ints, group_largest
 from .skin_weights import row_differences
 
 _STRETCH = 3.0
@@ -65,9 +65,7 @@ def _islands(parts: WeldedParts, whole: Bools) -> Bools:
     """Say of each welded vertex (w,) whether what whole edges (e,) join it to is small beside the rest of its part."""
     islands = joined_components(parts.welded_count, *parts.edges[whole].T)
     sizes = np.bincount(islands)[islands]
-    largest = np.zeros(parts.part_count, np.int64)
-    np.maximum.at(largest, parts.labels, sizes)
-    return sizes <= _ISLAND * largest[parts.labels]
+    return sizes <= _ISLAND * group_largest(parts.labels, sizes, parts.part_count)[parts.labels]
 
 
 def _degrees(parts: WeldedParts, chosen: Bools) -> Ints:
