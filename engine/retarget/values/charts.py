@@ -10,10 +10,10 @@ import numpy as np
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.components import joined_components, triangle_components
-from ...mesh.connectivity.halfedges import following, twins_of
+from ...mesh.connectivity.halfedges import following, triangle_slots, twins_of
 from ...mesh.polygons import Polygons
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints, marked
 from ...runtime.errors import MeshError
 
 
@@ -53,18 +53,15 @@ class CornerSheets:
     @cached_property
     def border_vertices(self) -> Bools:
         """Which vertices of the cut surface are at a border."""
-        triangle, slot = np.divmod(np.flatnonzero(self.borders), 3)
-        result = np.zeros(self.surface.vertex_count, bool)
-        for end in (slot, (slot + 1) % 3):
-            result[self.surface.triangles[triangle, end]] = True
-        return result
+        triangles, borders = self.surface.triangles, np.flatnonzero(self.borders)
+        ends = np.concatenate([triangle_slots(triangles, borders, end) for end in (0, 1)])
+        return marked(ends, self.surface.vertex_count)
 
     @cached_property
     def border_ends(self) -> tuple[Floats, Floats]:
         """Where the half-edges at borders begin and end, (b, 3) each."""
-        triangle, slot = np.divmod(np.flatnonzero(self.borders), 3)
-        ends = (self.surface.triangles[triangle, end] for end in (slot, (slot + 1) % 3))
-        first, second = (self.surface.vertices[end] for end in ends)
+        triangles, borders = self.surface.triangles, np.flatnonzero(self.borders)
+        first, second = (self.surface.vertices[triangle_slots(triangles, borders, end)] for end in (0, 1))
         return first, second
 
     def is_at_border(self, triangles: Ints, barycentric: Floats) -> Bools:

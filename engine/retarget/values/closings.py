@@ -17,7 +17,7 @@ from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
@@ -71,8 +71,6 @@ because its surroundings want something else."""
 _FIRMLY = 30.0, 200.0
 """How much openings that stay open count against uneven ways, first and then.  Of the width, 10 % are left on the head
 of the tests with 30 alone, 4 with 30 and then 200, 2 with 1,000."""
-
-_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,15 +191,14 @@ class _Seeking:
         """Find the places that a key (n, 3) brings together, or none."""
         rest, moved, n = self._mesh.vertices, self._mesh.vertices + offsets, self._mesh.vertex_count
         lengths = np.linalg.norm(offsets, axis=1)
-        least = max(_MOVED * float(lengths[self._own].max(initial=0.0)), _TINY)
+        least = max(_MOVED * float(lengths[self._own].max(initial=0.0)), TINY)
         places = np.flatnonzero(self._own & (lengths > least))
         if not len(places):
             return None
         search = self._search.moved(moved)
         normals = search.vertex_normals
         found = facing(search, moved[places], -normals[places], float(np.sqrt(self._mesh.area)))
-        corners = self._triangles[found.triangles]
-        there = interpolation_matrix(found.barycentric, corners, n)
+        there = interpolation_matrix(found.barycentric, self._triangles[found.triangles], n)
         apart, now = there @ rest - rest[places], there @ moved - moved[places]
         widths = np.linalg.norm(apart, axis=1)
         closed = (widths > _OPEN * lengths.max()) & (np.sqrt(found.squared_distances) <= _CLOSED * widths)
@@ -217,7 +214,7 @@ class _Seeking:
         here = csr_array((np.ones(len(chosen)), (np.arange(len(chosen)), chosen)), shape=(len(chosen), n))
         left = np.einsum("pd,pd->p", now[closed], apart[closed]) / widths**2
         doubts = (self._trips[chosen] + there[closed] @ self._trips) / widths
-        areas = np.maximum(self._mesh.vertex_areas[chosen] / (1 + np.square(doubts / _DOUBTED)), _TINY)
+        areas = np.maximum(self._mesh.vertex_areas[chosen] / (1 + np.square(doubts / _DOUBTED)), TINY)
         return _Closing(csr_array(there[closed] - here), left, widths, areas)
 
     def _see(self, places: Floats, lines: Floats) -> Bools:
@@ -276,7 +273,7 @@ class _Ways:
         """
         between = csr_array(closing.between @ images)
         apart = between @ self._vertices
-        widths = np.maximum(np.linalg.norm(apart, axis=1), _TINY)
+        widths = np.maximum(np.linalg.norm(apart, axis=1), TINY)
         if np.median(widths) <= _LOST * np.ptp(self._vertices, axis=0).max():
             return np.zeros(len(ways))
         grown = np.log(widths / closing.widths)
@@ -293,7 +290,7 @@ class _Ways:
         gathering = csr_array((np.ones(len(moving)), (moving, numbers.ravel())), shape=(len(ways), len(used)))
         closes = csr_array(closes @ gathering)
         fading = float(np.average(np.square(widths), weights=areas))
-        mass = np.maximum(self._laplace.mass[used], _TINY) / fading
+        mass = np.maximum(self._laplace.mass[used], TINY) / fading
         even = self._laplace.stiffness[used][:, used] + diags_array(mass)
         found = np.zeros(len(used))
         for firmly in _FIRMLY:

@@ -13,7 +13,7 @@ from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.polygons import Polygons
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, unit_vectors
+from ...runtime.arrays import Floats, Ints, group_largest, unit_vectors
 from ...runtime.errors import MeshError
 from .charts import cut_into_sheets
 from .deformation_gradients import surface_frames
@@ -61,7 +61,7 @@ def carry_corner_values(values: ArrayLike, source: Polygons, places: FacePlaces)
     _, code = np.unique(flat, axis=0, return_inverse=True)
     sheets = cut_into_sheets(places.image, source, code.reshape(-1, 1).astype(np.float64), 0.5)
     found = places.on_sheets(sheets)
-    return array[source.triangle_corners[found.triangles, found.nearest_slots]]
+    return array[source.triangle_corners[found.triangles, found.barycentric.argmax(axis=1)]]
 
 
 def carry_point_values(values: ArrayLike, target_to_source: SurfaceMap) -> NDArray[Any]:
@@ -82,9 +82,8 @@ def carry_point_marks(values: Floats, source_to_target: SurfaceMap) -> Floats:
     Each goes to the vertex nearest to its place; of several that meet there the largest counts.  All others are zero.
     """
     marked = np.flatnonzero(values)
-    carried = np.zeros(source_to_target.image_vertex_count)
-    np.maximum.at(carried, source_to_target.nearest_vertices[marked], values[marked])
-    return carried
+    images = source_to_target.nearest_vertices[marked]
+    return group_largest(images, values[marked], source_to_target.image_vertex_count)
 
 
 def carry_normals(
@@ -121,12 +120,8 @@ def carry_normals(
     if normals.shape != (source.corner_count, 3):
         raise MeshError(f"There should be one normal for each of {source.corner_count} corners, not {normals.shape}.")
     carried = _interpolated(np.asarray(normals, np.float64), source, places, _SAME_DIRECTION)
-    vertices = places.polygons.corner_vertices
-    smooth = places.map.transfer(places.image.vertex_normals)
-    turned = np.einsum("nij,nj->ni", rotations, smooth)
-    last = least_turns(unit_vectors(turned, _CANCELLED), target.vertex_normals)
-    whole = last @ rotations
-    result = unit_vectors(np.einsum("lij,lj->li", whole[vertices], carried), _CANCELLED)
+    vertices, smooth = places.polygons.corner_vertices, places.map.transfer(places.image.vertex_normals)
+    result = _turned(carried, vertices, rotations, smooth, target.vertex_normals)
     # Where normals cancel out there is none; the target's own is as good as any.
     return np.where(result.any(axis=1, keepdims=True), result, target.vertex_normals[vertices])
 
@@ -163,11 +158,18 @@ def turned_normals(normals: Floats, corner_vertices: Ints, mesh: TriangleMesh, p
     parts = WeldedParts.of(mesh)
     welded = parts.means @ positions
     rotations = surface_frames(parts.closed, welded, radius=_TURN_RADIUS).rotations
-    turned = np.einsum("nij,nj->ni", rotations, parts.closed.vertex_normals)
     now = TriangleMesh(welded, parts.triangles).vertex_normals
+    return _turned(normals, parts.welded[corner_vertices], rotations, parts.closed.vertex_normals, now)
+
+
+def _turned(normals: Floats, vertices: Ints, rotations: Floats, smooth: Floats, now: Floats) -> Floats:
+    """Turn normals at corners, (l, 3), with those of their vertices, (l,), by rotations (n, 3, 3) and then further.
+
+    The least turn takes smooth normals (n, 3), which the rotations alone turn nearly so, to those of the surface now.
+    """
+    turned = np.einsum("nij,nj->ni", rotations, smooth)
     whole = least_turns(unit_vectors(turned, _CANCELLED), now) @ rotations
-    homes = parts.welded[corner_vertices]
-    return unit_vectors(np.einsum("lij,lj->li", whole[homes], normals), _CANCELLED)
+    return unit_vectors(np.einsum("lij,lj->li", whole[vertices], normals), _CANCELLED)
 
 
 def _interpolated(values: Floats, source: Polygons, places: FacePlaces, tolerance: float) -> Floats:

@@ -117,13 +117,11 @@ def surface_frames(
     areas = np.maximum(mesh.triangle_areas, TINY)
     jacobians = after @ np.linalg.pinv(before)  # (m, 3, 3)
     grown = np.linalg.norm(np.cross(after[:, :, 0], after[:, :, 1]), axis=1) / (2 * areas)
-    most = _MOST_AREA * np.maximum(_median(grown, areas), TINY)
-    grown = np.minimum(grown, most)
+    grown = np.minimum(grown, _MOST_AREA * np.maximum(_median(grown, areas), TINY))
     stretches, overall = np.sqrt(grown), float(np.sqrt(areas @ grown / areas.sum()))
     columns = np.concatenate([jacobians.reshape(-1, 9), stretches[:, None]], axis=1) * areas[:, None]
     sums = np.stack([mesh.sum_at_vertices(column) for column in (columns / 3).T], axis=1)
-    spread = _spread(mesh, sums, radius)
-    spread = spread[bearers(mesh)]
+    spread = _spread(mesh, sums, radius)[bearers(mesh)]
     rotations = nearest_orthogonal(spread[:, :9].reshape(-1, 3, 3), -1.0 if mirrored else 1.0)
     return LocalFrames(rotations, _bounded(spread[:, 9]), overall)
 

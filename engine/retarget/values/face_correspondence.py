@@ -60,11 +60,6 @@ class CornerPlaces:
         """Which corners lie beyond the border of the sheet, (l,)."""
         return self.offsets.any(axis=1)
 
-    @property
-    def nearest_slots(self) -> Ints:
-        """Which corner of its triangle is nearest to each, (l,)."""
-        return self.barycentric.argmax(axis=1)
-
 
 @dataclass(frozen=True, eq=False)
 class FaceSamples:

@@ -89,8 +89,7 @@ def carry_offsets_steps(
     parts = WeldedParts.of(target)
     carried = np.zeros((len(array), target.vertex_count, 3))
     for number, key in enumerate(array):
-        moved = target_to_source.transfer(factors[:, None] * frames.turned(key))
-        moved = fill(moved)
+        moved = fill(target_to_source.transfer(factors[:, None] * frames.turned(key)))
         if parts.seams:
             moved = (parts.means @ moved)[parts.welded]
         lengths = np.linalg.norm(moved, axis=1)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...mesh.connectivity.components import joined_components
 from ...mesh.polygons import Polygons
-from ...runtime.arrays import TINY, Bools, Floats, Ints, numbered
+from ...runtime.arrays import TINY, Bools, Floats, Ints, group_largest, numbered
 
 _SPLINTER = 0.005
 """Faces that hang together are a splinter if they have less than this part of the area of others of their sheet."""
@@ -43,8 +43,7 @@ def splinters(polygons: Polygons, seams: Bools, labels: Ints, areas: Floats) -> 
     cut = seams[polygons.corner_edges[pairs[:, 0]]]
     part = joined_components(polygons.face_count, *sides[~cut].T)
     area = np.bincount(part, areas)
-    largest = np.zeros(int(labels.max(initial=0)) + 1)
-    np.maximum.at(largest, labels, area[part])
+    largest = group_largest(labels, area[part], int(labels.max(initial=0)) + 1)
     small = area[part] < _SPLINTER * largest[labels]
     across = np.concatenate([sides[cut], sides[cut][:, ::-1]])
     across = across[small[across[:, 0]] & (area[part[across[:, 1]]] > area[part[across[:, 0]]])]
@@ -96,8 +95,6 @@ def teeth(polygons: Polygons, seams: Bools, movable: Bools, areas: Floats, lengt
     # Of two side by side only the better one goes.
     gain = (against / np.maximum(outline[face], TINY))[reaching][first]
     rank = numbered(faces[np.lexsort((-faces, gain))], polygons.face_count)
-    best = np.full(polygons.face_count, -1)
-    np.maximum.at(best, sides[:, 0], rank[sides[:, 1]])
-    np.maximum.at(best, sides[:, 1], rank[sides[:, 0]])
+    best = group_largest(sides.ravel(), rank[sides[:, ::-1]].ravel(), polygons.face_count, -1)
     goes = rank[faces] > best[faces]
     return faces[goes], beside[goes]

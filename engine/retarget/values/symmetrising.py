@@ -73,9 +73,7 @@ class Symmetriser:
                 f"A mesh of {n} vertices needs a map to itself and a hint at each vertex, but got a map of "
                 f"{len(mirror)} vertices and hints of the shape {hints.shape}."
             )
-        sides = _sides(mesh, mirror, hints)
-        own = np.where(sides > 0, 1.0, 0.0)
-        own[sides == 0] = 1.0
+        own = np.where(_sides(mesh, mirror, hints) >= 0, 1.0, 0.0)
         own[_in_the_middle(mesh, mirror)] = 0.5
         own[mirror.confidence < _LEAST_CONFIDENCE] = 1.0
         return cls(mirror, own, surface_frames(mesh, mirror.positions, mirrored=True))
@@ -133,8 +131,7 @@ def _sides(mesh: TriangleMesh, mirror: SurfaceMap, hints: Floats) -> Floats:
     mass = np.maximum(laplace.mass / laplace.area, TINY)
     trust = _HINT * mass * np.abs(odd)
     hold = np.full(len(mass), 1e-9 * float(mass.mean()))  # for parts without any hint
-    factor = symmetric_factor(laplace.stiffness + diags_array(trust + hold))
-    smooth = factor.solve(trust * odd)
+    smooth = symmetric_factor(laplace.stiffness + diags_array(trust + hold)).solve(trust * odd)
     smooth = smooth - mirror.transfer(smooth)
     return np.where(np.abs(smooth) > _NOTHING * np.abs(smooth).max(), smooth, 0.0)
 
