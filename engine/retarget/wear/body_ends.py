@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, unit_vectors
+from ...runtime.arrays import Floats, Ints, group_sums, unit_vectors
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 from .contact import Surface
@@ -127,13 +127,11 @@ def _hole_radii(mesh: TriangleMesh) -> Floats:
     edges = mesh.boundary_edges
     holes = joined_components(mesh.vertex_count, edges[:, 0], edges[:, 1])
     rim = np.unique(edges)
-    count = np.bincount(holes[rim], minlength=int(holes.max()) + 1).clip(min=1)
-    squares = np.zeros(len(count))
-    for axis in range(3):
-        along = mesh.vertices[rim, axis]
-        centre = np.bincount(holes[rim], along, len(count)) / count
-        squares += np.bincount(holes[rim], (along - centre[holes[rim]]) ** 2, len(count))
-    return np.sqrt(squares / count)[holes]
+    places, owners = mesh.vertices[rim], holes[rim]
+    sizes = np.bincount(owners, minlength=int(holes.max()) + 1).clip(min=1)
+    centres = group_sums(owners, places, len(sizes)) / sizes[:, None]
+    squares = sum(group_sums(owners, (places - centres[owners]) ** 2, len(sizes)).T)
+    return np.sqrt(squares / sizes)[holes]
 
 
 def _holds_together(body: TriangleMesh, item: TriangleMesh) -> bool:

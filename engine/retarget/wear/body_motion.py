@@ -12,8 +12,9 @@ from scipy.spatial.distance import pdist
 
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, unit_vectors
+from ...runtime.arrays import TINY, Floats, Ints, slices, unit_vectors
 from ..values.deformation_gradients import surface_frames
 
 _TURN_RADIUS = 0.02
@@ -55,8 +56,6 @@ _FEWEST = 4 * _NEIGHBOURS
 
 _CHUNK = 2048
 """Points treated at once, which bounds the memory."""
-
-_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,8 +178,8 @@ class BodySkin:
         for number in np.unique(numbers):
             chosen = np.flatnonzero(numbers == number)
             shares = []
-            for start in range(0, len(chosen), _CHUNK):
-                part = chosen[start : start + _CHUNK]
+            for chunk in slices(len(chosen), _CHUNK):
+                part = chosen[chunk]
                 known = bones[part].toarray() if bones is not None and self._has_bones else None
                 shares.append(self._shares(points[part], width[part], bones=known, number=int(number)))
             joined = csr_array(vstack(shares))
@@ -206,7 +205,7 @@ class BodySkin:
                 moved = np.flatnonzero(column)
                 same[moved] += np.minimum(column[moved, None], level.bones[near[moved], bone])
             cost += _OTHER_LIMB * (total[:, None] - same).clip(0, 1)
-        front = np.einsum("kpi,kpi->kp", away, level.normals[near]) / np.maximum(distances, _TINY)
+        front = np.einsum("kpi,kpi->kp", away, level.normals[near]) / np.maximum(distances, TINY)
         cost += _BEHIND * (1 - front.clip(0, 1)) * (distances > _TOUCHING * self.size)
         cost *= distances
         best = np.argsort(cost, axis=1, kind="stable")[:, :count]
@@ -214,8 +213,7 @@ class BodySkin:
         weights = level.areas[near] * np.exp(-(cost**2 - cost[:, :1] ** 2) / (2 * width[:, None] ** 2))
         weights = np.where(weights.sum(axis=1, keepdims=True) > 0, weights, 1.0)
         weights /= weights.sum(axis=1, keepdims=True)
-        starts = np.arange(0, near.size + 1, count)
-        return csr_array((weights.ravel(), near.ravel(), starts), shape=(len(points), len(level.positions)))
+        return interpolation_matrix(weights, near, len(level.positions))
 
 
 class BodyMotion:
@@ -297,8 +295,7 @@ def _coarser(places: _Places) -> _Places | None:
     """
     cells = np.floor((places.positions - places.positions.min(axis=0)) / (2 * places.spacing)).astype(np.int64)
     octants = (places.normals > 0) @ np.array([1, 2, 4])
-    keys = np.column_stack([cells, octants])
-    _, number = np.unique(keys, axis=0, return_inverse=True)
+    _, number = np.unique(np.column_stack([cells, octants]), axis=0, return_inverse=True)
     number = number.ravel()
     if int(number.max()) + 1 < _FEWEST or int(number.max()) + 1 > 0.7 * len(number):
         return None

@@ -12,8 +12,9 @@ from scipy.sparse import csr_array
 
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, marked, unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, group_sums, marked, unit_vectors
 
 _MOST_PARTS = 6
 """Into how many parts the side of a triangle is divided at most, so that nothing pokes through it unseen."""
@@ -187,8 +188,7 @@ def surface_samples(mesh: TriangleMesh, spacing: float) -> tuple[csr_array, Ints
         owners.append(chosen.repeat(len(grid)))
         corners.append(mesh.triangles[owners[-1]])
         shares.append(np.tile(grid / count, (len(chosen), 1)))
-    columns, values = np.concatenate(corners), np.concatenate(shares)
-    samples = csr_array((values.ravel(), columns.ravel(), np.arange(0, values.size + 1, 3)), shape=(len(values), n))
+    samples = interpolation_matrix(np.concatenate(shares), np.concatenate(corners), n)
     samples.sum_duplicates()
     return samples, np.concatenate(owners)
 
@@ -204,7 +204,5 @@ def _angle_normals(mesh: TriangleMesh, wanted: Ints | None = None) -> Floats:
     sides = [unit_vectors(corners[(corner + 1) % 3] - corners[corner]) for corner in range(3)]
     for corner in range(3):
         angle = np.arccos((-np.einsum("mi,mi->m", sides[corner], sides[corner - 1])).clip(-1, 1))
-        weighted = angle[:, None] * normals
-        for axis in range(3):
-            sums[:, axis] += np.bincount(triangles[:, corner], weighted[:, axis], mesh.vertex_count)
+        sums += group_sums(triangles[:, corner], angle[:, None] * normals, mesh.vertex_count)
     return unit_vectors(sums)

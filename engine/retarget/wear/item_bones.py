@@ -9,7 +9,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
-from ...runtime.arrays import Bools, Floats, Ints
+from ...mesh.connectivity.edge_chains import way_to_root
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.errors import RigError
 from .worn_item import FittedItem
 
@@ -32,12 +33,7 @@ def bones_of_items(parents: Ints, on_body: Bools, on_items: Bools) -> list[int]:
     list of int
         Bones that move an item, they or what hangs on them, while neither moves the body.
     """
-    above: list[list[int]] = []
-    for bone in range(len(parents)):
-        chain = [bone]
-        while parents[chain[-1]] >= 0:
-            chain.append(int(parents[chain[-1]]))
-        above.append(chain)
+    above = [way_to_root(parents, bone) for bone in range(len(parents))]
     body, items = (
         {one for bone in np.flatnonzero(moving) for one in above[int(bone)]} for moving in (on_body, on_items)
     )
@@ -76,7 +72,7 @@ def moved_with_items(points: Floats, items: Sequence[tuple[Floats, FittedItem]])
     )
     count = min(_NEIGHBOURS, len(before))
     distances, near = (found.reshape(len(points), count) for found in cKDTree(before).query(points, count))
-    width = np.maximum(distances[:, -1:], np.finfo(float).tiny)
+    width = np.maximum(distances[:, -1:], TINY)
     weights = np.exp(-2 * (distances**2 - distances[:, :1] ** 2) / width**2)
     weights /= weights.sum(axis=1, keepdims=True)
     linear = scales[near, None, None] * rotations[near]

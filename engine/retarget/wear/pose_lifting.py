@@ -223,8 +223,7 @@ class _Lying:
         found, _, heights = _below(shares @ cloth.positions, skin)
         numbers, barycentric = body.triangles[found.triangles], found.barycentric
         beside = ((barycentric > 0) <= skin.rim[numbers]).all(axis=1)  # beyond the rim of a hole
-        lying = (heights > 0) & (heights < _NEAR * unit) & ~beside
-        at = np.flatnonzero(lying)
+        at = np.flatnonzero((heights > 0) & (heights < _NEAR * unit) & ~beside)
         return cls(
             csr_array(shares[at]),
             body.vertices[numbers[at]],

@@ -14,7 +14,7 @@ from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, group_largest
 from ...runtime.background import can_go_beside
 from ...runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ...runtime.progress import Progress, Steps, within
@@ -223,7 +223,7 @@ def _deepest_steps(posed: _PosedBody, ways: _Ways) -> Steps[list[Floats]]:
 
     Those that never do, are not looked at, or that no joint bends have zero.
     """
-    used = np.flatnonzero(sum(sum(_column_sums(weights) for weights in way[2]) for way in ways) if ways else [])
+    used = np.flatnonzero(sum(sum(weights.sum(axis=0) for weights in way[2]) for way in ways) if ways else [])
     share = shared_steps if posed.body.vertex_count <= MOST_SENT else here_steps
     found = yield from share(_deepest_of_steps, (posed, ways), [used[part::_PARTS] for part in range(_PARTS)])
     return [np.max(depths, axis=0) for depths in zip(*found, strict=True)]
@@ -254,18 +254,10 @@ def _deepest_of_steps(common: tuple[_PosedBody, _Ways], bones: Ints) -> Steps[li
     return deepest
 
 
-def _column_sums(weights: csr_array) -> Floats:
-    return np.asarray(weights.sum(axis=0)).ravel()
-
-
 def _spread(parts: WeldedParts, values: Floats) -> Floats:
     """Let values (n,) fade out over rings of neighbors; vertices that a seam parts have one."""
-    tails, heads = parts.edges.T
-    result = np.zeros(parts.welded_count)
-    np.maximum.at(result, parts.welded, values)
+    result = group_largest(parts.welded, values, parts.welded_count)
     for _ in range(_SMOOTHING):
-        around = np.zeros(len(result))
-        np.maximum.at(around, tails, result[heads])
-        np.maximum.at(around, heads, result[tails])
+        around = group_largest(parts.edges.ravel(), result[parts.edges[:, ::-1]].ravel(), len(result))
         result = np.maximum(result, 0.6 * around)
     return np.where(result > 0.01, result, 0.0)[parts.welded]

@@ -123,15 +123,15 @@ class Pushed:
 def layer_of(
     surface_before: Surface,
     surface: Surface,
+    *,
     samples: tuple[csr_array, Ints],
     items: tuple[TriangleMesh, TriangleMesh],
-    *,
-    places: Ints | None,
-    buried: Buried | None,
     scales: Floats,
     unit: float,
     least: float,
-    margin: float,
+    places: Ints | None = None,
+    buried: Buried | None = None,
+    margin: float = 0.0,
 ) -> Layer:
     """Find how an item lay on a surface, and so how it has to lie on it now.
 
@@ -143,17 +143,17 @@ def layer_of(
         Samples of the item, see `surface_samples`.
     items : pair of TriangleMesh
         The item on the first body and as it is now, n vertices.
-    places : (m,) array of int, optional
-        For each vertex of the skin before, the vertex of the other that it came to be; none for an item below.
-    buried : Buried, optional
-        What of the skin before lies deep within the body, as where parts of a character are closed: nothing has to lie
-        outside of it.
     scales : (n,) array of float
         How many times as large it becomes.
     unit : float
         Root of the area of the first body.
     least : float
         Distance that is enough, now: where the item was further away, nothing is asked beyond it.
+    places : (m,) array of int, optional
+        For each vertex of the skin before, the vertex of the other that it came to be; none for an item below.
+    buried : Buried, optional
+        What of the skin before lies deep within the body, as where parts of a character are closed: nothing has to lie
+        outside of it.
     margin : float
         Least distance, now, of all that lay outside.
     """
@@ -374,8 +374,7 @@ class _Under:
         points, normals = self._points[near], self._normals[near]
         found = item.search.nearest(points)
         corners = mesh.triangles[found.triangles]
-        away = found.interpolate(mesh.triangles, positions) - points
-        height = np.einsum("ki,ki->k", away, normals)
+        height = np.einsum("ki,ki->k", found.interpolate(mesh.triangles, positions) - points, normals)
         distance = np.sqrt(found.squared_distances)
         self._corners[near], self._seen[near] = corners, positions[corners]
         self._room[near] = np.where(height < 0, (distance - reach).clip(min=0), distance)

@@ -116,8 +116,7 @@ def _solid_parts(parts: WeldedParts, unit: float) -> Bools:
     count = parts.part_count
     areas = np.bincount(labels, closed.triangle_areas, count)
     vectors = closed.triangle_normals * closed.triangle_areas[:, None]
-    left = np.linalg.norm(group_sums(labels, vectors, count), axis=1)
-    solid = left <= _SOLID * areas
+    solid = np.linalg.norm(group_sums(labels, vectors, count), axis=1) <= _SOLID * areas
     vertices = np.bincount(parts.labels, minlength=count)
     fits = (parts.sizes <= _TINY * unit) | ((parts.sizes <= _SMALL * unit) & solid)
     return fits & (vertices >= _LEAST_VERTICES) & (areas > 0)
@@ -126,8 +125,7 @@ def _solid_parts(parts: WeldedParts, unit: float) -> Bools:
 def _groups(item: TriangleMesh, chosen: Bools, gap: float, largest: float, parts: WeldedParts | None = None) -> Ints:
     """Give the chosen vertices numbers of pieces, (n,): parts that nearly touch are one, if that is not too large."""
     n = item.vertex_count
-    inside = chosen[item.edges].all(axis=1)
-    tails, heads = item.edges[inside].T
+    tails, heads = item.edges[chosen[item.edges].all(axis=1)].T
     welded = np.arange(n) if parts is None else parts.first[parts.welded]
     labels = joined_components(n, np.append(tails, np.arange(n)), np.append(heads, welded))
     vertices = np.flatnonzero(chosen)

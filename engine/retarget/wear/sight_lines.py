@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...geometry.directions import spread_directions
-from ...runtime.arrays import Floats
+from ...runtime.arrays import Floats, group_largest
 
 
 def depths_behind(surface: Floats, places: Floats, cell: float, count: int) -> Iterator[Floats]:
@@ -37,6 +37,5 @@ def depths_behind(surface: Floats, places: Floats, cell: float, count: int) -> I
         cells = np.floor(points @ across.T / cell).astype(np.int64)
         cells -= cells.min(axis=0)
         number = cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]
-        front = np.full(number.max() + 1, -np.inf)
-        np.maximum.at(front, number[: len(surface)], surface @ direction)
+        front = group_largest(number[: len(surface)], surface @ direction, number.max() + 1, -np.inf)
         yield front[number[len(surface) :]] - places @ direction

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from scipy.sparse import block_diag, csr_array, diags_array
@@ -220,6 +221,7 @@ def fitted_steps(
     yield Progress(0.0, "Moving the skin")
     motion, unit = BodyMotion(dressed.skin, images), dressed.skin.size
     new_unit = motion.overall * unit
+    units, places = (unit, new_unit), source_to_target.nearest_vertices
     skin_before, skin = dressed.surface, Surface(target)
     buried = dressed.buried.on(skin, images)
     works: list[_Work] = []
@@ -243,17 +245,9 @@ def fitted_steps(
     for done, number in enumerate(order):
         yield Progress(0.5 + 0.45 * done / count, "Pushing items out")
         below = [works[other] for other in order[:done]]
-        _push(
-            works[number],
-            below,
-            (skin_before, skin),
-            source_to_target.nearest_vertices,
-            buried,
-            units=(unit, new_unit),
-            spacing=spacing,
-        )
+        _push(works[number], below, (skin_before, skin), places, buried, units=units, spacing=spacing)
     yield Progress(0.95, "Measuring")
-    fitted = [_fitted(work, skin, source_to_target, (unit, new_unit)) for work in works]
+    fitted = [_fitted(work, skin, source_to_target, units) for work in works]
     return [cut_open(one, worn.welded) for one, worn in zip(fitted, dressed.items, strict=True)]
 
 
@@ -289,8 +283,7 @@ def _elastic(works: Sequence[_Work], laplaces: Sequence[LaplaceBeltrami], unit: 
         positions = np.split(factor.solve(np.concatenate(pulls) + pull[:, None] * goals), ends)
         for work, surface, places in zip(works, surfaces, positions, strict=True):
             work.positions = places
-            rotations = surface.rotations(places, _TURN_RADIUS * _HOLD * unit)
-            work.motion = replace(work.motion, rotations=rotations)
+            work.motion = replace(work.motion, rotations=surface.rotations(places, _TURN_RADIUS * _HOLD * unit))
 
 
 def _seams(points: Floats, owners: Ints, near: float) -> csr_array:
@@ -378,8 +371,7 @@ def _asked(work: _Work) -> Floats:
 
 def _mostly(held: Bools, owners: Ints) -> Bools:
     """Tell of which items, by the number of each vertex's, something holds at nearly all vertices."""
-    found: Bools = np.bincount(owners, held) >= _WHOLLY * np.bincount(owners)
-    return found
+    return np.bincount(owners, held) >= _WHOLLY * np.bincount(owners)
 
 
 def _inner_first(works: Sequence[_Work], unit: float) -> list[int]:
@@ -429,39 +421,14 @@ def _push(
     mesh = item.mesh
     now = TriangleMesh(start, mesh.triangles)
     samples = surface_samples(now, spacing)
-    scales = work.motion.scales
-    layers = [
-        layer_of(
-            *skins,
-            samples,
-            (mesh, now),
-            places=places,
-            buried=buried,
-            scales=scales,
-            unit=unit,
-            least=_ENOUGH * new_unit,
-            margin=item.margin,
-        )
-    ]
+    layer = partial(layer_of, samples=samples, items=(mesh, now), scales=work.motion.scales, unit=unit)
+    layers = [layer(*skins, places=places, buried=buried, least=_ENOUGH * new_unit, margin=item.margin)]
     for other in below:
         beneath = other.item.mesh
         if not _near(mesh.vertices, beneath.vertices, unit):
             continue
         surfaces = Surface(beneath), Surface(TriangleMesh(other.positions, beneath.triangles))
-        least = _LAYERS * new_unit
-        layers.append(
-            layer_of(
-                *surfaces,
-                samples,
-                (mesh, now),
-                places=None,
-                buried=None,
-                scales=scales,
-                unit=unit,
-                least=least,
-                margin=0.0,
-            )
-        )
+        layers.append(layer(*surfaces, least=_LAYERS * new_unit))
     rigid = work.pieces >= 0
     fixed = rigid if item.left is None else rigid | item.left
     laplace = laplace_beltrami(now)
