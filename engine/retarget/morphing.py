@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
@@ -12,11 +12,9 @@ from ..geometry.laplacian import laplace_beltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.connectivity.welded_parts import WeldedParts
 from ..mesh.triangle_mesh import TriangleMesh
+from ..registration.elastic import weighted_edges
 from ..runtime.arrays import TINY, Floats, Ints
 from .values.deformation_gradients import surface_frames
-
-_LEAST_WEIGHT = 1e-4
-"""Least weight of an edge, as in `elastic`."""
 
 _HOLD = 1e-6
 """How much the straight way counts, per area: just enough to say where the whole is."""
@@ -73,8 +71,7 @@ def _in_between(mesh: TriangleMesh, positions: Floats, fractions: Floats) -> Flo
     incidence = (np.concatenate([tails, heads]), np.tile(np.arange(count), 2))
     divergence = csr_array((np.repeat([1.0, -1.0], count), incidence), shape=(n, count))
     hold = np.full(n, _HOLD * max(mesh.vertex_areas.mean(), TINY) / mesh.area)
-    system = divergence @ diags_array(weights) @ divergence.T + diags_array(hold)
-    factor = symmetric_factor(system)
+    factor = symmetric_factor(divergence @ diags_array(weights) @ divergence.T + diags_array(hold))
     # The turn of the whole, and that of each vertex beside it: less than half a turn in most poses.
     whole = Rotation.from_matrix(frames.rotations).mean(np.maximum(mesh.vertex_areas, 1e-9 * mesh.area))
     own = Rotation.from_matrix(frames.rotations) * whole.inv()
@@ -93,10 +90,7 @@ def _in_between(mesh: TriangleMesh, positions: Floats, fractions: Floats) -> Flo
 
 def _edges(mesh: TriangleMesh) -> tuple[Ints, Ints, Floats]:
     """Edges with their weights, (e,) each, and ties from loose parts to the largest."""
-    entries = coo_array(laplace_beltrami(mesh).stiffness)
-    between = entries.row < entries.col
-    tails, heads = entries.row[between].astype(np.int64), entries.col[between].astype(np.int64)
-    weights = np.maximum(-entries.data[between], _LEAST_WEIGHT)
+    tails, heads, weights = weighted_edges(laplace_beltrami(mesh))
     labels = mesh.component_labels
     loose = np.flatnonzero(labels > 0)
     if not len(loose):

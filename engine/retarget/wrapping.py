@@ -19,7 +19,7 @@ from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.elastic import ElasticSurface
-from ..runtime.arrays import Bools, Floats, group_means, marked
+from ..runtime.arrays import Bools, Floats, group_largest, group_means, group_smallest, marked
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps
@@ -221,22 +221,17 @@ def _united(mesh: TriangleMesh, positions: Floats, turns: Floats) -> Floats:
     counts = np.bincount(place)
     middle, center = (group_means(place, points, len(counts)) for points in (positions, mesh.vertices))
     apart = np.einsum("nij,nj->ni", turns[first[place]], mesh.vertices - center[place])
-    away = np.zeros(len(counts))
-    np.maximum.at(away, place, np.linalg.norm(positions - middle[place], axis=1))
+    away = group_largest(place, np.linalg.norm(positions - middle[place], axis=1), len(counts))
     one, other = mesh.edges.T
     around = edge_means(mesh, np.linalg.norm(positions[one] - positions[other], axis=1))
-    near = np.full(len(counts), np.inf)
-    np.minimum.at(near, place, around)
-    together = ((counts > 1) & (away <= near))[place]
+    together = ((counts > 1) & (away <= group_smallest(place, around, len(counts))))[place]
     return np.where(together[:, None], middle[place] + apart, positions)
 
 
 def _held(source: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> Bools:
     """Tell which vertices of the source have a place on the target, (n_x,)."""
-    returned = there.transfer(back.positions)
-    away = np.linalg.norm(returned - source.vertices, axis=1)
-    near = _RETURN * np.sqrt(source.area)
-    return (away <= near) & (there.confidence >= _LEAST_CONFIDENCE)
+    away = np.linalg.norm(there.transfer(back.positions) - source.vertices, axis=1)
+    return (away <= _RETURN * np.sqrt(source.area)) & (there.confidence >= _LEAST_CONFIDENCE)
 
 
 def _start(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, wanted: Floats, held: Bools) -> Floats:
@@ -244,15 +239,13 @@ def _start(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, wa
     if held.all():
         return wanted
     part, vertices, _ = source.submesh(held)
-    images = replace(points.at(vertices), positions=wanted[vertices])
-    surroundings = Surroundings(part, target, images)
+    surroundings = Surroundings(part, target, replace(points.at(vertices), positions=wanted[vertices]))
     free = np.flatnonzero(~held)
     distances, _ = surroundings.nearest(source.vertices[free])
     # A loose part moves as one: all of it follows the surroundings of its farthest vertex.
     labels = source.component_labels
     with_hold = marked(labels[held], labels.max() + 1)
-    reach = np.zeros(labels.max() + 1)
-    np.maximum.at(reach, labels[free], distances)
+    reach = group_largest(labels[free], distances, labels.max() + 1)
     loose = ~with_hold[labels[free]]
     centres = group_means(labels, source.vertices, len(reach))
     at = np.where(loose[:, None], centres[labels[free]], source.vertices[free])
@@ -267,5 +260,4 @@ def _folded(mesh: TriangleMesh, positions: Floats) -> Bools:
     frames = surface_frames(mesh, positions, radius=_RADIUS)
     a, b, c = (positions[corner] for corner in mesh.triangles.T)
     rotated = frames.rotations[mesh.triangles].sum(axis=1) @ mesh.triangle_normals[:, :, None]
-    facing = np.einsum("md,md->m", np.cross(b - a, c - a), rotated[:, :, 0])
-    return facing < 0
+    return np.einsum("md,md->m", np.cross(b - a, c - a), rotated[:, :, 0]) < 0

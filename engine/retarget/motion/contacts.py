@@ -83,8 +83,7 @@ def held_shifts(points: Floats, touching: Bools, heights: Floats, up: Floats, ra
     """
     count = len(points)
     holding = np.where(touching[:, 1], 1, np.where(touching[:, 0], 0, -1))
-    starts = np.append(True, holding[1:] != holding[:-1])
-    runs = np.append(np.flatnonzero(starts), count)
+    runs = np.append(np.flatnonzero(np.append(True, holding[1:] != holding[:-1])), count)
     shifts = np.zeros((count, 3))
     for begin, end in pairwise(runs):
         which = holding[begin]

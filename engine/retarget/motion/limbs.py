@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...mesh.connectivity.edge_chains import way_to_root
 from ...runtime.arrays import TINY, Floats, Ints
 from ..rig.skeleton import Skeleton
 from .posed_motion import Motion
@@ -97,9 +98,7 @@ def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: Floats
     ways = []
     branches = np.bincount(segments.parents[segments.parents >= 0], minlength=len(segments))
     for tip in np.flatnonzero(branches == 0):
-        way = [int(tip)]
-        while segments.parents[way[-1]] >= 0:
-            way.append(int(segments.parents[way[-1]]))
+        way = way_to_root(segments.parents, tip)
         starts = [[(int(bones[part][0]), False) for part in way] for bones in (segments.sources, segments.targets)]
         ends = [
             [(int(bones[tip][-1]), True), *begin[:-1]]

@@ -53,8 +53,7 @@ class Motion:
     @property
     def tails(self) -> Floats:
         """Where the tails of the bones are, (f, b, 3)."""
-        along = self.skeleton.tails - self.skeleton.heads
-        return self.heads + np.einsum("fbij,bj->fbi", self.turns, along)
+        return self.heads + np.einsum("fbij,bj->fbi", self.turns, self.skeleton.tails - self.skeleton.heads)
 
     def moved(self, transforms: Floats) -> Motion:
         """Move the whole skeleton in each pose by a similarity, (f, 4, 4), of which bones take the rotation."""
@@ -139,8 +138,7 @@ def local_transforms(motion: Motion, axes: Floats, inherits: Bools | None = None
             carrier = motion.turns[:, parent]
             offset = skeleton.heads[bone] - skeleton.heads[parent]
             place = motion.heads[:, parent] + carrier @ offset
-        moved = motion.heads[:, bone] - place
-        locations[:, bone] = np.einsum("...ji,...j->...i", carrier @ axes[bone], moved)
+        locations[:, bone] = np.einsum("...ji,...j->...i", carrier @ axes[bone], motion.heads[:, bone] - place)
         if parent >= 0 and inherits is not None and not inherits[bone]:
             carrier = np.eye(3)
         rotations[:, bone] = np.swapaxes(carrier @ axes[bone], -1, -2) @ motion.turns[:, bone] @ axes[bone]

@@ -49,8 +49,7 @@ class Segments:
         """Find the segments of pairs of bones (k,)."""
         if not len(sources):
             return cls((), (), (), np.zeros(0, np.int64), np.zeros(0, bool))
-        size = len(source_bones) + len(bones)
-        labels = joined_components(size, sources, len(source_bones) + targets)
+        labels = joined_components(len(source_bones) + len(bones), sources, len(source_bones) + targets)
         _, part_of_row = np.unique(labels[sources], return_inverse=True)
         rows = tuple(np.flatnonzero(part_of_row == part) for part in range(part_of_row.max() + 1))
         members = [

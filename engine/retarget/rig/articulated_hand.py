@@ -198,8 +198,7 @@ class HandSolver:
         """Points (s, 3) and normals of the hand in a pose."""
         points = self._design @ pose.unknowns.reshape(-1, 3)
         turns = (self._hand.weights @ pose.rotations.reshape(-1, 9)).reshape(-1, 3, 3)
-        normals = np.einsum("sij,sj->si", turns, self._hand.normals)
-        return points, unit_vectors(normals)
+        return points, unit_vectors(np.einsum("sij,sj->si", turns, self._hand.normals))
 
     def _found_pairs(self, pose: HandPose, reach: float) -> tuple[Ints, Ints, Floats, Floats]:
         """Match both ways: numbers in the hand and in the target, distances, and cosines of the normals."""

@@ -11,7 +11,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ...geometry.procrustes import nearest_rotations, nearest_similarity
 from ...geometry.symmetric_factor import symmetric_factor
-from ...runtime.arrays import TINY, Floats, Ints, numbered
+from ...runtime.arrays import TINY, Floats, Ints, numbered, ranges
 from .skeleton import Skeleton
 
 _ROUNDS = 12
@@ -139,8 +139,7 @@ def _shared_vertices(weights: csr_array) -> tuple[Ints, csr_array]:
     counts, count = np.diff(weights.indptr), weights.shape[1]
     rows = np.repeat(np.arange(len(counts)), counts)
     first = np.repeat(np.arange(weights.nnz), counts[rows])
-    begin = np.repeat(np.cumsum(counts[rows]) - counts[rows], counts[rows])
-    second = weights.indptr[rows[first]] + np.arange(len(first)) - begin
+    second = ranges(weights.indptr[rows], counts[rows])
     keys = weights.indices[first].astype(np.int64) * count + weights.indices[second]
     pairs = np.flatnonzero(np.bincount(keys, minlength=count**2))
     number = numbered(pairs, count**2)[keys]

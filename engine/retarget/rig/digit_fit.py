@@ -70,8 +70,7 @@ def with_digits(
     BoneTransforms
         The same with other transforms for the bones of some hands.
     """
-    mass = body.vertex_areas / body.area @ weights
-    for group in digit_groups(skeleton, mass):
+    for group in digit_groups(skeleton, body.vertex_areas / body.area @ weights):
         hand = Hand.of(group, body, weights, skeleton, target, matches=matches)
         if hand is not None:
             bones = _PoseSearch(hand, bones).result()
@@ -113,8 +112,7 @@ class _PoseSearch:
             for turn, curl in self._variations()
         ]
         starts = sorted([*starts, *near], key=lambda pose: pose.cost)[:_KEPT]
-        ends = [solver.improved(start, 0.3, _LAST_ROUNDS) for start in starts]
-        return min(ends, key=lambda pose: pose.cost)
+        return min([solver.improved(start, 0.3, _LAST_ROUNDS) for start in starts], key=lambda pose: pose.cost)
 
     def _with_pose(self, pose: HandPose) -> BoneTransforms:
         """Give the hand's own bones a pose."""

@@ -118,8 +118,7 @@ class PosedRegistration:
         target = self._target
         elastic = ElasticSurface(self._inside(posed), self._laplace)
         now = self._inside(positions)
-        planes = self._planes(now, matches, seeking)
-        system = _SlidingSystem(planes, stiffness * elastic.stiffness)
+        system = _SlidingSystem(self._planes(now, matches, seeking), stiffness * elastic.stiffness)
         for _ in range(_SOLVES):
             turned = elastic.rotations(now, _ROTATION_RADIUS)
             turned = turned * elastic.scales(now, _SCALE_RADIUS)[:, None, None]
@@ -129,8 +128,7 @@ class PosedRegistration:
     def _planes(self, now: Floats, matches: FoundPoints, seeking: Floats | None) -> _Planes:
         """Collect what both surfaces ask of one another."""
         target, count = self._target, len(now)
-        corners = self._body.triangles[matches.triangles]
-        there = interpolation_matrix(matches.barycentric, corners, count)
+        there = interpolation_matrix(matches.barycentric, self._body.triangles[matches.triangles], count)
         normals = self._search.moved(now).vertex_normals
         found = facing(self._target_search, now, normals, 1.0)
         if self._homes is not None:
@@ -179,8 +177,7 @@ class _SlidingSystem:
         self._transposed = csr_array(planes.evaluate.T)
         # A third of each squared normal component stands in for the planes in the preconditioner.
         mean = diags_array(planes.shares * (1 / 3 + _SLIDING))
-        near = elastic + self._transposed @ mean @ planes.evaluate
-        self._factor = symmetric_factor(near)
+        self._factor = symmetric_factor(elastic + self._transposed @ mean @ planes.evaluate)
         self.wanted: Floats = self._transposed @ self._pulled(planes.points)
 
     def solved(self, right: Floats, start: Floats) -> Floats:
@@ -204,8 +201,7 @@ class _SlidingSystem:
 
     def _times(self, values: Floats) -> Floats:
         """Multiply by the matrix."""
-        product: Floats = self._transposed @ self._pulled(self._evaluate @ values)
-        return product + self._elastic @ values
+        return self._transposed @ self._pulled(self._evaluate @ values) + self._elastic @ values
 
     def _pulled(self, points: Floats) -> Floats:
         """Pull of each match (m, 3): across the surface, and a little along it."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
+from ...mesh.connectivity.edge_chains import way_to_root
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
@@ -106,15 +107,15 @@ def rest_pose(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints, frames
     turns = upright @ placed.rotations.transpose(0, 2, 1)
     heads = placed.heads.copy()
     leaders = _leaders(rig, carriers.above, moved_areas(rig, source))
-    for bone in _after_leaders(leaders):
+    after_leaders = sorted(range(len(leaders)), key=lambda bone: len(way_to_root(leaders, bone)))
+    for bone in after_leaders:
         above = leaders[bone]
         if carriers.moving[bone] and above >= 0:
             heads[bone] = heads[above] + turns[above] @ (placed.heads[bone] - placed.heads[above])
     rooted = carriers.anchors >= 0
     for bone in np.flatnonzero(~carriers.moving & ~rooted):
         parts = carriers.of_places[carriers.places[bone]]
-        offsets = np.einsum("cij,cj->ci", turns, placed.heads[bone] - placed.heads)
-        heads[bone] = parts @ (heads + offsets)
+        heads[bone] = parts @ (heads + np.einsum("cij,cj->ci", turns, placed.heads[bone] - placed.heads))
     if rooted.any():
         down = upright @ root_direction(rig, source, int(np.flatnonzero(rooted)[0]))
         lying = unposed(rig.registered, rig.weights, RestPose(placed.heads, heads, turns))
@@ -146,17 +147,6 @@ def _leaders(rig: FittedRig, above: Ints, masses: Floats) -> Ints:
         joined |= tops == top
         waiting.remove(top)
     return leaders
-
-
-def _after_leaders(leaders: Ints) -> list[int]:
-    """Put all bones in an order in which each comes after its leader."""
-    depths = np.zeros(len(leaders), np.int64)
-    for bone in range(len(leaders)):
-        above = leaders[bone]
-        while above >= 0:
-            depths[bone] += 1
-            above = leaders[above]
-    return np.argsort(depths, kind="stable").tolist()
 
 
 def at_rest(placed: PlacedJoints, rest: RestPose) -> PlacedJoints:

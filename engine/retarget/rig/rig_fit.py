@@ -135,14 +135,13 @@ def _fitted_steps(
     forward = _FORWARD * body.vertex_areas / body.area * (x.main.original_vertices >= 0)
     backward = y.mesh.vertex_areas / y.mesh.area * (y.main.original_vertices >= 0)
     positions = there.interpolate(y.mesh.triangles, y.mesh.vertices)
-    evidence = _Evidence(body, moving, y.mesh, skeleton)
-    bones = evidence.bones(positions, back, forward, backward)
+    bones = _Evidence(body, moving, y.mesh, skeleton).bones(positions, back, forward, backward)
     missed = np.linalg.norm(bones.posed - positions, axis=1)[x.main.original_vertices >= 0]
     if refine and np.median(missed) < _EXPLAINED * np.sqrt(y.mesh.area):
         sliding = _sliding_steps(_Pair(x, y, moving, skeleton), bones, back, maps)
         found = yield from within(sliding, 0.1, 1.0, "Fitting the rig")
         if found is not None:
-            bones, positions, maps = found.bones, found.positions, found.maps
+            bones, positions, maps = found
     posed = skinned(source.vertices, weights, bones.linear, bones.translations)
     registered = _spread(x, posed, positions, bones.posed)
     return FittedRig(
@@ -155,10 +154,8 @@ def _cleaned_steps(meshes: tuple[TriangleMesh, TriangleMesh], known: KnownShapes
     bodies = []
     for mesh, name in zip(meshes, ("source", "target"), strict=True):
         shape = None if known is None else known.find(mesh, name, None)
-        if shape is None:
-            bodies.append((clean(mesh, name), name, MATCHED))
-        else:
-            bodies.append(((shape.joined or shape).surface.cleaned, name, MATCHED))
+        cleaned = clean(mesh, name) if shape is None else (shape.joined or shape).surface.cleaned
+        bodies.append((cleaned, name, MATCHED))
     return (yield from all_joined_steps(bodies))
 
 
@@ -277,13 +274,8 @@ class _Pair:
     skeleton: Skeleton
 
 
-@dataclass(frozen=True, eq=False)
-class _Slid:
-    """What the sliding found: the bones, positions of the main part's vertices, and maps of the original meshes."""
-
-    bones: BoneTransforms
-    positions: Floats
-    maps: tuple[SurfaceMap, SurfaceMap]
+_Slid = tuple[BoneTransforms, Floats, tuple[SurfaceMap, SurfaceMap]]
+"""What the sliding found: the bones, positions of the main part's vertices, and maps of the original meshes."""
 
 
 def _sliding_steps(
@@ -327,7 +319,7 @@ def _sliding_steps(
         positions = whole + _evaluation(proxy.points, body) @ (positions - posed)
     yield Progress(0.9, "Mapping every vertex")
     maps = _slid_maps(pair, positions, Homes.of(pair.x.mesh, pair.y.mesh, back), maps)
-    return _Slid(replace(bones, posed=whole), positions, maps)
+    return replace(bones, posed=whole), positions, maps
 
 
 def _on_proxies(pair: _Pair, back: FoundPoints, proxy: Proxy, target_proxy: Proxy) -> FoundPoints:
@@ -371,5 +363,4 @@ def _with_main(surface_map: SurfaceMap, x: CleanSurface, y: CleanSurface, found:
     images = SurfacePoints.from_barycentric(y.mesh, found.triangles, found.barycentric)
     triangles, barycentric = surface_map.triangles.copy(), surface_map.barycentric.copy()
     triangles[main], barycentric[main] = y.main.to_original(*x.images_of(main, images, y.mesh))
-    points = SurfacePoints.from_barycentric(y.original, triangles, barycentric)
-    return replace(surface_map, points=points)
+    return replace(surface_map, points=SurfacePoints.from_barycentric(y.original, triangles, barycentric))

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...mesh.connectivity.edge_chains import way_to_root
 from ...runtime.arrays import Bools, Floats, Ints
 from ...runtime.errors import RigError
 
@@ -73,10 +74,7 @@ class Skeleton:
 
     def above(self, bone: int) -> list[int]:
         """All bones that a bone hangs on, the nearest first."""
-        found = [int(self.parents[bone])]
-        while found[-1] >= 0:
-            found.append(int(self.parents[found[-1]]))
-        return found[:-1]
+        return way_to_root(self.parents, bone)[1:]
 
     @cached_property
     def hanging(self) -> Bools:

@@ -110,8 +110,7 @@ def carry_standing_rig_steps(
     joints = np.concatenate([skeleton.heads, skeleton.tails])
     counts = np.bincount(places)
     points = group_means(places, joints, len(counts))
-    middles = (skeleton.heads + skeleton.tails) / 2
-    wanted = np.concatenate([points, middles])
+    wanted = np.concatenate([points, (skeleton.heads + skeleton.tails) / 2])
     found = []
     for start in range(0, len(wanted), _AT_ONCE):
         yield Progress(0.9 * start / len(wanted), "Carrying joints")
