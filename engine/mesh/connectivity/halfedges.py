@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import Bools, Floats, Ints, group_smallest, ranges, unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, group_smallest, marked, ranges, unit_vectors
 from .components import triangle_components
 
 _MOST_TRIANGLES = 64
@@ -179,8 +179,7 @@ def _greedy(one: Ints, other: Ints, count: int) -> Ints:
         best = group_smallest(np.concatenate([one[left], other[left]]), np.tile(left, 2), count, len(one))
         mutual = left[(best[one[left]] == left) & (best[other[left]] == left)]
         chosen.append(mutual)
-        taken = np.zeros(count, bool)
-        taken[one[mutual]] = taken[other[mutual]] = True
+        taken = marked(np.concatenate([one[mutual], other[mutual]]), count)
         left = left[~(taken[one[left]] | taken[other[left]])]
     return np.concatenate(chosen) if chosen else left
 
