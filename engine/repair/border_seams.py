@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -48,8 +48,7 @@ _FEWEST = 6
 """Vertices of a border that can tell."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Borders:
+class _Borders(NamedTuple):
     """Where pieces end.
 
     Attributes
