@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -95,8 +94,7 @@ class _Ring(NamedTuple):
     area: float  # that the ring stands for
 
 
-@dataclass(frozen=True, eq=False)
-class _Limb:
+class _Limb(NamedTuple):
     """A limb, or a whole body, and the rings around it.
 
     Attributes

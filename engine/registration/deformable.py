@@ -14,7 +14,7 @@ from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import TINY, Floats
+from ..runtime.arrays import TINY, Floats, marked
 from ..runtime.progress import Progress, Steps
 from .elastic import ElasticSurface
 from .normal_equations import NormalEquations
@@ -78,9 +78,7 @@ class DeformableSurface:
     @cached_property
     def border(self) -> Floats:
         """One for the vertices at which the surface ends, zero for all others, (n,)."""
-        border = np.zeros(len(self.vertices))
-        border[self.mesh.boundary_edges] = 1
-        return border
+        return marked(self.mesh.boundary_edges, len(self.vertices)).astype(np.float64)
 
     @property
     def ends(self) -> bool:

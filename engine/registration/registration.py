@@ -311,10 +311,9 @@ def restarted_steps(
     places = matches[0].interpolate(target.triangles, target.vertices)
     start = functions @ (functions.T @ (source.mass[:, None] * places))
     posed = (start + places) / 2
-    steps = register_steps(
+    return register_steps(
         source, target, start, stages, matches, posed=posed, isometry=isometry, ties=ties, guides=guides
     )
-    return (yield from steps)
 
 
 def register_steps(
