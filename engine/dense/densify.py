@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 from ..mesh.reflection import reflected_mesh, reflected_points
 from ..mesh.surface_map import SurfaceMap
@@ -215,8 +216,7 @@ def _doubts(pair: RegisteredPair) -> tuple[Floats | float, Floats | float]:
     return places[0].interpolate(pair.trips[0]), places[1].interpolate(pair.trips[1])
 
 
-@dataclass(frozen=True, eq=False)
-class _Lift:
+class _Lift(NamedTuple):
     """Two surfaces, X and Y, what was registered in their place, each to the other, and how that is polished."""
 
     surfaces: tuple[PreparedSurface, PreparedSurface]

@@ -37,8 +37,7 @@ def round_trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints)
 
     `there` holds a point of the target for each vertex of the source, `back` one of the source for each of the target.
     """
-    returned = np.einsum("kc,kcd->kd", there.barycentric, back.positions[there.corners])
-    return np.linalg.norm(returned - source.vertices, axis=1)
+    return np.linalg.norm(there.interpolate(back.positions) - source.vertices, axis=1)
 
 
 def with_partner(source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, back: SurfacePoints) -> Bools:

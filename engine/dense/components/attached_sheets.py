@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -52,8 +53,7 @@ class MappedSheets:
     partners: Ints
 
 
-@dataclass(frozen=True, eq=False)
-class _Sheet:
+class _Sheet(NamedTuple):
     """A sheet: its mesh, the original vertices and triangles, its piece, and whether that has others."""
 
     mesh: TriangleMesh

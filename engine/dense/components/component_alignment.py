@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -48,8 +48,7 @@ _CARRIED = Stage((80, 160, 320, 1280, 2560), 0.05, 0.0, matched="around")
 """What its surroundings carry there is nearly where it belongs, but bent as they are."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Motion:
+class _Motion(NamedTuple):
     """A similarity x -> centre + ratio R (x - old centre).
 
     It leaves a mean squared distance, in radii; it costs more where what touches the surroundings does not stay there.
@@ -176,8 +175,7 @@ def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: Floats) ->
     return _Motion(rotation, centre, distance, _cost(distance, pair, _placed(part, pair, rotation, centre)))
 
 
-@dataclass(frozen=True, eq=False)
-class _Points:
+class _Points(NamedTuple):
     """Some vertices of a mesh, the normals there, and shares of the area."""
 
     places: Floats

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -133,8 +134,7 @@ def follow_steps(x: CleanSurface, y: CleanSurface, main_map: SurfacePoints) -> S
     return FollowedMap(points, confidence, surroundings, partners, alone)
 
 
-@dataclass(frozen=True, eq=False)
-class _Image:
+class _Image(NamedTuple):
     """The part that another one is mapped to, and a point there for each of its vertices."""
 
     partner: int
