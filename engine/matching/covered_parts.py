@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
@@ -97,8 +98,7 @@ class CoveredPart:
     is_new: bool
 
 
-@dataclass(frozen=True, eq=False)
-class _Proposal:
+class _Proposal(NamedTuple):
     """A piece of the whole, how it may lie on the part, and where some samples of the part would be on it, (s, 3)."""
 
     piece: Shape
@@ -106,8 +106,7 @@ class _Proposal:
     places: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class _Fit:
+class _Fit(NamedTuple):
     """What a registration says.
 
     Attributes

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -90,8 +91,7 @@ class SymmetryResult:
         return self.orientation < 0
 
 
-@dataclass(frozen=True, eq=False)
-class _Candidate:
+class _Candidate(NamedTuple):
     """A map of all samples, on its way to a result."""
 
     coarse: BoundedMatching

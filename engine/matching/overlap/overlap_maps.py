@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import diags_array
@@ -194,8 +195,7 @@ def _one_way_steps(pair: CoarsePair, back: bool) -> Steps[list[ScoredFit]]:  # n
     return (yield from overlap_fits_steps(pair.turned() if back else pair))
 
 
-@dataclass(frozen=True, eq=False)
-class _MutualFit:
+class _MutualFit(NamedTuple):
     """Registrations of coarse surfaces onto each other that say the same.
 
     Attributes

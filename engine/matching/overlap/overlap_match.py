@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import expit
@@ -175,8 +176,8 @@ class _Shared:
 
     def trips(self, here: int) -> Floats:
         """Distance between each vertex of one surface and where both maps bring it, in sqrt(area)."""
-        trips: Floats = round_trips(self.meshes[here], self.maps[here], self.maps[1 - here])
-        return trips / np.sqrt(self.meshes[here].area)
+        mesh = self.meshes[here]
+        return round_trips(mesh, self.maps[here], self.maps[1 - here]) / np.sqrt(mesh.area)
 
     def trust(self, here: int) -> Floats:
         """How far the image of each vertex of one surface can be trusted: no more than all of it."""
@@ -184,8 +185,7 @@ class _Shared:
         return self.likely * self.known[here] * np.clip(confidence, 0, 1)
 
 
-@dataclass(frozen=True, eq=False)
-class _Lift:
+class _Lift(NamedTuple):
     """Two surfaces, where what stands for either lies on the other, its matches there, and which vertices have one."""
 
     surfaces: tuple[PreparedSurface, PreparedSurface]
@@ -199,17 +199,12 @@ def _lifted_steps(lift: _Lift, here: int) -> Steps[SurfacePoints]:
     surface, image = lift.surfaces[here], lift.surfaces[1 - here]
     ends = surface.cleaned.mesh, surface.proxy, lift.positions[here], image.cleaned.mesh
     images, search, shown = lift.images[here], image.dense_search, lift.known[here]
-    lifting = lift_steps(*ends, target_proxy=image.proxy, proxy_map=images, search=search, shown=shown)
-    return (yield from lifting)
+    return lift_steps(*ends, target_proxy=image.proxy, proxy_map=images, search=search, shown=shown)
 
 
 def _on_main(shape: Shape, members: Bools) -> Bools:
     """Carry truth values (k,) of what is matched to the vertices of the main part."""
-    proxy = shape.surface.proxy
-    if proxy.is_identity:
-        return members
-    points = proxy.points
-    return np.einsum("nc,nc->n", points.barycentric, members[points.corners].astype(np.float64)) > 1 / 2
+    return shape.surface.proxy.points.interpolate(members.astype(np.float64)) > 1 / 2
 
 
 def _whole_map_steps(pair: tuple[Shape, Shape], shared: _Shared, here: int) -> Steps[SurfaceMap]:
