@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
 from ...geometry.procrustes import least_turns, nearest_frame, nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
@@ -156,17 +158,17 @@ def pair_bones(
         weights = nearest_bones(target, skeleton)
     placed = place_joints(rig, source, np.zeros_like(rig.skeleton.heads))
     there = carried(rig.weights, rig.target_to_source)
-    joints = rig.skeleton.parents, placed.heads, placed.tails
+    within_target = type(skeleton)(rig.skeleton.parents, placed.heads, placed.tails), skeleton
     mirrors = mirrored_bones(rig.skeleton), mirrored_bones(skeleton)
-    found = _compared(there, weights, target, (type(skeleton)(*joints), skeleton), mirrors)
+    found = _compared(there, weights, target, within_target, mirrors)
     gains = _gains(found.scores, fixed, alone)
     trees = rig.skeleton, skeleton
     chosen = _chosen(gains, found, trees, {target: source for source, target in fixed})
-    chosen = _without_misplaced(chosen, (type(skeleton)(*joints), skeleton), fixed, target)
+    given = {(int(a), int(b)) for a, b in fixed}
+    chosen = _without_misplaced(chosen, within_target, given, target)
     upright = _upright(rig, source, frames)
     sources, targets = chosen.T
     worth = found.scores[targets, sources]
-    given = {(int(a), int(b)) for a, b in fixed}
     worth[[pair in given for pair in zip(sources.tolist(), targets.tolist(), strict=True)]] = 1.0
     # Where tails point is left to whoever made the rig: bones that move something turn as their surface does.
     seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
@@ -184,8 +186,7 @@ def nearest_bones(mesh: TriangleMesh, skeleton: Skeleton) -> csr_array:
     return csr_array((np.ones(len(rows)), (rows, found // len(steps))), shape=(len(rows), len(skeleton)))
 
 
-@dataclass(frozen=True, eq=False)
-class _Comparison:
+class _Comparison(NamedTuple):
     """All bones of two rigs compared.
 
     `scores` (b, a), minus infinity for what is no pair; `inside` (b, a), what part of the smaller one both move; and
@@ -324,7 +325,7 @@ def _in_chain(
 
 
 def _without_misplaced(
-    chosen: Ints, trees: tuple[Skeleton, Skeleton], fixed: Sequence[tuple[int, int]], target: TriangleMesh
+    chosen: Ints, trees: tuple[Skeleton, Skeleton], given: set[tuple[int, int]], target: TriangleMesh
 ) -> Ints:
     """Leave out bones, all in the target, that would carry what hangs on them astray.
 
@@ -332,7 +333,6 @@ def _without_misplaced(
     carry the same leg: it would swing the hip itself.  Where that is more than what is lost without the pair, the leg
     alone turns, which turns as much.
     """
-    given = {(int(a), int(b)) for a, b in fixed}
     least = _ROOT_REACH * np.ptp(target.vertices, axis=0).max()
     while len(chosen):
         parts = Segments.of(chosen[:, 0], chosen[:, 1], *trees)
@@ -361,12 +361,7 @@ def _without_misplaced(
 def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None) -> Floats:
     """Find how the target stands: turned by what takes axes to axes, or by one of the frames, if that is near."""
     middle = standing(rig, source)
-    axes = np.array(
-        [np.eye(3)[list(order)] for order in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (1, 0, 2), (2, 1, 0))]
-    )
-    signs = np.array(np.meshgrid(*[[1, -1]] * 3)).reshape(3, -1).T
-    cubes = (signs[:, None, :, None] * axes).reshape(-1, 3, 3)
-    known = cubes[np.linalg.det(cubes) > 0]
+    known = Rotation.create_group("O").as_matrix().round()  # of a cube
     if frames is not None and len(frames):
         known = np.concatenate([known, (np.asarray(frames)[:, None] @ known).reshape(-1, 3, 3)])
     return nearest_frame(middle, known, _TRUNK_NEAR_AXES)

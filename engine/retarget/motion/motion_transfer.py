@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, at_once
@@ -136,16 +136,15 @@ def transfer_motion_steps(
     yield Progress(0.3, "Posing the bones")
     paths = body.paths(motion.heads, turns, settings.stride)
     posed = body.posed(turns, paths)
-    feet = [limb for limb in body.limbs if limb.foot]
-    if feet:
-        lifts = _carried_lifts(body, motion, posed, feet)
+    if body.feet:
+        lifts = _carried_lifts(body, motion, posed)
         paths = {part: path + lifts[:, None, None] * ups[1] for part, path in paths.items()}
         posed = body.posed(turns, paths)
-    if settings.feet and feet and len(motion) > 1:
+    if settings.feet and body.feet and len(motion) > 1:
         yield Progress(0.5, "Keeping the feet")
-        goals, drop = _with_feet(body, motion, posed, feet, settings)
+        goals, drop = _with_feet(body, motion, posed, settings)
         paths = {part: path - drop[:, None, None] * ups[1] for part, path in paths.items()}
-        turns = body.bent(turns, paths, feet, goals)
+        turns = body.bent(turns, paths, body.feet, goals)
         posed = body.posed(turns, paths)
     arms = _arms(body.limbs)
     if settings.hands and arms:
@@ -177,8 +176,7 @@ class _Body:
         self.segments = (
             Segments.of(pairing.sources, pairing.targets, self.source, target).held_in(motion).freed_in(motion)
         )
-        self.moved = np.zeros(len(target), bool)
-        self.moved[pairing.targets] = True
+        self.moved = marked(pairing.targets, len(target))
         # Of each segment the bones that hang on no other of it.
         self.tops = [self.segments.tops(part, target) for part in range(len(self.segments))]
         self.placed, self.rooted = np.zeros((2, len(target)), bool)
@@ -190,16 +188,16 @@ class _Body:
                 self._holders[self.tops[part]] = self.segments.targets[above][-1] if above >= 0 else -1
         self._order = self._in_order()
         self.limbs = limbs_of(self.segments, self.source, target, ups)
+        self.feet = [limb for limb in self.limbs if limb.foot]
         trees = self.source, target
         rests = posed_rotations(pairing, self.segments, self.limbs, trees, ups[1])
         self._chains = fitted_chains(pairing, rests, self.segments, trees, self._holders, arms=_arms(self.limbs))
         self.scale = self._scale()
         self._rise = 0.0
         # In the pose in which the source rests the target's feet are to be as high as they are in its own.
-        feet = [limb for limb in self.limbs if limb.foot]
-        if feet:
+        if self.feet:
             resting = self.rest_pose()
-            rises = [(limb.target_points(resting)[0] - limb.target_points(target))[0] @ ups[1] for limb in feet]
+            rises = [(limb.target_points(resting)[0] - limb.target_points(target))[0] @ ups[1] for limb in self.feet]
             self._rise = float(np.mean(rises))
 
     def rest_pose(self) -> Motion:
@@ -217,7 +215,7 @@ class _Body:
 
     def _scale(self) -> float:
         """How many times as long the target's legs are; without legs, how many times as large the skeleton is."""
-        feet = [limb for limb in self.limbs if limb.foot]
+        feet = self.feet
         lengths: tuple[float, ...] = sum(limb.source_length for limb in feet), sum(limb.target_length for limb in feet)
         if not feet:
             points = self.source.heads[self.pairing.sources], self.target.heads[self.pairing.targets]
@@ -280,13 +278,11 @@ class _Body:
         return np.array(found, np.int64)
 
 
-def _with_feet(
-    body: _Body, motion: Motion, posed: Motion, feet: list[Limb], settings: MotionSettings
-) -> tuple[list[Floats], Floats]:
+def _with_feet(body: _Body, motion: Motion, posed: Motion, settings: MotionSettings) -> tuple[list[Floats], Floats]:
     """Find where legs are to end so that feet stay where they stand, (f, 3) each, and how much lower the body is."""
-    up, length = body.ups[0], float(np.mean([limb.source_length for limb in feet]))
+    up, length = body.ups[0], float(np.mean([limb.source_length for limb in body.feet]))
     goals, levels = [], body.rest_pose()
-    for limb in feet:
+    for limb in body.feet:
         points = limb.source_points(motion)
         touching = contacts_of(points, up, length, settings.rate)
         level, places = limb.target_points(levels)[0] @ body.ups[1], limb.target_points(posed)
@@ -296,17 +292,17 @@ def _with_feet(
         shifts = held_shifts(places, touching, heights, body.ups[1], settings.rate)
         lifts = grounded_lifts((places + shifts[:, None]) @ body.ups[1], heights, level, body.scale * length)
         goals.append(limb.joints(posed)[:, 2] + shifts + lifts[:, None] * body.ups[1])
-    drops = [needed_drop(limb.joints(posed), goal, body.ups[1]) for limb, goal in zip(feet, goals, strict=True)]
+    drops = [needed_drop(limb.joints(posed), goal, body.ups[1]) for limb, goal in zip(body.feet, goals, strict=True)]
     return goals, _smoothed(np.max(drops, axis=0), settings.rate)
 
 
-def _carried_lifts(body: _Body, motion: Motion, posed: Motion, feet: list[Limb]) -> Floats:
+def _carried_lifts(body: _Body, motion: Motion, posed: Motion) -> Floats:
     """Find how far the body has to be lifted in each pose, (f,), for the feet that carry it to be on the ground."""
-    up, length = body.ups[0], float(np.mean([limb.source_length for limb in feet]))
-    levels = np.concatenate([limb.target_points(body.target) for limb in feet]) @ body.ups[1]
-    rises = [(limb.source_points(motion) - limb.source_points(body.source)) @ up for limb in feet]
+    up, length = body.ups[0], float(np.mean([limb.source_length for limb in body.feet]))
+    levels = np.concatenate([limb.target_points(body.target) for limb in body.feet]) @ body.ups[1]
+    rises = [(limb.source_points(motion) - limb.source_points(body.source)) @ up for limb in body.feet]
     wanted = levels + body.scale * np.concatenate(rises, axis=1)
-    heights = np.concatenate([limb.target_points(posed) for limb in feet], axis=1) @ body.ups[1]
+    heights = np.concatenate([limb.target_points(posed) for limb in body.feet], axis=1) @ body.ups[1]
     return grounded_lifts(heights, wanted, levels, body.scale * length)
 
 
