@@ -214,10 +214,8 @@ def with_lengths(
             heads[bone] = tails[parent]
         if np.linalg.norm(tails[bone] - heads[bone]) > _SHORTEST * max(lengths[bone], _SHORTEST * usual):
             continue
-        if lengths[bone] > _SHORTEST * _SHORTEST * usual:
-            tails[bone] = heads[bone] + rigid[bone]
-        else:
-            tails[bone] = heads[bone] + [0, 0, _SHORTEST * usual]
+        has_length = lengths[bone] > _SHORTEST * _SHORTEST * usual
+        tails[bone] = heads[bone] + (rigid[bone] if has_length else [0, 0, _SHORTEST * usual])
     return heads, tails
 
 

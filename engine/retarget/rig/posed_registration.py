@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, eye_array, vstack
@@ -37,8 +37,7 @@ _TOLERANCE = 1e-4
 """Relative residual at which they end."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Target:
+class _Target(NamedTuple):
     """What is known of the target, around the origin in units of the root of its area."""
 
     points: Floats
@@ -158,8 +157,7 @@ class PosedRegistration:
         return (positions - self._target.centre) / self._target.scale
 
 
-@dataclass(frozen=True, eq=False)
-class _Planes:
+class _Planes(NamedTuple):
     """Points of the body, rows of `evaluate` (k, n), and the planes (k, 3), (k, 3) that they are drawn to."""
 
     evaluate: csr_array

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
@@ -264,8 +265,7 @@ def _evaluation(points: FoundPoints | SurfacePoints, mesh: TriangleMesh) -> csr_
     return interpolation_matrix(points.barycentric, mesh.triangles[points.triangles], mesh.vertex_count)
 
 
-@dataclass(frozen=True, eq=False)
-class _Pair:
+class _Pair(NamedTuple):
     """The main parts of both meshes, and the rig of the first."""
 
     x: CleanSurface

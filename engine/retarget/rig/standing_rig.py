@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -206,8 +207,7 @@ def _roots_outside(skeleton: Skeleton, source: TriangleMesh) -> Ints:
     return roots[_outside(skeleton.heads[roots], source)]
 
 
-@dataclass(frozen=True, eq=False)
-class _Moved:
+class _Moved(NamedTuple):
     """Where points went (k, 3), how what is around them is turned (k, 3, 3), and how it is scaled (k,)."""
 
     points: Floats

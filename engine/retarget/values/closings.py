@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -73,8 +73,7 @@ _FIRMLY = 30.0, 200.0
 of the tests with 30 alone, 4 with 30 and then 200, 2 with 1,000."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Closing:
+class _Closing(NamedTuple):
     """Places of a surface that face each other and come together in a key.
 
     Attributes

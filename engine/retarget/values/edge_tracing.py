@@ -232,9 +232,7 @@ class _Tracer:
         weighted = csr_array((cost, graph.indices, graph.indptr), shape=graph.shape)
         first, last = np.searchsorted(inside, [start, end])
         _, before = dijkstra(weighted, directed=True, indices=int(first), return_predecessors=True)
-        if before[last] < 0:
-            return None
-        return inside[way_to_root(before, last)[-2::-1]].tolist()
+        return None if before[last] < 0 else inside[way_to_root(before, last)[-2::-1]].tolist()
 
     def _edges_between(self, route: list[int]) -> Ints:
         """Edges between successive vertices, as far as there are any."""
