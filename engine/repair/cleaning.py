@@ -117,8 +117,6 @@ class _Work:
 
     def turn(self, turned: Bools) -> None:
         """Turn triangles over."""
-        if not turned.any():
-            return
         self.triangles, self.twins = turn_triangles(self.triangles, self.twins, turned)
         self.turned = self.turned ^ turned
 
