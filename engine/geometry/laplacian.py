@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 
 from ..mesh.triangle_mesh import TriangleMesh
@@ -80,7 +82,7 @@ class LaplaceBeltrami:
         weights = csr_array(one_way + one_way.T)
         # An edge from a vertex to itself, which flips may leave, is in the sum as often as on the diagonal: it cancels.
         stiffness = csr_array(diags_array(weights.sum(axis=1)) - weights)
-        mass = np.bincount(triangles.ravel(), np.repeat(areas / 3, 3), n)
+        mass: NDArray[Any] = np.bincount(triangles.ravel(), np.repeat(areas / 3, 3), n)
         used = np.bincount(triangles.ravel(), minlength=n) > 0
         mass[used] = np.maximum(mass[used], _LEAST_MASS * mass[used].mean())
         return cls(stiffness, mass)

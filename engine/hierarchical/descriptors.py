@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..runtime.arrays import Floats
 
@@ -40,7 +43,8 @@ def distance_histograms(distances: Floats, weights: Floats, bins: int, reach: fl
     cell = left + np.arange(n) * bins  # one long histogram: bin b of point i is cell i * bins + b
     mass = np.concatenate([(share[:, None] - right_share).ravel(), right_share.ravel()])
     cells = np.concatenate([cell.ravel(), cell.ravel() + 1])
-    return np.bincount(cells, mass, n * bins).reshape(n, bins)
+    counts: NDArray[Any] = np.bincount(cells, mass, n * bins)
+    return counts.reshape(n, bins)
 
 
 def earth_movers_distance(first: Floats, second: Floats, bin_width: float) -> Floats:

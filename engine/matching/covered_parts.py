@@ -339,12 +339,12 @@ class _Fitter:
         piece = piece.limited(_SAMPLES, _MEASURED)
         places = whole.vertices[self.whole.samples.vertices[images[:_STARTS]]]
         rows = self.whole.samples.rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
-        start = SparseStart(rows, self.part.samples.rows[:_STARTS], "placement")
+        begin = SparseStart(rows, self.part.samples.rows[:_STARTS], "placement")
         if known:
             domains = MapDomain(piece, EIGENPAIRS), MapDomain(self.part, EIGENPAIRS)
-            return _Proposal(piece, unrefined_hypothesis(domains, start), places)
+            return _Proposal(piece, unrefined_hypothesis(domains, begin), places)
         try:
-            hypotheses = yield from within(map_hypotheses_steps(piece, self.part, [start], search=False), 0.5, 1.0)
+            hypotheses = yield from within(map_hypotheses_steps(piece, self.part, [begin], search=False), 0.5, 1.0)
         except MatchError:  # the largest of several pieces may be too small
             return None
         return _Proposal(piece, hypotheses[0], places)

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MeshError
@@ -101,7 +103,8 @@ class Polygons:
     def face_areas(self, positions: Floats) -> Floats:
         """Area of each face, (f,), as that of the triangles; `positions` (n, 3) of the vertices."""
         areas = triangle_areas(positions, self.corner_vertices[self.triangle_corners])
-        return np.bincount(self.triangle_faces, areas, self.face_count)
+        total: NDArray[Any] = np.bincount(self.triangle_faces, areas, self.face_count)
+        return total
 
     @cached_property
     def neighbours(self) -> Ints:

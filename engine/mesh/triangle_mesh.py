@@ -117,7 +117,8 @@ class TriangleMesh:
 
     def sum_at_vertices(self, values: Floats) -> Floats:
         """Sum a value per triangle, (m,), over the triangles around each vertex, (n,)."""
-        return np.bincount(self.triangles.ravel(), np.repeat(values, 3), self.vertex_count)
+        sums: NDArray[Any] = np.bincount(self.triangles.ravel(), np.repeat(values, 3), self.vertex_count)
+        return sums
 
     @cached_property
     def _edge_table(self) -> tuple[Ints, Ints]:

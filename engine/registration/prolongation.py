@@ -127,8 +127,8 @@ def lift_steps(
     starts = follow_neighbours(source, reached.nearest_vertices, astray)
     del reached  # of a million vertices, what is not needed any more counts
     again = np.flatnonzero(astray)
-    for part in slices(len(again), _CHUNK):
-        some = again[part]
+    for rows in slices(len(again), _CHUNK):
+        some = again[rows]
         triangles[some], barycentric[some], _ = lift.search_from(
             starts[some], positions[some], lift.turned(motion, some)
         )

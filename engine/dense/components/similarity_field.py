@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...geometry.procrustes import nearest_rotations
@@ -181,7 +182,7 @@ def _coarser(places: _Places) -> _Places | None:
         return None
     # A least area, so that cells of needles only have a mean as well.
     areas = np.maximum(places.areas, 1e-9 * places.areas.mean())
-    totals = np.bincount(number, areas, count)
+    totals: NDArray[Any] = np.bincount(number, areas, count)
     vectors = (places.positions, places.images, places.normals, places.image_normals)
     positions, images, normals, image_normals = (
         group_sums(number, areas[:, None] * values, count) / totals[:, None] for values in vectors

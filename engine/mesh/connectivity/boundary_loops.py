@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...runtime.arrays import Floats, Ints, group_sums, numbered
 from .components import joined_components
@@ -72,4 +74,5 @@ def boundary_loops(vertices: Floats, triangles: Ints, half_edges: Ints) -> Bound
     weights = np.bincount(labels, lengths, len(first))
     centres = group_sums(labels, lengths[:, None] * ((a + b) / 2), len(first)) / weights[:, None]
     fans = np.linalg.norm(np.cross(b - a, centres[labels] - a), axis=1) / 2
-    return BoundaryLoops(half_edges, tails, heads, labels, centres, np.bincount(labels, fans, len(first)))
+    areas: NDArray[Any] = np.bincount(labels, fans, len(first))
+    return BoundaryLoops(half_edges, tails, heads, labels, centres, areas)

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
@@ -73,7 +75,7 @@ class SurfaceCells:
         sizes = np.bincount(labels, minlength=count)
         vectors = mesh.vertices, mesh.vertex_normals
         positions, normals = (group_sums(labels, values, count) / sizes[:, None] for values in vectors)
-        areas = np.bincount(labels, mesh.vertex_areas, count)
+        areas: NDArray[Any] = np.bincount(labels, mesh.vertex_areas, count)
         at_boundary = marked(labels[mesh.boundary_edges], count)
 
         low, high = np.sort(labels[mesh.edges], axis=1).T
