@@ -17,7 +17,8 @@ such as those of hands and feet, may not tell front from back.  Twice as many le
 of ``python -m tests.benchmarks.maker_rigs --guided``, tried once."""
 
 _SMOOTHING = 1e-6
-"""What landmarks may be apart, in units of the mean way between them, so that two may lie at one place."""
+"""By how much the system that bends the source is regularised, in sqrt(area), so that landmarks may be at one place:
+they coincide but for about as much."""
 
 
 def laid_start(x: Shape, y: Shape, count: int) -> SparseStart:

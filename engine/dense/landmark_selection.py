@@ -122,7 +122,7 @@ def steered_hypotheses_steps(
     mirrored = _judged(reflection, y, landmarks, found)
     mirrored = yield from within(_completed_steps(reflection, y, starts, landmarks, mirrored), 0.9, 1.0)
     best, other = _natural(direct), _natural(mirrored)
-    if other is not None and (best is None or _contradicts((x, best), (reflection, other), y, landmarks)):
+    if other is not None and (best is None or _ask_for_mirrored((x, best), (reflection, other), y, landmarks)):
         return Steered(reflection, mirrored=True, hypotheses=mirrored)
     return Steered(x, mirrored=False, hypotheses=direct)
 
@@ -158,7 +158,7 @@ def _natural(hypotheses: list[MapHypothesis]) -> MapHypothesis | None:
     return next((h for h in hypotheses if h.orientation > 0), None)
 
 
-def _contradicts(
+def _ask_for_mirrored(
     direct: tuple[Shape, MapHypothesis], mirrored: tuple[Shape, MapHypothesis], y: Shape, landmarks: Landmarks
 ) -> bool:
     """Say whether landmarks ask for a mirrored map: it is more credible, and they speak clearly for it."""

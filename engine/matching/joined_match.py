@@ -100,8 +100,9 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         )
     if second is None:
         # If bodies as a whole cannot be matched either, their main parts say why; but landmarks may be on any part.
-        ends = (x, y) if first is not None or task.landmarks is None else (joined[0], joined[1])
-        return first or (yield from within(matched_steps(*ends, task), end, 1.0)), *ends
+        if first is None and task.landmarks is not None:
+            x, y = joined
+        return first or (yield from within(matched_steps(x, y, task), end, 1.0)), x, y
     if first is None and not (_is_plausible(second) and _covered(second) >= _TOGETHER):
         # What hangs on one body alone is better left alone, as clothes are here.
         task = replace(task, least_softly=min(_likeness(second), EVEN))

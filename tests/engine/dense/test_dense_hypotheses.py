@@ -17,7 +17,6 @@ from engine.dense.dense_hypotheses import (
     unrefined_hypothesis,
 )
 from engine.dense.functional_maps import PointMaps
-from engine.runtime.parallel_map import here_steps
 from engine.runtime.progress import Progress, run
 from tests.bodies import mirrored_body
 from tests.shapes import creature, icosphere, permuted, plane, rotation
@@ -222,7 +221,6 @@ def test_a_matching_that_only_the_target_offers_is_turned_round(poses, proposed,
         return [PointMaps(gaps.argmin(axis=0), gaps.argmin(axis=1))] if source is y else []
 
     monkeypatch.setattr(map_hypotheses, "fitting_maps_steps", only_back)
-    monkeypatch.setattr(map_hypotheses, "shared_steps", here_steps)  # another process would not know of that
     (found,) = run(unrefined_hypotheses_steps((x, y)))
     assert error(rest, found.images.on_y) < 0.03
     assert error(rest, found.images.on_x) < 0.03
