@@ -121,15 +121,54 @@ def person(resolution=40, girth=1.0, turn=0.0, **build):
     return Person(mesh, Rig(names, skeleton, weights, tuple(frozenset([name]) for name in names)))
 
 
+def figure_surface(resolution=18, turn=0.3, *, head=1.0, legs=1.0, arms=1.0, apart=0.0):
+    """Make the surface of somebody who may look like a toy, without fingers.
+
+    Parameters
+    ----------
+    head, legs, arms : float
+        How large the head is, and how long legs and arms are, in units of the usual ones.
+    apart : float
+        How much farther each leg is to its side.
+
+    Returns
+    -------
+    mesh : TriangleMesh
+        The surface.
+    bones : (n,) array of str
+        The name of the nearest bone of each vertex.
+    """
+    bones = bones_of(legs, arms, fingers=False)
+    names = np.array(list(bones))
+    ends = np.array([bone[1:] for bone in bones.values()], float)
+    radii = np.array([RADII[name.split(".")[0]] for name in names])
+    is_leg = np.array([name.split(".")[0] in {"thigh", "shin", "foot", "toe"} for name in names])
+    ends[is_leg, :, 0] += apart * np.sign(ends[is_leg, :, 0])
+    skull = names == "head"
+    ends[skull, :, 2] = ends[skull, :1, 2] + np.array([0.08 * (head - 1), 0.24 + 0.12 * (head - 1)])
+    radii[skull] *= head
+    capsules = [(tuple(start), tuple(end), *own) for (start, end), own in zip(ends, radii, strict=True)]
+    margin = 0.2 * max(head, 1.0)
+    box = [ends.min(axis=(0, 1)) - margin, ends.max(axis=(0, 1)) + margin]
+    mesh = TriangleMesh(*capsule_surface(capsules, box, resolution, turn))
+    return mesh, names[away_from(mesh.vertices, ends, radii).argmin(axis=1)]
+
+
 def smooth_weights(points, skeleton, radii):
     """Weights (n, b) by the distances from bones with radii (b, 2), four at most for each point."""
-    axes = skeleton.tails - skeleton.heads
-    along = (np.einsum("nbd,bd->nb", points[:, None] - skeleton.heads, axes) / np.square(axes).sum(axis=1)).clip(0, 1)
-    nearest = skeleton.heads + along[:, :, None] * axes
-    away = np.linalg.norm(points[:, None] - nearest, axis=2) - (radii[:, 0] + along * (radii[:, 1] - radii[:, 0]))
+    away = away_from(points, np.stack([skeleton.heads, skeleton.tails], axis=1), radii)
     weights = np.exp((away.min(axis=1, keepdims=True) - away) / WIDTH * 2)
     weights[weights < np.maximum(0.02, np.sort(weights, axis=1)[:, [-4]])] = 0
     return csr_array(weights / weights.sum(axis=1, keepdims=True))
+
+
+def away_from(points, ends, radii):
+    """Signed distances of points from the surfaces of round cones, (n, b): ends (b, 2, 3) and radii at both (b, 2)."""
+    axes = ends[:, 1] - ends[:, 0]
+    along = (np.einsum("nbd,bd->nb", points[:, None] - ends[:, 0], axes) / np.square(axes).sum(axis=1)).clip(0, 1)
+    nearest = ends[:, 0] + along[:, :, None] * axes
+    lengths = np.linalg.norm(points[:, None] - nearest, axis=2)
+    return lengths - (radii[:, 0] + along * (radii[:, 1] - radii[:, 0]))
 
 
 def skinned(vertices, rig, motion):

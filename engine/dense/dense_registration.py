@@ -26,6 +26,9 @@ from .rough_maps.extremity_maps import RoughSearch
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""
 
+_LAID = 0.5
+"""What counts of the probability that a map is right because it leaves all in place, if it was made so; by hand."""
+
 
 @dataclass(frozen=True, eq=False)
 class RegisteredPair:
@@ -201,6 +204,8 @@ def registered_pair_steps(
     margin, alternatives = yield from alternatives_steps(follow, rivals, closest)
     registered = closest.registration, closest.reverse, (best, *others)
     in_place = follow.in_place(closest.registration.positions)
+    if landmarks is not None and landmarks.assumed:
+        landmarks, in_place = None, _LAID * in_place
     return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips, alternatives, in_place)
 
 

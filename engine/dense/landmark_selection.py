@@ -116,6 +116,8 @@ def steered_hypotheses_steps(
     if agrees(x, y, landmarks, natural):
         return Steered(x, mirrored=False, hypotheses=direct)
     direct = yield from within(_completed_steps(x, y, [*starts, *own], landmarks, direct), 0.4, 0.5)
+    if landmarks.assumed:  # what is not known asks for no mirroring
+        return Steered(x, mirrored=False, hypotheses=direct)
     reflection = x.reflected()
     starts = [*starts, *_starts(reflection, y, len(landmarks))]
     found = yield from within(map_hypotheses_steps(reflection, y, starts, search=search), 0.5, 0.9)

@@ -12,7 +12,7 @@ from ..runtime.arrays import Bools
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
 from ..shapes.borders import has_border
-from ..shapes.enclosing_surface import all_with_limbs_steps
+from ..shapes.enclosing_surface import both_joined_steps
 from ..shapes.landmarks import landmark_pairs
 from ..shapes.shape import Shape
 from .pieced_body import PiecedBody, common_cut, resized_share, torn_share, without_partner
@@ -85,11 +85,8 @@ def matched_with_pieces_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[tupl
         together = 0.0 if first is None else _together_but_for_extras(first, bodies)
         if first is not None and together >= _TOGETHER and (alike or _is_clear(first)):
             return first, x, y
-    wanted = [
-        (shape, name, np.flatnonzero(own)) for shape, name, own in zip((x, y), ("source", "target"), limbs, strict=True)
-    ]
     begin = _FIRST + _JOINED
-    joined = yield from within(all_with_limbs_steps(wanted), _FIRST, begin)
+    joined = yield from within(both_joined_steps(x, y), _FIRST, begin)
     task.clock.lap("joining pieces")
     end = 1.0 if first is not None else (1 + begin) / 2
     second = None

@@ -34,6 +34,7 @@ from .partial_match import (
 )
 from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
+from .standing_match import standing_match_steps
 
 _Unprepared = tuple[TriangleMesh, str, Bools | None]
 
@@ -152,9 +153,12 @@ def _check_types(surfaces: tuple[object, object], settings: object) -> None:
 
 
 def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float) -> Steps[MatchResult]:
-    """Match surfaces as they are, which takes that part of the work, and again if something is missing."""
-    result, x, y = yield from within(matched_with_pieces_steps(x, y, task), 0.0, end)
-    return (yield from within(part_matched_steps(result, x, y, task), end, 1.0))
+    """Match surfaces as they are, which takes that part of the work, and again if that leads nowhere."""
+    result, first, second = yield from within(matched_with_pieces_steps(x, y, task), 0.0, end)
+    standing = yield from within(standing_match_steps(result, x, y, task), end, end)
+    if standing is not None:
+        return standing
+    return (yield from within(part_matched_steps(result, first, second, task), end, 1.0))
 
 
 def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:

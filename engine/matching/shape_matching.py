@@ -74,6 +74,8 @@ class MatchTask:
         The same of what has been registered softly, though it may rise.
     begun : SurfaceMap, optional
         A map of the source to the target that a dense match begins with; then no other is looked for.
+    assumed : bool
+        Whether landmarks are not known to correspond, but tried: the result does not rely on them.
     """
 
     settings: MatchSettings
@@ -82,6 +84,7 @@ class MatchTask:
     least: float = -np.inf
     least_softly: float = -np.inf
     begun: SurfaceMap | None = None
+    assumed: bool = False
 
 
 def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
@@ -107,13 +110,10 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
                 f"{'' if shape.surface.is_whole else ' in its main part'}. "
                 "Use fewer points or subdivide the mesh."
             )
-    known = None if landmarks is None else locate_landmarks(x, y, landmarks, settings.points)
+    known = None if landmarks is None else locate_landmarks(x, y, landmarks, settings.points, assumed=task.assumed)
     if known is not None:
         x, y = x.starting_with(known.source.matched), y.starting_with(known.target.matched)
-    samples = max(3 * settings.samples // 4 if settings.dense else settings.samples, 2 * settings.points)
-    # A dense map is decided on by more than distances: from the points that are matched they are measured, from most
-    # other samples estimated.
-    measured = max(settings.points, MEASURED) if settings.dense else None
+    samples, measured = _samples_of(settings)
     sparse_end = 0.5 if settings.dense else 1.0
     sampled = 0.2 if settings.dense else 0.6
     eigenpairs = settings.eigenpairs if Pair.needs_spectrum(settings) else EIGENPAIRS if settings.dense else 0
@@ -141,6 +141,8 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
             results.append(_result(answer, known, notes, clock.laps, rows))
         return replace(results[0], alternatives=tuple(replace(other, name=MIRRORED) for other in results[1:2]))
     direct, others, dense = yield from within(_dense_steps(answers, finer, known, searched, task), sparse_end, 1.0)
+    if task.assumed:
+        known = None
     return replace(
         _result(direct, known, notes, clock.laps),
         alternatives=tuple(replace(_result(other, known, notes, clock.laps), name=name) for name, other in others),
@@ -148,6 +150,21 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
         target_to_source=dense.target_to_source,
         quality=with_alternatives(dense.quality, sum(name != MIRRORED for name, _ in others)),
     )
+
+
+def sampled_steps(x: Shape, y: Shape, settings: MatchSettings) -> Steps[None]:
+    """Take as many samples of two shapes as they are matched with."""
+    yield from prepared_shapes_steps(x, y, Wanted(*_samples_of(settings)))
+
+
+def _samples_of(settings: MatchSettings) -> tuple[int, int | None]:
+    """Tell how many samples are taken, and from how many of them distances are measured.
+
+    A dense map is decided on by more than distances: from the points that are matched they are measured, from most
+    other samples estimated.
+    """
+    samples = max(3 * settings.samples // 4 if settings.dense else settings.samples, 2 * settings.points)
+    return samples, max(settings.points, MEASURED) if settings.dense else None
 
 
 def _dense_steps(
@@ -173,8 +190,9 @@ def _dense_steps(
     if task.begun is not None:
         starts = [_begun_start(x, y, finer, task.begun)]
     selection, clock = replace(USUAL, least=task.least, least_softly=task.least_softly), task.clock
+    search = task.begun is None and not task.assumed
     registering = registered_pair_steps(
-        *finer, starts, search=task.begun is None, landmarks=landmarks, searched=searched, selection=selection
+        *finer, starts, search=search, landmarks=landmarks, searched=searched, selection=selection
     )
     registered = yield from within(registering, 0.0, 0.75)
     clock.lap("registration")
@@ -186,7 +204,7 @@ def _dense_steps(
     def placed(points: SurfacePoints) -> SurfacePoints:
         """Put images on the original target where they are matched."""
         images = y.surface.on_mesh(points)
-        if landmarks is None:
+        if landmarks is None or landmarks.assumed:
             return images
         return placed_at_vertices(images, y.mesh, np.arange(len(landmarks)), landmarks.target.matched)
 

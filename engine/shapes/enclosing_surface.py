@@ -93,6 +93,12 @@ def all_with_limbs_steps(bodies: Sequence[tuple[Shape, str, Ints]]) -> Steps[lis
     ]
 
 
+def both_joined_steps(x: Shape, y: Shape) -> Steps[list[Shape]]:
+    """Join the main piece and all limbs of the source, and those of the target; see `all_with_limbs_steps`."""
+    bodies = ((x, "source"), (y, "target"))
+    return (yield from all_with_limbs_steps([(s, name, np.flatnonzero(s.surface.cleaned.limbs)) for s, name in bodies]))
+
+
 def joined_shapes_steps(x: Shape, y: Shape, found: SurfaceMap, ends: tuple[Ints, Ints]) -> Steps[tuple[Shape, Shape]]:
     """Join the pieces of two bodies if a map takes the main piece of one to other pieces of the other.
 

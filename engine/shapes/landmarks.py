@@ -48,16 +48,19 @@ class Landmarks:
     ----------
     source, target : LandmarkPlaces
         Where they are: the i-th of one corresponds to the i-th of the other.
+    assumed : bool
+        Whether that is not known, but tried.
     """
 
     source: LandmarkPlaces
     target: LandmarkPlaces
+    assumed: bool = False
 
     def __len__(self) -> int:
         return len(self.source)
 
 
-def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int) -> Landmarks | None:
+def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int, *, assumed: bool = False) -> Landmarks | None:
     """Find landmarks on the surfaces that are matched.
 
     Parameters
@@ -68,6 +71,8 @@ def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int) -> Landmar
         Vertices of the original source and of the original target.
     most : int
         How many there may be.
+    assumed : bool
+        Whether it is only tried that they correspond.
 
     Returns
     -------
@@ -84,7 +89,7 @@ def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int) -> Landmar
     if not len(array):
         return None
     source, target = array.T
-    return Landmarks(_places(x.surface, source, "source"), _places(y.surface, target, "target"))
+    return Landmarks(_places(x.surface, source, "source"), _places(y.surface, target, "target"), assumed)
 
 
 def landmark_pairs(x: Shape, y: Shape, pairs: ArrayLike | None, most: int) -> Ints:

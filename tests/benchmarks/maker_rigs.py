@@ -278,6 +278,8 @@ def main():
     parser.add_argument("--strips", type=Path, help="folder for a picture of each pair")
     options = parser.parse_args()
     registered_extension()
+    for folder in filter(None, (options.save, options.strips)):
+        folder.mkdir(parents=True, exist_ok=True)
     wanted = [tuple(pair.split(":")) for pair in options.only.split(",")] if options.only else pairs()
     for names in wanted:
         try:

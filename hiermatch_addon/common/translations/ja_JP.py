@@ -1859,6 +1859,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The map turns large parts of the surface over: do not trust it; try landmarks.": (
         "マップが表面の大きな部分を裏返しています。信頼せず、ランドマークを試してください。"
     ),
+    "The shapes have little in common: the ends of their limbs were taken for the same where both stand alike.": (
+        "形状の共通点がわずかです: 両方が同じように立っているので、手足などの先端を対応するものとみなしました。"
+    ),
     "The shapes have too little in common: leave out what only one of them has, or try landmarks.": (
         "形状の共通点が少なすぎます。片方にしかない部分を除外するか、ランドマークを試してください。"
     ),

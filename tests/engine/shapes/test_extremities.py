@@ -6,8 +6,9 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh, run
-from engine.shapes.extremities import limb_tips, mean_distances, spread_extremities
+from engine.shapes.extremities import limb_tips, mean_distances, prominent_ends, spread_extremities
 from tests.bodies import mirrored_body, relative_of_creature
+from tests.people import figure_surface
 from tests.shapes import icosphere
 
 ENDS = np.array([(side, sign, -2) for side in (1, -1) for sign in (1, -1)])  # directions in which the feet lie
@@ -90,3 +91,21 @@ def test_extremities_are_different_places_and_as_many_as_there_is_room_for():
     assert between.min() > 0.3
     assert len(spread_extremities(ball, 100, 0.4)) < 20
     assert (spread_extremities(ball, 3, 0.4) == chosen[:3]).all()
+
+
+# --- ends by prominence
+
+
+def test_prominent_ends_are_hands_feet_and_head_and_nothing_else():
+    mesh, bones = figure_surface()
+    made = shape(mesh.vertices, mesh.triangles, 300)
+    found = bones[made.samples.vertices[prominent_ends(made)]]
+    assert sorted(found) == ["hand.L", "hand.R", "head", "toe.L", "toe.R"]
+
+
+def test_the_ends_of_a_long_ellipsoid_are_its_two_poles():
+    vertices, triangles = icosphere(8)
+    made = shape(vertices * [1.0, 1.0, 3.0], triangles)
+    places = made.mesh.vertices[made.samples.vertices[prominent_ends(made)]]
+    assert sorted(np.sign(places[:, 2])) == [-1, 1]
+    assert np.abs(places[:, 2]).min() > 2.9
