@@ -64,7 +64,7 @@ def standing_match_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTas
         return None
     yield from within(sampled_steps(x, y, task.settings), 0.1, 0.2)
     pairs = standing_ends(x, y)[: task.settings.points]
-    if len(pairs) < _FEWEST:
+    if not len(pairs):
         return None
     vertices = [s.vertices[s.samples.vertices[numbers]] for s, numbers in zip((x, y), pairs.T, strict=True)]
     task.clock.lap("limbs")
@@ -95,16 +95,18 @@ def standing_ends(x: Shape, y: Shape) -> Ints:
     Returns
     -------
     (k, 2) array of int
-        Numbers of samples of X and of Y; none if the bodies do not stand alike.  Their agreement is the correlation of
-        all ends of limbs, measured from the centre of each body, of which those without a partner have none.
+        Numbers of samples of X and of Y, four pairs at least; none if the bodies do not stand alike.  Their agreement
+        is the correlation of all ends of limbs, measured from the centre of each body, of which those without a partner
+        have none.
     """
     numbers = prominent_ends(x), prominent_ends(y)
+    none = np.empty((0, 2), np.int64)
+    if min(map(len, numbers)) < _FEWEST:
+        return none
     here, there = (_placed(shape)[shape.samples.vertices[n]] for shape, n in zip((x, y), numbers, strict=True))
     first, second = linear_sum_assignment(np.square(here[:, None] - there).sum(axis=2))
     agreement = 2 * float((here[first] * there[second]).sum()) / float(np.square(here).sum() + np.square(there).sum())
-    if agreement < _ALIKE:
-        return np.empty((0, 2), np.int64)
-    return np.column_stack([numbers[0][first], numbers[1][second]])
+    return np.column_stack([numbers[0][first], numbers[1][second]]) if agreement >= _ALIKE else none
 
 
 def _placed(shape: Shape) -> Floats:

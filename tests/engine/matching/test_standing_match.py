@@ -9,7 +9,7 @@ from engine.matching.shape_matching import sampled_steps
 from engine.matching.standing_match import standing_ends
 from engine.runtime.progress import run
 from tests.people import figure_surface
-from tests.shapes import creature, rotation
+from tests.shapes import creature, icosphere, rotation
 
 QUICK = MatchSettings(points=12, samples=200, hypotheses=2)
 NOTE = "the ends of their limbs were taken for the same"
@@ -69,6 +69,10 @@ def test_bodies_that_do_not_stand_alike_have_no_pairs(toy, usual, axis, angle):
 
 def test_a_person_and_a_four_legged_creature_have_no_pairs(usual):
     assert len(paired(usual[0], TriangleMesh(*creature(0.0, 12)[:2]))) == 0
+
+
+def test_a_ball_has_no_ends_to_pair(usual):
+    assert len(paired(TriangleMesh(*icosphere(8)), usual[0])) == 0
 
 
 # --- matches
