@@ -73,7 +73,7 @@ def standing_match_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTas
         other = yield from within(matched_steps(x, y, task), 0.2, 1.0)
     except MatchError:
         return None
-    if _worth(other) <= _worth(result):
+    if other.dense.quality.confidence <= _worth(result):
         return None
     return replace(other, notes=(*other.notes, _NOTE))
 

@@ -52,6 +52,9 @@ _STRAY_DIRECTION = np.radians(35.0)
 """A bone whose direction by the joints is further from that by the map keeps the latter: its joint means another
 place."""
 
+_DOUBTFUL, _STRAY_IF_DOUBTFUL = 0.3, np.radians(60.0)
+"""Mean confidence of a map below which joints tell more of directions than it does, and the angle then."""
+
 _TRUNK_NEAR_AXES = np.radians(20.0)
 """Bodies whose rotation against each other is no further from one that takes axes to axes are turned by just that."""
 
@@ -173,7 +176,8 @@ def pair_bones(
     # Where tails point is left to whoever made the rig: bones that move something turn as their surface does.
     seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
     evened = evened_rotations(seen[sources], (sources, targets), trees, mirrors, upright)
-    rotations = _swung(evened, sources, targets, rig.skeleton, skeleton)
+    confidence = np.average(rig.target_to_source.confidence, weights=target.vertex_areas)
+    rotations = _swung(evened, (sources, targets), trees, doubtful=bool(confidence < _DOUBTFUL))
     return BonePairing(sources, targets, worth, rotations, placed.heads[sources], upright)
 
 
@@ -367,22 +371,26 @@ def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None) -> Flo
     return nearest_frame(middle, known, _TRUNK_NEAR_AXES)
 
 
-def _swung(rotations: Floats, sources: Ints, targets: Ints, source_bones: Skeleton, bones: Skeleton) -> Floats:
+def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton], *, doubtful: bool) -> Floats:
     """Swing rotations (k, 3, 3) of the pairs: about the bones as the surface is turned, along them as the joints lie.
 
-    Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.
+    Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.  If
+    the map is doubtful, so do joints that are further from it, and those at which a limb begins that is of several
+    bones in one of the rigs.
     """
     turned = rotations.copy()
-    parts = Segments.of(sources, targets, source_bones, bones)
-    for part in range(len(parts)):
+    parts = Segments.of(*ends, *trees)
+    stray = _STRAY_IF_DOUBTFUL if doubtful else _STRAY_DIRECTION
+    for part in np.flatnonzero(parts.single):
         below = parts.below(part)
-        if len(below) != 1 or not (parts.single[part] and parts.single[below[0]]):
+        if len(below) != 1 or not (doubtful or parts.single[below[0]]):
             continue
-        row, end = parts.rows[part][0], parts.rows[below[0]][0]
-        directions = [
-            tree.heads[ends[end]] - tree.heads[ends[row]] for tree, ends in ((source_bones, sources), (bones, targets))
+        row = parts.rows[part][0]
+        ways = [
+            tree.heads[bones[below[0]][0]] - tree.heads[bones[part][0]]
+            for tree, bones in zip(trees, (parts.sources, parts.targets), strict=True)
         ]
-        start, goal = unit_vectors(np.stack([turned[row] @ directions[0], directions[1]]))
-        if start @ goal > np.cos(_STRAY_DIRECTION):
+        start, goal = unit_vectors(np.stack([turned[row] @ ways[0], ways[1]]))
+        if start @ goal > np.cos(stray):
             turned[row] = least_turns(start[None], goal[None])[0] @ turned[row]
     return nearest_rotations(turned) if len(turned) else turned

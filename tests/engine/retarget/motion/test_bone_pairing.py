@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bones paired by the surface, whatever they are called and however many there are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.sparse import csr_array
@@ -51,6 +53,23 @@ def test_the_rest_pose_is_seen_by_the_surface(someone, paired):
     wanted = rotation(HANGING["upper_arm.L"], np.linalg.norm(HANGING["upper_arm.L"]))
     apart = wanted.T @ pairing.rotations[pairing.targets == arm][0]
     assert np.trace(apart) > 1 + 2 * np.cos(np.radians(4))
+
+
+@pytest.mark.parametrize(("confidence", "follows"), [(1.0, False), (0.1, True)])
+def test_where_a_map_is_doubtful_joints_tell_where_limbs_point(someone, confidence, follows):
+    tree, names = someone.rig.skeleton, someone.rig.names
+    same = SurfaceMap.identity(someone.mesh)
+    same = replace(same, confidence=np.full(len(same), confidence))
+    fitted = fit_rig(someone.mesh, someone.mesh, same, same, weights=someone.rig.weights, skeleton=tree, refine=False)
+    rotations = fitted.rotations.copy()
+    for side, sign in (("L", 1), ("R", -1)):
+        rotations[names.index(f"upper_arm.{side}")] = rotation([0, 1, 0], sign * np.radians(50))
+    pairing = pair_bones(replace(fitted, rotations=rotations), someone.mesh, someone.mesh, tree, someone.rig.weights)
+    arm, elbow = names.index("upper_arm.L"), names.index("forearm.L")
+    way = tree.heads[elbow] - tree.heads[arm]
+    turned = pairing.rotations[pairing.targets == arm][0] @ way
+    angle = np.degrees(np.arccos(turned @ way / (way @ way)))
+    assert angle < 5 if follows else angle > 40
 
 
 def test_a_body_that_faces_elsewhere_is_turned_as_a_whole(someone, paired):
