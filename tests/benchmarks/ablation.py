@@ -122,6 +122,7 @@ MECHANISMS = {
             lambda _: lambda known, *_given, **_options: returned((known, False)),
         ),
     ],
+    "ends of limbs": [("engine.matching.matching.standing_match_steps", lambda _: lambda *_given: returned(None))],
     "spikes pulled in": [("engine.repair.cleaning._pull_in_spikes", lambda _: nothing)],
     "pinched gaps": [
         ("engine.repair.cleaning.pinched_gaps", lambda _: lambda *_given: (np.empty((0, 3), np.int64),) * 2)
