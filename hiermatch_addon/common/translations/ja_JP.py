@@ -2406,6 +2406,9 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」は「{1}」のシェイプキーのベースですが、ソースに同じ名前のシェイプキーがあります。一方の名前を"
         "変えてください。"
     ),
+    'The shape key "{0}" of "{1}" is locked. Unlock it, or take the item out.': (
+        "「{1}」のシェイプキー「{0}」はロックされています。ロックを解除するか、このアイテムを外してください。"
+    ),
     'The shape keys of "{0}" do not have the vertices of its mesh. Remove them first.': (
         "「{0}」のシェイプキーの頂点がメッシュと一致しません。先に削除してください。"
     ),

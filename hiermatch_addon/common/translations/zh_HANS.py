@@ -1954,6 +1954,9 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" is the basis of the shape keys of "{1}", but a shape key of the source has the same name. Rename '
         "one of them."
     ): "“{0}”是“{1}”的形态键的基型，但源有同名的形态键。请重命名其中一个。",
+    'The shape key "{0}" of "{1}" is locked. Unlock it, or take the item out.': (
+        "“{1}”的形态键“{0}”已锁定。请将其解锁，或去掉该物品。"
+    ),
     'The shape keys of "{0}" do not have the vertices of its mesh. Remove them first.': (
         "“{0}”的形态键与其网格的顶点不一致。请先将其移除。"
     ),

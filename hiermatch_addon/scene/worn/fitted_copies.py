@@ -18,6 +18,8 @@ from ..deform_layer import read_weights
 from ..shape_key_io import key_positions, keys_of
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from ..character import Side
 
 __all__ = [
@@ -47,6 +49,15 @@ _BODY_MARK: Final = "hiermatch_body_name"
 
 _AS_FITTED: Final = "hiermatch_as_fitted"
 """Custom property of a fitted copy: a text that is another one once the copy was edited."""
+
+_PLACE: Final = "hiermatch_fitted_place"
+"""Custom property of a fitted copy: where it stood when it was fitted, as the numbers of a matrix; see `_place`."""
+
+_SHOWN: Final = ("show_", "is_", "open_", "use_pin_to_last", "name", "type")
+"""What the names of those members of a modifier begin with that say nothing of what it does."""
+
+_PLAIN: Final = frozenset({"BOOLEAN", "INT", "FLOAT", "STRING", "ENUM"})
+"""Types of members that hold a value, and nothing that has members itself."""
 
 
 def fitted_name(item: str, body: str) -> str:
@@ -127,21 +138,27 @@ def unmark(copy: bpy.types.Object) -> None:
             del marks[mark]
 
 
-def as_fitted(copy: bpy.types.Object) -> None:
-    """Say that a copy is now as it was fitted."""
-    cast("Any", copy)[_AS_FITTED] = _state(copy)
+def as_fitted(copy: bpy.types.Object, body: Side) -> None:
+    """Say that a copy is now as it was fitted to a body."""
+    mine: Any = copy
+    mine[_AS_FITTED], mine[_PLACE] = _state(copy), " ".join(map(str, _place(copy, body).ravel()))
 
 
-def was_edited(copy: bpy.types.Object) -> bool:
-    """Tell whether a copy was edited since it was fitted, as far as that is known."""
-    known = cast("Any", copy).get(_AS_FITTED, "")
-    return bool(known) and known != _state(copy)
+def was_edited(copy: bpy.types.Object, body: Side) -> bool:
+    """Tell whether a copy was edited since it was fitted to a body, or moved on it, as far as that is known."""
+    mine: Any = copy
+    known, place = mine.get(_AS_FITTED, ""), np.array(mine.get(_PLACE, "").split(), np.float64)
+    if known and known != _state(copy):
+        return True
+    return bool(len(place)) and not np.allclose(_place(copy, body).ravel(), place, rtol=1e-4, atol=1e-5)
 
 
 def put_aside(copy: bpy.types.Object) -> str:
     """Keep a copy that another one has replaced, hidden and under another name; return that."""
     marks: Any = copy
-    del marks[ITEM], marks[_AS_FITTED]  # it stays marked as worn: it is no part of the body
+    for mark in (ITEM, _AS_FITTED, _PLACE):  # it stays marked as worn: it is no part of the body
+        if mark in marks:
+            del marks[mark]
     copy.name = f"{copy.name} (edited)"
     copy.hide_render = True
     layer = cast("bpy.types.ViewLayer", bpy.context.view_layer)
@@ -165,6 +182,34 @@ def _is_anothers(name: str, body: Side) -> bool:
     return any(one not in own for one in _called(name))
 
 
+def _place(copy: bpy.types.Object, body: Side) -> NDArray[np.float64]:
+    """Return where a copy stands on its parent, or else on the body, (4, 4): it may go anywhere along with them."""
+    basis = np.array(copy.matrix_basis, np.float64)
+    if copy.parent is not None:
+        return np.array(copy.matrix_parent_inverse, np.float64) @ basis
+    return np.linalg.pinv(np.array(parts_of(body)[0].matrix_world, np.float64)) @ basis
+
+
+def _settings(copy: bpy.types.Object, modifier: bpy.types.Modifier) -> str:
+    """Write what is set on a modifier, but for what drivers set."""
+    animation, path = copy.animation_data, f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].'
+    driven = {curve.data_path for curve in animation.drivers} if animation else set()
+    names = [
+        prop.identifier
+        for prop in modifier.bl_rna.properties
+        if prop.type in _PLAIN and not prop.is_readonly and not prop.identifier.startswith(_SHOWN)
+    ]
+    values = {name: getattr(modifier, name) for name in names if path + name not in driven}
+    return repr({name: _plain(value) for name, value in values.items()})
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401 - whatever a modifier holds
+    """Write a value so that what is equal looks alike."""
+    if isinstance(value, set):
+        return sorted(value)
+    return value if isinstance(value, str) or not hasattr(value, "__len__") else list(value)
+
+
 def _state(copy: bpy.types.Object) -> str:
     """Describe the form of a copy, its weights, modifiers and materials."""
     digest = hashlib.blake2b(digest_size=16)
@@ -177,7 +222,7 @@ def _state(copy: bpy.types.Object) -> str:
     if weights is not None:
         digest.update(weights.data.astype(np.float32).tobytes() + weights.indices.astype(np.int64).tobytes())
     for modifier in copy.modifiers:
-        digest.update(f"{modifier.type} {modifier.name}\0".encode())
+        digest.update(f"{modifier.type} {modifier.name} {_settings(copy, modifier)}\0".encode())
     for slot in copy.material_slots:
         digest.update(f"{slot.material.name if slot.material else ''}\0".encode())
     return digest.hexdigest()

@@ -310,7 +310,7 @@ def _put_in_place(
             collection.objects.link(copy)
             collection.objects.unlink(before)  # first, or what follows would put the copy there a second time
         before.user_remap(copy)
-        if was_edited(before):
+        if was_edited(before, body):
             for collection in collections:
                 collection.objects.link(before)
             aside.append(put_aside(before))

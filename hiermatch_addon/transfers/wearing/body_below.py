@@ -3,26 +3,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from ....engine import ClosestPoints, TriangleMesh
-from ...common.access import mesh_of
+from ...common.access import mesh_of, view_layer_of
 from ...scene.character import parts_of, read_surface, vertex_ranges
 from ...scene.deform_layer import write_weights
-from ...scene.shape_key_io import KeySettings, add_keys
+from ...scene.mesh_io import read_mesh
+from ...scene.shape_key_io import KeySettings, add_keys, keys_of
+from ...scene.worn.fitted_copies import ITEM, fitted_to
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     import bpy
     from numpy.typing import NDArray
 
     from ...scene.character import Side
 
-__all__ = ["COVERED", "cover_body", "covered_vertices"]
+__all__ = ["COVERED", "cover_body", "covered_vertices", "worn_already"]
 
 COVERED = "Below Clothes"
 """Name of the group, the key and the modifier on the body."""
@@ -73,17 +75,31 @@ def covered_vertices(
     return covered
 
 
+def worn_already(
+    context: bpy.types.Context, body: Side, made: Collection[bpy.types.Object]
+) -> list[tuple[NDArray[np.float64], NDArray[np.int64]]]:
+    """Return vertices and triangles of what a body wears beside what was made just now: its other copies in sight."""
+    layer, depsgraph = view_layer_of(context), context.evaluated_depsgraph_get()
+    worn = [obj for obj in fitted_to(body) if obj not in made and ITEM in cast("Any", obj)]
+    meshes = [read_mesh(obj, depsgraph, use_modifiers=False) for obj in worn if obj.visible_get(view_layer=layer)]
+    return [(mesh.vertices, mesh.triangles) for mesh in meshes]
+
+
 def cover_body(
     context: bpy.types.Context,
     body: Side,
     items: Sequence[tuple[NDArray[np.float64], NDArray[np.int64]]],
     how: str,
 ) -> None:
-    """Draw the body in below clothes by a shape key ("KEY"), or hide it there by a Mask modifier ("MASK")."""
+    """Draw the body in below clothes by a shape key ("KEY"), or hide it there by a Mask modifier ("MASK").
+
+    It takes the place of what did so before, in either way.
+    """
     mesh = read_surface(body, context.evaluated_depsgraph_get(), use_modifiers=False)
     covered = covered_vertices(mesh, items)
     inwards = -_DEPTH * float(np.sqrt(mesh.area)) * mesh.vertex_normals * covered[:, None]
     for part, own in zip(parts_of(body), vertex_ranges(body), strict=True):
+        _uncover(part, kept=how if covered[own].any() else "")
         if not covered[own].any():
             continue
         if how == "KEY":
@@ -94,3 +110,14 @@ def cover_body(
         modifier: Any = part.modifiers.get(COVERED) or part.modifiers.new(COVERED, "MASK")
         modifier.vertex_group, modifier.invert_vertex_group = COVERED, True
         mesh_of(part).update()
+
+
+def _uncover(part: bpy.types.Object, *, kept: str) -> None:
+    """Take from a part of a body what drew it in below clothes, or hid it there, but for the one that is kept."""
+    mask = part.modifiers.get(COVERED)
+    if kept != "MASK" and mask is not None and mask.type == "MASK":
+        part.modifiers.remove(mask)
+    keys = keys_of(part)
+    drawn = None if keys is None else keys.key_blocks.get(COVERED)
+    if kept != "KEY" and drawn is not None:
+        part.shape_key_remove(drawn)

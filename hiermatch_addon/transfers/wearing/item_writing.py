@@ -3,19 +3,30 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from ...common.access import mesh_of
+from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...scene.armatures import find_armature
 from ...scene.binding import bind
 from ...scene.deform_layer import write_weights
 from ...scene.mesh_io import add_colors
 from ...scene.modifier_bindings import bind_again
-from ...scene.shape_key_io import KeySettings, add_keys, key_positions, keys_of, shape_key_names
+from ...scene.pair import check_writable
+from ...scene.shape_key_io import (
+    KeySettings,
+    add_keys,
+    check_keys_writable,
+    key_positions,
+    keys_of,
+    locked_keys,
+    shape_key_names,
+)
 from ...scene.worn.fitted_copies import former_names, mark_names
 from ...scene.worn.garment_shape_io import write_shape
 from ...scene.worn.garments import fitted_copy
@@ -28,31 +39,60 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from .item_weights import ItemWeights
 
-__all__ = ["KEY", "write_colors", "write_copy", "write_key"]
+__all__ = ["check_key", "write_colors", "write_copy", "write_key"]
 
-KEY = "Fit to "
+_KEY = "Fit to "
 """What the name of a shape key begins with that fits the item itself to a body."""
+
+_LONGEST_NAME = 63
+"""Bytes in the name of a shape key, at most; names of objects can be longer."""
 
 _FIT_NAMES = "Distance to Skin", "Pushed", "Uncertain"
 """What the color attributes of a fitted item show."""
 
 
+def check_key(obj: bpy.types.Object, target: Side) -> None:
+    """Make sure that a shape key can be written on an item that moves it to another body.
+
+    Raises
+    ------
+    ObjectError
+        If it cannot.
+    """
+    name = _key_name(target.name)
+    check_keys_writable(obj, [name])
+    check_writable(obj)
+    if name in locked_keys(obj):
+        raise ObjectError(f'The shape key "{name}" of "{obj.name}" is locked. Unlock it, or take the item out.')
+
+
+def _key_name(body: str) -> str:
+    """Name the key that fits an item to a body; what is too long ends with a number, made of the whole name."""
+    name = f"{_KEY}{body}"
+    if len(name.encode()) <= _LONGEST_NAME:
+        return name
+    end = f"~{hashlib.blake2b(body.encode(), digest_size=2).hexdigest()}"
+    return name.encode()[: _LONGEST_NAME - len(end)].decode(errors="ignore") + end
+
+
 def write_key(obj: bpy.types.Object, target: Side, fitted: FittedItem) -> None:
-    """Write a shape key that moves the item itself to the other body."""
+    """Write a shape key that moves the item itself to the other body; one of before stays as far on as it was."""
     matrix = np.linalg.inv(np.array(obj.matrix_world, np.float64))
     local = fitted.positions @ matrix[:3, :3].T + matrix[:3, 3]
     keys = keys_of(obj)
     rest = (
         np.array([vertex.co for vertex in mesh_of(obj).vertices]) if keys is None else key_positions(keys.reference_key)
     )
-    name = KEY + target.name
+    name = _key_name(target.name)
     for former in former_names(target):
-        before = None if keys is None else keys.key_blocks.get(KEY + former)
-        if before is not None and name not in shape_key_names(obj):
-            before.name = name
+        renamed = None if keys is None else keys.key_blocks.get(_key_name(former))
+        if renamed is not None and name not in shape_key_names(obj):
+            renamed.name = name
     mark_names(obj, target)
-    others = [other for other in shape_key_names(obj) if other.startswith(KEY) and other != name]
-    add_keys(obj, [KeySettings(name, value=float(not others))], (local - rest)[None])
+    before = None if keys is None else keys.key_blocks.get(name)
+    others = [other for other in shape_key_names(obj) if other.startswith(_KEY)]
+    settings = KeySettings(name, value=float(not others)) if before is None else KeySettings.of(before, ())
+    add_keys(obj, [settings], (local - rest)[None])
 
 
 def write_copy(

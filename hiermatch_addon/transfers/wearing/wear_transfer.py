@@ -14,7 +14,7 @@ from ...jobs.transfer import TransferReport
 from ...scene.armatures import armature_of, find_armature, read_rig
 from ...scene.character import Character, parts_of, read_surface, whole
 from ...scene.deform_layer import check_weights_writable
-from ...scene.pair import check_writable, named_object
+from ...scene.pair import named_object
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
 from ...scene.worn.garments import bound_items, check_item, dressed_at_rest
@@ -22,13 +22,13 @@ from ..options.rig import RigSettings
 from ..options.weights import WeightSettings
 from ..rig import RigTransfer
 from ..weights import WeightTransfer
-from .body_below import cover_body
+from .body_below import cover_body, worn_already
 from .fit_report import done, doubt
 from .followed_keys import read_body_keys, write_followed
 from .item_bones import ItemBones, read_item_bones
 from .item_motion import ItemMotion
 from .item_reading import check_place, read_item, still_there
-from .item_writing import KEY, write_colors, write_copy, write_key
+from .item_writing import check_key, write_colors, write_copy, write_key
 
 if TYPE_CHECKING:
     import bpy
@@ -81,8 +81,7 @@ class WearTransfer:
         for item in chosen:
             check_item(context, item, source, target, chosen, writable=settings.result == "KEY")
             if settings.result == "KEY":
-                check_keys_writable(item, [KEY + target.name])
-                check_writable(item)
+                check_key(item, target)
         if settings.hide != "NONE":
             for part in parts_of(target):
                 check_weights_writable(part)
@@ -185,6 +184,7 @@ class WearTransfer:
             ItemBones.write(context, target, self._moving.new_bones)
             count = counted(len(self._moving.new_bones), "bone")
             remarks.append(f'{count} of the items were added to the rig of "{target.name}".')
+        copies: list[bpy.types.Object] = []
         for number, (item, obj, fitted) in enumerate(zip(self._items, items, self._fitted, strict=True)):
             if self._moving is None:
                 made = obj
@@ -200,7 +200,8 @@ class WearTransfer:
             if self._settings.colors:
                 write_colors(made, fitted)
             if made is not obj:
-                as_fitted(made)
+                copies.append(made)
+                as_fitted(made, target)
             remarks.append(done(item.name, fitted, is_body=item.name in self._ends))
             notes.extend(filter(None, [doubt(item.name, fitted)]))
         remarks.extend(
@@ -209,7 +210,8 @@ class WearTransfer:
         remarks.extend([] if self._moving is None else self._moving.remarks(target.name))
         if self._settings.hide != "NONE":
             meshes = zip(self._fitted, (item.worn.mesh for item in self._items), strict=True)
-            cover_body(context, target, [(one.positions, mesh.triangles) for one, mesh in meshes], self._settings.hide)
+            worn = [(one.positions, mesh.triangles) for one, mesh in meshes]
+            cover_body(context, target, [*worn, *worn_already(context, target, copies)], self._settings.hide)
         written = [report.done for report in reports if report.done]
         return TransferReport(", ".join([*written, counted(len(items), "item")]), tuple(notes), tuple(remarks))
 

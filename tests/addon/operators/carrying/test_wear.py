@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -10,9 +11,9 @@ from hiermatch.hiermatch_addon.jobs import transfer_job
 from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
 from hiermatch.hiermatch_addon.transfers.wearing import wear_transfer
 
-from tests.addon.garments import depths, fitted, in_world, wear
+from tests.addon.garments import add_item, depths, fitted, in_world, wear
 from tests.addon.rigs import add_armature
-from tests.addon.scenes import snapshot
+from tests.addon.scenes import snapshot, weights_of
 from tests.addon.shape_keys import positions
 
 
@@ -67,14 +68,20 @@ def test_a_shape_key_is_found_again_after_renaming(dressed_pair):
     assert shirt.data.shape_keys.key_blocks.keys() == ["Basis", "Fit to Giant"]
 
 
+def add_twin(body):
+    """Add a copy of a body, at the same place."""
+    twin = body.copy()
+    twin.data = body.data.copy()
+    twin.name = "Twin"
+    bpy.context.scene.collection.objects.link(twin)
+    bpy.context.view_layer.update()
+    return twin
+
+
 def test_what_another_body_wears_is_left_alone(dressed_pair):
     _, target, *_ = dressed_pair
     assert wear("Shirt") == {"FINISHED"}
-    other = target.copy()
-    other.data = target.data.copy()
-    other.name = "Twin"
-    bpy.context.scene.collection.objects.link(other)
-    bpy.context.view_layer.update()
+    add_twin(target)
     assert wear("Shirt", target="Twin") == {"FINISHED"}
     assert made_copies() == ["Shirt on Target", "Shirt on Twin"]
 
@@ -94,6 +101,33 @@ def test_a_copy_that_was_edited_is_kept_aside(dressed_pair):
     assert "was edited after it had been fitted" in bpy.context.scene.hiermatch_retarget.report.notes
     assert wear("Shirt", "Coat") == {"FINISHED"}
     assert len(made_copies()) == 3
+
+
+def thicken(copy):
+    copy.modifiers["Thick"].thickness = 0.3
+
+
+def nudge(copy):
+    copy.location.z += 0.2
+
+
+@pytest.mark.parametrize("change", [thicken, nudge])
+def test_a_copy_whose_modifier_was_set_or_that_was_moved_is_kept_aside(dressed_pair, change):
+    _, target, shirt, _ = dressed_pair
+    shirt.modifiers.new("Thick", "SOLIDIFY").thickness = 0.01
+    assert wear("Shirt") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    target.location.y += 2  # with all that it wears
+    fitted("Shirt").location.y += 2
+    bpy.context.view_layer.update()
+    assert wear("Shirt") == {"FINISHED"}
+    assert made_copies() == ["Shirt on Target"]
+    change(fitted("Shirt"))
+    thickness, height = fitted("Shirt").modifiers["Thick"].thickness, fitted("Shirt").location.z
+    assert wear("Shirt") == {"FINISHED"}
+    assert made_copies() == ["Shirt on Target", "Shirt on Target (edited)"]
+    kept = bpy.data.objects["Shirt on Target (edited)"]
+    assert (kept.modifiers["Thick"].thickness, kept.location.z) == (thickness, height)
 
 
 def test_a_surface_deform_is_bound_to_the_other_body(dressed_pair):
@@ -124,6 +158,40 @@ def test_a_shape_key_on_the_original(dressed_pair):
     assert not [obj for obj in bpy.data.objects if "hiermatch_body" in obj]
     moved = np.array([shirt.matrix_world @ point.co for point in key.data])
     assert np.linalg.norm(moved.mean(axis=0) - in_world(target).mean(axis=0)) < 0.3
+
+
+def test_shape_keys_for_several_bodies_stay_as_far_on_as_they_are(dressed_pair):
+    _, target, shirt, _ = dressed_pair
+    add_twin(target)
+    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
+    assert wear("Shirt", target="Twin", wear_result="KEY") == {"FINISHED"}
+    keys = shirt.data.shape_keys.key_blocks
+    assert [keys["Fit to Target"].value, keys["Fit to Twin"].value] == [1, 0]
+    keys["Fit to Twin"].value, keys["Fit to Twin"].slider_max = 0.5, 2
+    for body in ("Target", "Twin"):
+        assert wear("Shirt", target=body, wear_result="KEY") == {"FINISHED"}
+    assert [keys["Fit to Target"].value, keys["Fit to Twin"].value] == [1, 0.5]
+    assert keys["Fit to Twin"].slider_max == 2
+
+
+def test_a_locked_shape_key_is_not_written_over(dressed_pair):
+    _, _, shirt, _ = dressed_pair
+    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
+    shirt.data.shape_keys.key_blocks["Fit to Target"].lock_shape = True
+    with pytest.raises(RuntimeError, match='The shape key "Fit to Target" of "Shirt" is locked'):
+        wear("Shirt", wear_result="KEY")
+
+
+def test_bodies_with_long_names_get_shape_keys_of_their_own(dressed_pair):
+    _, target, shirt, _ = dressed_pair
+    other = add_twin(target)
+    for body, end in ((target, "A"), (other, "B")):
+        body.name = "\u4eba" * 20 + end  # with "Fit to " longer than the name of a key can be
+    for body in (target, other, target):
+        assert wear("Shirt", target=body.name, wear_result="KEY") == {"FINISHED"}
+    _, *made = shirt.data.shape_keys.key_blocks.keys()
+    assert len(made) == 2
+    assert all(name.startswith("Fit to \u4eba\u4eba") for name in made)
 
 
 def test_keys_of_an_item_go_along(dressed_pair):
@@ -362,7 +430,39 @@ def test_the_body_below_is_drawn_in_or_hidden(dressed_pair):
     assert target.data.shape_keys.key_blocks["Below Clothes"].value == 1
     assert wear("Shirt", wear_hide="MASK", wear_colors=True) == {"FINISHED"}
     assert target.modifiers["Below Clothes"].vertex_group == "Below Clothes"
+    assert "Below Clothes" not in target.data.shape_keys.key_blocks
     assert {"Distance to Skin", "Pushed", "Uncertain"} <= set(fitted("Shirt").data.attributes.keys())
+    assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
+    assert "Below Clothes" not in target.modifiers
+    assert target.data.shape_keys.key_blocks["Below Clothes"].value == 1
+
+
+def keep_half(item, sign):
+    """Delete one half of an item."""
+    edited = bmesh.new()
+    edited.from_mesh(item.data)
+    gone = [vertex for vertex in edited.verts if sign * vertex.co.x < 0]
+    bmesh.ops.delete(edited, geom=gone, context="VERTS")
+    edited.to_mesh(item.data)
+    edited.free()
+
+
+def test_the_body_stays_hidden_below_what_it_wears_already(dressed_pair):
+    source, target, shirt, _ = dressed_pair
+    trousers = add_item(source, "Trousers", 0.02)
+    keep_half(shirt, 1)
+    keep_half(trousers, -1)
+
+    def hidden():
+        return set(weights_of(target)["Below Clothes"])
+
+    assert wear("Shirt", "Trousers", wear_hide="MASK") == {"FINISHED"}
+    both = hidden()
+    assert wear("Shirt", wear_hide="MASK") == {"FINISHED"}
+    assert hidden() == both
+    fitted("Trousers").hide_set(state=True)
+    assert wear("Shirt", wear_hide="MASK") == {"FINISHED"}
+    assert hidden() < both
 
 
 def test_how_an_item_fits_is_kept_on_it(dressed_pair):
