@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import argparse
+import codecs
 import csv
 import hashlib
 import io
@@ -14,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...common.errors import ObjectError
 from ..command import UsageError
+from ..meshes import mesh_argument
 from ..options import option_names, to_arguments
 from ..retarget import NOT_OF_THE_MATCH
 
@@ -72,6 +75,11 @@ class Pair:
         return (*self.outputs, *([self.map] if self.map else []))
 
     @property
+    def read(self) -> tuple[str, ...]:
+        """All files that it reads, as far as they are of a known kind."""
+        return tuple(filter(None, (_path_in(text) for text in (self.source, self.target))))
+
+    @property
     def key(self) -> str:
         """A text that is the same as long as the same is to be done with the same files."""
         plain = [self.command, self.source, self.target, self.outputs, self.map, self.options]
@@ -123,10 +131,10 @@ def read_manifest(path: Path, defaults: Mapping[str, str], command: str) -> list
     Raises
     ------
     ObjectError
-        If it cannot be read, has unknown columns, or two pairs write the same file.
+        If it cannot be read, has unknown columns, two pairs write the same file, or one what another before it reads.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = _decoded(path.read_bytes())
         rows, common = _json_rows(text) if path.suffix.lower() == ".json" else (_table_rows(text), {})
     except OSError as error:
         raise ObjectError(f'"{path}" cannot be read: {error.strerror or error}.') from error
@@ -137,6 +145,10 @@ def read_manifest(path: Path, defaults: Mapping[str, str], command: str) -> list
     if unknown:
         raise ObjectError(
             f'"{path.name}" has columns that are no options: {", ".join(unknown)}. Rename or remove them.'
+        )
+    if of_pairs := [name for name in _FIXED if name in common]:
+        raise ObjectError(
+            f'"{path.name}" has {", ".join(of_pairs)} among the options for all pairs. Write that into each pair.'
         )
     if not rows:
         raise ObjectError(f'"{path.name}" lists no pairs.')
@@ -152,18 +164,35 @@ def take_shard(pairs: Sequence[Pair], shard: tuple[int, int]) -> list[Pair]:
     return list(pairs[first - 1 :: step])
 
 
+def _decoded(content: bytes) -> str:
+    """Return the text of a file as editors and spreadsheets write it, with any kind of line ends."""
+    wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    try:
+        text = content.decode("utf-16" if wide else "utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError('it is not in UTF-8; save it again, in a spreadsheet as "CSV UTF-8"') from error
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
 def _table_rows(text: str) -> list[dict[str, str]]:
-    head = text.partition("\n")[0]
-    reader = csv.DictReader(io.StringIO(text), delimiter=max(",;\t", key=head.count), strict=True)
+    head = next((line for line in text.split("\n") if line.strip()), "")
+    reader = csv.reader(io.StringIO(text), delimiter=max(",;\t", key=head.count), strict=True)
+    filled = ([cell.strip() for cell in cells] for cells in reader if any(cell.strip() for cell in cells))
+    names = [name.replace("-", "_") for name in next(filled, [])]
     rows = []
-    for row in reader:
-        if None in row or None in row.values():
+    for cells in filled:
+        if len(cells) != len(names):
             raise ValueError(f"line {reader.line_num} has another number of columns than the first one")
-        rows.append({name.strip().replace("-", "_"): value.strip() for name, value in row.items()})
+        if any(cell and not name for name, cell in zip(names, cells, strict=True)):
+            raise ValueError(f"line {reader.line_num} has something in a column that has no name")
+        rows.append({name: cell for name, cell in zip(names, cells, strict=True) if name})
     for name in ("source", "target"):
-        if rows and name not in rows[0]:
+        if rows and name not in names:
             raise ValueError(f'it has no column "{name}"')
-    return [row for row in rows if any(row.values())]
+    for name in filter(None, names):
+        if names.count(name) > 1:
+            raise ValueError(f'it has several columns "{name}"')
+    return rows
 
 
 def _json_rows(text: str) -> tuple[list[dict[str, str]], dict[str, str]]:
@@ -211,9 +240,20 @@ def _operator_of(command: str, name: str) -> str | None:
 
 
 def _check_outputs(pairs: Sequence[Pair]) -> None:
-    """Make sure that no two pairs write the same, and that each has a report of its own."""
+    """Make sure that no two pairs write the same, nor over what one has read, and that each has its own report.
+
+    A pair may read what one before it writes.
+    """
     writers: dict[str, int] = {}
+    readers: dict[str, int] = {}
     for pair in pairs:
+        for written in set(pair.written) - set(pair.read):  # one that writes over its own fails alone
+            if written in readers:
+                raise ObjectError(
+                    f'Row {pair.number} of the manifest writes over "{written}", which row {readers[written]} reads. '
+                    "Give it another output."
+                )
+        readers |= dict.fromkeys(pair.read, pair.number)
         for written in (*pair.written, pair.stem):
             if written in writers:
                 raise ObjectError(
@@ -221,3 +261,11 @@ def _check_outputs(pairs: Sequence[Pair]) -> None:
                     f'"{written}". Give each pair an output of its own.'
                 )
             writers[written] = pair.number
+
+
+def _path_in(text: str) -> str:
+    """Return the path of FILE or FILE:NAME; empty if it is no file of a known kind, which its own row will tell."""
+    try:
+        return normpath(mesh_argument(text).path)
+    except argparse.ArgumentTypeError:
+        return ""

@@ -291,6 +291,9 @@ def test_json_has_options_for_all(tmp_path):
     path.write_text(json.dumps({"options": {"pionts": 32}, "pairs": pairs}))
     with pytest.raises(ObjectError, match="pionts"):
         read_manifest(path, {}, "match")
+    path.write_text(json.dumps({"options": {"command": "wear"}, "pairs": pairs}))
+    with pytest.raises(ObjectError, match="has command among the options for all pairs"):
+        read_manifest(path, {}, "match")
     path.write_text(json.dumps(pairs[:1]))
     assert len(read_manifest(path, {}, "match")) == 1
 
@@ -307,6 +310,12 @@ def test_json_has_options_for_all(tmp_path):
         ("source,target,output\na.obj,b.obj,o.blend\na.obj,c.obj,o.blend\n", "Rows 1 and 2"),
         ("source,target\na.obj,b.obj\na.obj,b.obj\n", "Rows 1 and 2"),
         ("source,target,output\na.obj,b.obj,o.blend\na.obj,c.obj,./new/../o.blend\n", "Rows 1 and 2"),
+        (
+            "source,target,output\na.obj:A,b.obj,o.blend\nc.obj,b.obj,./a.obj\n",
+            'Row 2 .* "[^"]*a.obj", which row 1 reads',
+        ),
+        ("source,target,output,output\na.obj,b.obj,c.blend,d.blend\n", 'several columns "output"'),
+        ("source,target,\na.obj,b.obj,c.blend\n", "line 2 has something in a column that has no name"),
     ],
 )
 def test_manifests_that_are_none_are_told(tmp_path, text, said):
@@ -314,6 +323,30 @@ def test_manifests_that_are_none_are_told(tmp_path, text, said):
     path.write_text(text)
     with pytest.raises(ObjectError, match=said):
         read_manifest(path, {}, "match")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_tables_may_be_in_several_encodings_and_have_empty_lines_and_columns(tmp_path, encoding, end):
+    path = tmp_path / "pairs.csv"
+    lines = ["", "source,target,output,,", "\u5973 1.obj,b.obj,o.blend,,", "  ", ",,,,", "c.obj,b.obj,p.blend,,", ""]
+    path.write_bytes(end.join(lines).encode(encoding))
+    pairs = read_manifest(path, {}, "match")
+    assert [Path(pair.source).name for pair in pairs] == ["\u5973 1.obj", "c.obj"]
+    assert all(pair.options == () for pair in pairs)
+
+
+def test_another_encoding_is_told(tmp_path):
+    path = tmp_path / "pairs.csv"
+    path.write_bytes("source,target\nh\u00e9ros.obj,b.obj\n".encode("latin-1"))
+    with pytest.raises(ObjectError, match='is not in UTF-8; save it again, in a spreadsheet as "CSV UTF-8"'):
+        read_manifest(path, {}, "match")
+
+
+def test_a_pair_may_read_what_one_before_it_writes(tmp_path):
+    path = tmp_path / "pairs.csv"
+    path.write_text("source,target,output\na.obj,b.obj,o.blend\no.blend:b,c.obj,p.blend\n")
+    assert len(read_manifest(path, {}, "match")) == 2
 
 
 @pytest.mark.parametrize("text", ["{", "3", '{"pairs": 3}', '["a"]', '[{"source": ["a"]}]'])
