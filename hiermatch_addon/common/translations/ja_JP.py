@@ -1480,6 +1480,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" was edited after it had been fitted. As it was then it is kept, hidden, as {1}.': (
         "「{0}」はフィット後に編集されていました。編集されたものは{1}として非表示で残してあります。"
     ),
+    'What was painted on "{0}" in {1} changes nothing: paint it on "{2}".': (
+        "「{0}」の{1}に描かれたものは効果がありません。「{2}」に描いてください。"
+    ),
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (
         '"{0}"のドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'

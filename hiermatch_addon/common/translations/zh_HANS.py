@@ -1222,6 +1222,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" was edited after it had been fitted. As it was then it is kept, hidden, as {1}.': (
         "“{0}”在贴合之后被编辑过。编辑过的版本已隐藏并保留为{1}。"
     ),
+    'What was painted on "{0}" in {1} changes nothing: paint it on "{2}".': (
+        "在“{0}”的{1}中所绘制的内容不起作用：请绘制到“{2}”上。"
+    ),
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (
         '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'

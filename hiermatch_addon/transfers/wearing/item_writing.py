@@ -6,6 +6,7 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any
 
+import bpy
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -14,7 +15,7 @@ from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...scene.armatures import find_armature
 from ...scene.binding import bind
-from ...scene.deform_layer import write_weights
+from ...scene.deform_layer import read_group, write_weights
 from ...scene.mesh_io import add_colors
 from ...scene.modifier_bindings import bind_again
 from ...scene.pair import check_writable
@@ -30,9 +31,9 @@ from ...scene.shape_key_io import (
 from ...scene.worn.fitted_copies import former_names, mark_names
 from ...scene.worn.garment_shape_io import write_shape
 from ...scene.worn.garments import fitted_copy
+from .item_reading import painted_groups
 
 if TYPE_CHECKING:
-    import bpy
     from numpy.typing import NDArray
 
     from ....engine import FittedItem
@@ -108,7 +109,8 @@ def write_copy(
     source, target = bodies
     growth = float(np.median(fitted.scales))
     copy, kept, aside = fitted_copy(context, item, source, target, motion=motion, growth=growth)
-    notes = _notes_on(copy, target, kept, aside)
+    notes = _notes_on(copy, item, target, kept, aside)
+    _drop_fit_keys(copy)
     write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])
     armature = find_armature(target)
     if armature is None:
@@ -138,19 +140,42 @@ def write_copy(
     return copy, notes
 
 
-def _notes_on(copy: bpy.types.Object, target: Side, kept: list[str], aside: list[str]) -> list[str]:
+def _drop_fit_keys(copy: bpy.types.Object) -> None:
+    """Take from a copy the shape keys that fit the item itself to bodies: it would be fitted twice."""
+    keys = keys_of(copy)
+    fits = [] if keys is None else [key for key in keys.key_blocks if key.name.startswith(_KEY)]
+    for key in fits:
+        copy.shape_key_remove(key)
+    if fits and not shape_key_names(copy):
+        copy.shape_key_clear()
+
+
+def _notes_on(
+    copy: bpy.types.Object, item: bpy.types.Object, target: Side, kept: list[str], aside: list[str]
+) -> list[str]:
     """Say what drivers of a copy still read, and what is kept of the one that it replaces."""
     notes = []
-    if aside:
+    for name in aside:
         notes.append(
             f'"{copy.name}" was edited after it had been fitted. As it was then it is kept, hidden, as {listed(aside)}.'
         )
+        painted = [group for group in painted_groups if _painted_anew(bpy.data.objects[name], item, group)]
+        if painted:
+            notes.append(
+                f'What was painted on "{copy.name}" in {listed(painted)} changes nothing: paint it on "{item.name}".'
+            )
     if kept:
         notes.append(
             f'Drivers of "{copy.name}" still read from {listed(kept)}: "{target.name}" has not '
             "what they need. Carry its shape keys or bones over by Retarget, and fit it again."
         )
     return notes
+
+
+def _painted_anew(copy: bpy.types.Object, item: bpy.types.Object, group: str) -> bool:
+    """Tell whether something is painted in a group of a copy that is not so on its item."""
+    there, here = np.nan_to_num(read_group(copy, group)), np.nan_to_num(read_group(item, group))
+    return bool(there.any()) and not np.array_equal(there, here)
 
 
 def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:

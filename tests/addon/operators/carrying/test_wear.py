@@ -174,6 +174,32 @@ def test_shape_keys_for_several_bodies_stay_as_far_on_as_they_are(dressed_pair):
     assert keys["Fit to Twin"].slider_max == 2
 
 
+def test_a_copy_of_an_item_with_shape_keys_for_bodies_is_not_fitted_twice(dressed_pair):
+    _, target, shirt, coat = dressed_pair
+    coat.shape_key_add(name="Basis")
+    coat.shape_key_add(name="Puffed", from_mix=False)
+    assert wear("Shirt", "Coat", wear_result="KEY") == {"FINISHED"}
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    assert fitted("Shirt").data.shape_keys is None
+    assert fitted("Coat").data.shape_keys.key_blocks.keys() == ["Basis", "Puffed"]
+    assert shirt.data.shape_keys.key_blocks["Fit to Target"].value == 1
+    bpy.context.view_layer.update()
+    seen = fitted("Coat").evaluated_get(bpy.context.evaluated_depsgraph_get())
+    middle = np.mean([seen.matrix_world @ vertex.co for vertex in seen.data.vertices], axis=0)
+    assert np.linalg.norm(middle - in_world(target).mean(axis=0)) < 0.3
+
+
+def test_what_is_painted_on_a_copy_is_said_to_change_nothing(dressed_pair):
+    _, _, shirt, _ = dressed_pair
+    shirt.vertex_groups.new(name="Loose").add([1, 2], 1.0, "REPLACE")
+    assert wear("Shirt") == {"FINISHED"}
+    assert "Loose" in fitted("Shirt").vertex_groups
+    fitted("Shirt").vertex_groups.new(name="Tight").add([3, 4], 1.0, "REPLACE")
+    assert wear("Shirt") == {"FINISHED"}
+    notes = bpy.context.scene.hiermatch_retarget.report.notes
+    assert 'What was painted on "Shirt on Target" in "Tight" changes nothing: paint it on "Shirt".' in notes
+
+
 def test_a_locked_shape_key_is_not_written_over(dressed_pair):
     _, _, shirt, _ = dressed_pair
     assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
