@@ -85,5 +85,15 @@ class Transfer(Protocol):
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute what is to be written, without touching Blender's data."""
 
+    def check(self) -> None:
+        """Make sure, before anything is written, that what was read beside the two sides is still as it was.
+
+        Raises
+        ------
+        HierMatchError
+            If it was deleted or edited since.
+        """
+        return
+
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write it."""

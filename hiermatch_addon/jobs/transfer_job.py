@@ -11,7 +11,7 @@ from ...engine import HierMatchError, Progress, fit_rig_steps, within
 from ..common.access import view_layer_of
 from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError, SharedMeshError
 from ..properties.preferences import shape_memory
-from ..scene.armatures import read_rig
+from ..scene.armatures import armature_of, find_armature, read_rig
 from ..scene.character import SideReference, parts_of, positions_of, read_surface, topology_of, whole
 from ..scene.pair import check_pair, check_side, is_own
 from ..storage.halves import find_common
@@ -174,8 +174,11 @@ def _is_half(side: Side) -> bool:
     return any(modifier.type == "MIRROR" and modifier.show_viewport for p in parts_of(side) for modifier in p.modifiers)
 
 
-def _state(side: Side) -> tuple[str, str]:
-    return topology_of(side), positions_of(side)
+def _state(side: Side) -> tuple[str, ...]:
+    """Describe the vertices and faces of a side, and the bones of what moves it."""
+    armature = find_armature(side)
+    bones = () if armature is None else tuple(bone.name for bone in armature_of(armature).bones)
+    return topology_of(side), positions_of(side), *bones
 
 
 class TransferJob(SteppedJob):
@@ -266,6 +269,8 @@ class TransferJob(SteppedJob):
         for obj, state in ((source, self._source_state), *zip(targets, (leg.state for leg in self._legs), strict=True)):
             if _state(obj) != state:
                 raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
+        for transfer in (transfer for leg in self._legs for transfer in leg.transfers):
+            transfer.check()
         carried = []
         for leg, target in zip(self._legs, targets, strict=True):
             outcome = self._write_match(context, leg, source, target)

@@ -20,7 +20,7 @@ from ...engine import (
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError
 from ..common.phrases import counted
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene.attribute_io import (
     attribute_layouts,
     is_blended,
@@ -66,7 +66,7 @@ _NORMAL_RADIUS = 0.03
 """Over what distance the turn of the surface is averaged for normals, in sqrt(area): that of a finger or a nose."""
 
 
-class AttributeTransfer:
+class AttributeTransfer(Transfer):
     """Carries attributes, materials, marked edges and normals; see `Transfer`.
 
     Parameters

@@ -24,7 +24,7 @@ from ...engine import (
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
 from ..scene.binding import bind, replaced_remarks, unbind
@@ -68,7 +68,7 @@ def check_has_body(source: Side) -> None:
         )
 
 
-class MyRigTransfer:
+class MyRigTransfer(Transfer):
     """Fits an armature that stands in the source into the target; see `Transfer`.
 
     Parameters
@@ -144,11 +144,15 @@ class MyRigTransfer:
         columns = Columns(self._held, self._deforming, self._deforming, yielding=True)
         self._weights = put_in(self._before, handed, columns, limit=self._settings.limit)
 
+    def check(self) -> None:
+        """Make sure that the armature is as it was."""
+        model = self._armature()
+        if tuple(bone.name for bone in armature_of(model).bones) != self._names:
+            raise ObjectError(f'The bones of "{model.name}" were changed meanwhile. Nothing was written.')
+
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Copy the armature, move its bones, and bind the target if that is wanted."""
         model, first = self._armature(), parts_of(target)[0]
-        if tuple(bone.name for bone in armature_of(model).bones) != self._names:
-            raise ObjectError(f'The bones of "{model.name}" were changed meanwhile. Nothing was written.')
         armature = copy_to(context, model, f"{model.name} {target.name}", first)
         move_joints(context, armature, self._names, cast("PlacedJoints", self._placed))
         own = find_armature(source), find_armature(target)

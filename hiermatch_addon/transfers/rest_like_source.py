@@ -11,7 +11,7 @@ from ...engine import Progress, at_rest, length_ratio, rest_pose
 from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError
 from ..common.phrases import listed
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import move_joints
 from ..scene.armatures import armature_of, bone_weights, find_armature
 from ..scene.binding import made_rig, worn_with
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["RestLikeSource"]
 
 
-class RestLikeSource:
+class RestLikeSource(Transfer):
     """Brings the target, with its new rig, to a rest pose like the source's; see `Transfer`.
 
     It is written last of all kinds: what others carry belongs to the pose that the target stood in.

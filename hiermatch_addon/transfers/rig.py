@@ -12,7 +12,7 @@ from ...engine import Progress, called_steps, is_posed, place_joints, rest_pose,
 from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
 from ..scene.binding import bind, made_rig, mark_made, replaced_remarks, unbind
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["RigTransfer"]
 
 
-class RigTransfer:
+class RigTransfer(Transfer):
     """Gives the target an armature like the source's; see `Transfer`.
 
     Parameters

@@ -19,7 +19,7 @@ from ...engine import (
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armatures import find_armature
 from ..scene.character import parts_of, vertex_ranges
 from ..scene.key_actions import share_key_action
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 __all__ = ["ShapeKeyTransfer"]
 
 
-class ShapeKeyTransfer:
+class ShapeKeyTransfer(Transfer):
     """Carries shape keys; see `Transfer`.
 
     Parameters

@@ -11,7 +11,7 @@ from ...engine import FacePlaces, Progress, called_steps, carry_uvs_steps, withi
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene.attribute_io import (
     AttributeLayout,
     is_free,
@@ -37,7 +37,7 @@ _MOST_LAYERS = 8
 """How many UV maps Blender allows a mesh."""
 
 
-class UVTransfer:
+class UVTransfer(Transfer):
     """Carries UV layers; see `Transfer`.
 
     Parameters

@@ -14,7 +14,7 @@ from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
 from ..common.side_names import flipped_name
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene import mesh_io
 from ..scene.character import parts_of, vertex_ranges
 from ..scene.deform_layer import check_weights_writable, read_group
@@ -55,7 +55,7 @@ class _Task:
     before: csr_array
 
 
-class WeightTransfer:
+class WeightTransfer(Transfer):
     """Carries weights; see `Transfer`.
 
     Parameters

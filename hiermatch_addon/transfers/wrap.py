@@ -9,7 +9,7 @@ import numpy as np
 
 from ...engine import Progress, called_steps, in_between, kept_in_place, turned_normals, within, wrap_steps
 from ..common.access import mesh_of
-from ..jobs.transfer import TransferReport
+from ..jobs.transfer import Transfer, TransferReport
 from ..scene.attribute_io import read_corner_normals, write_corner_normals
 from ..scene.binding import hand_over
 from ..scene.character import corner_ranges, parts_of, read_faces, vertex_ranges
@@ -55,7 +55,7 @@ def wrap_key_name(other: str) -> str:
     return name
 
 
-class WrapTransfer:
+class WrapTransfer(Transfer):
     """Lays source or target onto the other; see `Transfer`.
 
     Parameters

@@ -13,7 +13,7 @@ from ....engine import Progress, pair_bones
 from ...common.errors import ObjectError
 from ...common.phrases import counted
 from ...common.side_names import side_of
-from ...jobs.transfer import TransferReport
+from ...jobs.transfer import Transfer, TransferReport
 from ...jobs.transfer_job import TransferJob, carry_fresh_match
 from ...properties.bone_pairs import held_pairs, write_pairing
 from ...scene.armatures import armature_of, bone_weights, read_skeleton
@@ -76,7 +76,7 @@ def _matched_sides(source: Side, target: Side, prefix: str) -> tuple[Side, Side]
     return next((pair for pair in tried if carry_fresh_match(*pair, prefix)), (source, target))
 
 
-class BonePairTransfer:
+class BonePairTransfer(Transfer):
     """Pairs the bones of the target's rig with the source's; see `Transfer`.
 
     Attributes

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from ....engine import Columns, carry_weights_steps, paired_weights, put_in
 from ...common.errors import ObjectError
 from ...common.phrases import counted, listed
-from ...jobs.transfer import TransferReport
+from ...jobs.transfer import Transfer, TransferReport
 from ...properties.bone_pairs import pairing_of
 from ...scene.armatures import armature_of, find_armature, read_rig, read_skeleton
 from ...scene.character import parts_of, vertex_ranges
@@ -43,7 +43,7 @@ class _Task:
     columns: Columns
 
 
-class PairedWeightTransfer:
+class PairedWeightTransfer(Transfer):
     """Carries weights to other bones; see `Transfer`.
 
     Parameters

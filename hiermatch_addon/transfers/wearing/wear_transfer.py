@@ -10,7 +10,7 @@ import numpy as np
 from ....engine import TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
 from ...common.errors import NothingToCarryError
 from ...common.phrases import counted
-from ...jobs.transfer import TransferReport
+from ...jobs.transfer import Transfer, TransferReport
 from ...scene.armatures import armature_of, find_armature, read_rig
 from ...scene.character import Character, parts_of, read_surface, whole
 from ...scene.deform_layer import check_weights_writable
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 __all__ = ["WearTransfer"]
 
 
-class WearTransfer:
+class WearTransfer(Transfer):
     """Fits clothes of the source to the target; see `Transfer`.
 
     Parameters
@@ -173,6 +173,11 @@ class WearTransfer:
         if self._moving is not None:
             yield from within(self._moving.steps(passage, self._items, self._fitted), 0.9, 1.0)
             self._fitted = self._moving.fitted
+
+    def check(self) -> None:
+        """Make sure that all items are as they were."""
+        for item in self._items:
+            still_there(item)
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the fitted items."""

@@ -13,7 +13,7 @@ from hiermatch.hiermatch_addon.transfers.wearing import wear_transfer
 
 from tests.addon.garments import add_item, depths, fitted, in_world, wear
 from tests.addon.rigs import add_armature
-from tests.addon.scenes import snapshot, weights_of
+from tests.addon.scenes import DENSE, snapshot, weights_of
 from tests.addon.shape_keys import positions
 
 
@@ -410,6 +410,33 @@ def test_a_body_of_a_library_is_dressed_as_long_as_nothing_is_written_on_it(dres
     with pytest.raises(RuntimeError, match="is linked from"):  # as it would get a rig
         wear("Coat")
     assert snapshot() == before
+
+
+@pytest.mark.parametrize("what", ["an item", "bones"])
+def test_what_was_edited_meanwhile_is_told_before_anything_is_written(dressed_pair, monkeypatch, what):
+    source, target, shirt, _ = dressed_pair
+    rig = add_armature("Rig")
+    source.modifiers.new("Armature", "ARMATURE").object = rig
+    assert bpy.ops.hiermatch.clear(object="Source") == bpy.ops.hiermatch.clear(object="Target") == {"FINISHED"}
+    for name, value in DENSE.items():
+        setattr(bpy.context.scene.hiermatch, name, value)
+    before = snapshot()["meshes"]
+    real = wear_transfer.wear_steps
+
+    def steps(*arguments, **names):
+        made = yield from real(*arguments, **names)
+        if what == "bones":
+            bpy.data.objects.remove(rig)
+        else:
+            shirt.data.vertices[0].co.z += 1
+        return made
+
+    monkeypatch.setattr(wear_transfer, "wear_steps", steps)
+    with pytest.raises(RuntimeError, match="was edited meanwhile"):
+        wear("Shirt", wear_fit_rig=False)
+    after = snapshot()["meshes"]
+    assert [after[body.name] for body in (source, target)] == [before[body.name] for body in (source, target)]
+    assert not made_copies()
 
 
 def test_a_mirrored_match_is_refused_before_the_work(dressed_pair, monkeypatch):
