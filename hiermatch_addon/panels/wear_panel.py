@@ -12,7 +12,7 @@ from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..properties.panel_state import picked, state_of
 from ..scene.character import parts_of, side_of
-from ..scene.worn.fitted_copies import original_of
+from ..scene.worn.fitted_copies import fitted_to, original_of
 from ..scene.worn.garments import bound_items, selected_items
 from ..transfers.options.wear import WearOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
@@ -47,7 +47,7 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         layout.use_property_decorate = False
         active, state = view_layer_of(context).objects.active, state_of(context)
         if active is not None:
-            active = original_of(active) or active  # how an item fits is kept on the item
+            active = _item_of(context, active)
         _draw_items(layout, context)
         if active is not None and active.type == "MESH" and active not in (state.source, state.target):
             box = layout.box().column()
@@ -65,6 +65,19 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         row.scale_y = 1.5
         copy_named(options, row.operator("hiermatch.wear", icon="MATCLOTH"), [*names, "refine"])
         draw_report(layout, context, options.report)
+
+
+def _item_of(context: bpy.types.Context, active: bpy.types.Object) -> bpy.types.Object:
+    """Return the item that an object is or stands for: how it fits is kept on it."""
+    source = picked(state_of(context))[0]
+    if source is not None:
+        try:
+            worn = fitted_to(side_of(source, view_layer_of(context)))
+        except ObjectError:
+            worn = []
+        if active in worn:
+            return active
+    return original_of(active) or active
 
 
 def _draw_items(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

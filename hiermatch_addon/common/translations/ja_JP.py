@@ -1588,10 +1588,10 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"の服が見つかりません。そのメッシュはすべてボディとみなされます。着ているものだけをもう一方のボディと'
         "一緒に選択するか、名前を指定してください。"
     ),
-    'No clothes of "{0}" were found: no other mesh is bound to its armature. Select the items together with '
-    "both bodies, or name them.": (
-        '"{0}"の服が見つかりません。アーマチュアにバインドされたほかのメッシュがありません。両方のボディと一緒に'
-        "アイテムを選択するか、名前を指定してください。"
+    'No clothes of "{0}" were found: no other mesh is bound to its armature. Pick both bodies as Source and '
+    "Target, and select the items, or name them.": (
+        '"{0}"の服が見つかりません。アーマチュアにバインドされたほかのメッシュがありません。両方のボディをソースと'
+        "ターゲットに指定してアイテムを選択するか、名前を指定してください。"
     ),
     "Own": "自身",
     "Pushing items out": "アイテムを外へ押し出しています",

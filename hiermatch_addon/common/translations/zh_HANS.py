@@ -1312,9 +1312,9 @@ MESSAGES: Final[dict[str, str]] = {
     "with the other body, or name them.": (
         '未找到"{0}"的服装：它的所有网格都被视为身体。请只将其中穿着的网格与另一个身体一起选中，或指定其名称。'
     ),
-    'No clothes of "{0}" were found: no other mesh is bound to its armature. Select the items together with '
-    "both bodies, or name them.": (
-        '未找到"{0}"的服装：没有其他网格绑定到它的骨架。请将物品与两个身体一起选中，或指定其名称。'
+    'No clothes of "{0}" were found: no other mesh is bound to its armature. Pick both bodies as Source and '
+    "Target, and select the items, or name them.": (
+        '未找到"{0}"的服装：没有其他网格绑定到它的骨架。请将两个身体分别选为源和目标，并选中物品，或指定其名称。'
     ),
     "Own": "自身",
     "Pushing items out": "正在将物品向外推",

@@ -91,15 +91,18 @@ def made_copy(item: bpy.types.Object, body: Side) -> bpy.types.Object | None:
 
 
 def original_of(copy: bpy.types.Object) -> bpy.types.Object | None:
-    """Find the item that a copy was made from, also if that has been renamed since; None of what is no copy."""
+    """Find the item that a copy was made from, also if that has been renamed since; None of what is no copy.
+
+    The item may be a copy itself that was fitted to another body.
+    """
     mine: Any = copy
     if BODY not in mine or ITEM not in mine:
         return None
     objects: Any = bpy.data.objects
     same = objects.get(mine[ITEM])
     if same is not None:
-        return None if BODY in same else cast("bpy.types.Object", same)
-    marked = (obj for obj in objects if obj.get(_ITEM_MARK) == mine[ITEM] and BODY not in obj)
+        return None if same.get(BODY) == mine[BODY] else cast("bpy.types.Object", same)
+    marked = (obj for obj in objects if obj.get(_ITEM_MARK) == mine[ITEM] and obj.get(BODY) != mine[BODY])
     return next(marked, None)
 
 

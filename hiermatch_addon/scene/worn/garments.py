@@ -80,7 +80,8 @@ def bound_items(context: bpy.types.Context, body: Side) -> list[bpy.types.Object
 def selected_items(context: bpy.types.Context, source: Side, targets: Sequence[Side], *, named: bool) -> list[str]:
     """Return the names of the selected objects that are items, in order: not a body or an armature.
 
-    What was fitted to one of the targets stands for the item that it was made from.
+    What was fitted to one of the targets stands for the item that it was made from; what was fitted to the source is
+    worn by it.
 
     Parameters
     ----------
@@ -97,11 +98,14 @@ def selected_items(context: bpy.types.Context, source: Side, targets: Sequence[S
     copies = {copy for target in targets for copy in fitted_to(target)} & selected
     meant = {obj for obj in selected - bodies if BODY not in cast("Any", obj)}
     meant |= {item for copy in copies if (item := original_of(copy)) is not None}
+    meant |= {copy for copy in fitted_to(source) if ITEM in cast("Any", copy)} & selected
     return sorted(obj.name for obj in meant if obj.type in _SHAPES)
 
 
 def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
-    """Return the names of the meshes in a collection but some bodies and what was fitted to them, in order.
+    """Return the names of the meshes in a collection but some bodies and what was fitted to bodies, in order.
+
+    If there is nothing else in it, as in the outfit of a body, what was fitted is meant.
 
     Raises
     ------
@@ -113,6 +117,7 @@ def meshes_of(name: str, *bodies: bpy.types.Object) -> tuple[str, ...]:
         raise ObjectError(f'There is no collection called "{name}".')
     meshes = [obj for obj in collection.all_objects if obj.type == "MESH" and obj not in bodies]
     found = sorted(obj.name for obj in meshes if BODY not in cast("Any", obj))
+    found = found or sorted(obj.name for obj in meshes if ITEM in cast("Any", obj))
     if not found:
         raise ObjectError(f'The collection "{name}" has no meshes that could be fitted.')
     return tuple(found)

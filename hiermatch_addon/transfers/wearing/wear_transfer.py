@@ -136,8 +136,8 @@ class WearTransfer(Transfer):
             )
         if not chosen:
             raise NothingToCarryError(
-                f'No clothes of "{source.name}" were found: no other mesh is bound to its armature. Select the items '
-                "together with both bodies, or name them."
+                f'No clothes of "{source.name}" were found: no other mesh is bound to its armature. Pick both '
+                "bodies as Source and Target, and select the items, or name them."
             )
         return chosen
 

@@ -80,6 +80,17 @@ def test_a_fitted_copy_stands_for_its_item(bodies, context):
     assert "Items" not in drawn_texts(context)
 
 
+def test_a_copy_on_the_source_is_an_item_of_its_own(bodies, context):
+    add_item(bodies[1], "Shirt", 0.02)
+    worn = add_item(bodies[0], "Shirt on Source", 0.02)
+    worn["hiermatch_item"], worn["hiermatch_body"] = "Shirt", bodies[0].name
+    bpy.context.view_layer.objects.active = worn
+    worn.select_set(state=True)
+    said = drawn_texts(context)
+    assert said.count(worn.name) == 2
+    assert "Shirt" not in said
+
+
 def test_with_nothing_selected_all_that_hangs_on_the_rig_is_named_up_to_a_number(bodies, context):
     rig = add_armature("Rig")
     items = [add_item(bodies[0], f"Item {letter}", 0.02) for letter in "ABCDEFGH"]

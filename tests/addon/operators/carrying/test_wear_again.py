@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Clothes that were fitted to one body, worn by it on the way to the next."""
+
+from __future__ import annotations
+
+import bpy
+import pytest
+
+from tests.addon.garments import fitted, wear
+from tests.addon.scenes import DENSE
+
+
+@pytest.fixture
+def next_pair(dressed_pair):
+    """The target of a pair, which wears a shirt by now, and a third body, both picked; the shirt is selected."""
+    _, target, *_ = dressed_pair
+    assert wear("Shirt") == {"FINISHED"}
+    third = target.copy()
+    third.data = target.data.copy()
+    third.name, third.location.x = "Third", 10
+    bpy.context.scene.collection.objects.link(third)
+    bpy.context.view_layer.update()
+    for name, value in DENSE.items():
+        setattr(bpy.context.scene.hiermatch, name, value)
+    bpy.context.scene.hiermatch.source, bpy.context.scene.hiermatch.target = target, third
+    fitted("Shirt").select_set(state=True)
+    return target, third
+
+
+@pytest.mark.usefixtures("next_pair")
+def test_what_was_fitted_to_a_body_is_fitted_from_it_to_the_next():
+    assert bpy.ops.hiermatch.wear(refine=False) == {"FINISHED"}
+    copy = fitted("Shirt on Target", "Third")
+    assert copy.name == "Shirt on Target on Third"
+    bpy.ops.object.select_all(action="DESELECT")
+    copy.select_set(state=True)
+    assert bpy.ops.hiermatch.wear(refine=False) == {"FINISHED"}
+    assert fitted("Shirt on Target", "Third").name == "Shirt on Target on Third"
+    assert fitted("Shirt", "Target")
+
+
+@pytest.mark.usefixtures("next_pair")
+def test_the_outfit_of_a_body_is_a_collection_of_items():
+    bpy.ops.object.select_all(action="DESELECT")
+    assert bpy.ops.hiermatch.wear(collection="Outfit of Target", refine=False) == {"FINISHED"}
+    assert fitted("Shirt on Target", "Third")
+
+
+def test_where_no_target_is_picked_it_is_said_what_to_pick(dressed_pair):
+    source, target, shirt, _ = dressed_pair
+    for obj in (source, target, shirt):
+        obj.select_set(state=True)
+    bpy.context.view_layer.objects.active = source
+    with pytest.raises(RuntimeError, match="Pick both bodies as Source and Target, and select the items"):
+        bpy.ops.hiermatch.wear(refine=False)
