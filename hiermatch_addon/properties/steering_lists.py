@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.halves import Half
 
-__all__ = ["common_match", "landmark_label", "point_name", "steered_pair", "sync_lists"]
+__all__ = ["common_match", "landmark_label", "pair_rows", "point_name", "steered_pair", "sync_lists"]
 
 
 _REVISIONS = 1 << 30
@@ -59,12 +59,13 @@ def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -
     return next((half.obj for half in found if half.obj.name == name), None)
 
 
-def common_match(scene: bpy.types.Scene) -> tuple[Half, Half] | None:
-    """Return the two sides, source first, of the match that a scene's panels are about; None if there is none.
+def common_match(scene: bpy.types.Scene, pair: tuple[Side, Side] | None = None) -> tuple[Half, Half] | None:
+    """Return the two sides, source first, of the match of a pair; None if there is none.
 
-    Of several, it is the one that the summary tells of, else the first.
+    The pair is the one that a scene's panels are about if none is given.  Of several matches, it is the one that the
+    summary tells of, else the first.
     """
-    pair = steered_pair(scene)
+    pair = pair or steered_pair(scene)
     found = [] if pair is None else find_common(*pair)
     summary = summary_of(scene)
     # The same points, written with several prefixes, have the same key.
@@ -87,7 +88,7 @@ def sync_lists(scene: bpy.types.Scene) -> None:
     """Fill both lists of a scene, and write to it only if they have changed."""
     owner: Any = scene
     steering = owner.hiermatch_steering
-    changed = [_fill(steering.landmarks, _landmark_rows(scene)), _fill(steering.pairs, _pair_rows(scene))]
+    changed = [_fill(steering.landmarks, _landmark_rows(scene)), _fill(steering.pairs, pair_rows(scene))]
     if any(changed):
         steering.revision = (steering.revision + 1) % _REVISIONS
     for name in ("landmark", "pair"):
@@ -105,9 +106,9 @@ def _landmark_rows(scene: bpy.types.Scene) -> list[dict[str, Any]]:
     ]
 
 
-def _pair_rows(scene: bpy.types.Scene) -> list[dict[str, Any]]:
-    """List the matched points, the worst first."""
-    halves = common_match(scene)
+def pair_rows(scene: bpy.types.Scene, pair: tuple[Side, Side] | None = None) -> list[dict[str, Any]]:
+    """List the matched points of a pair, see `common_match`, the worst first: what the rows of the list hold."""
+    halves = common_match(scene, pair)
     if halves is None or not all(half.has_same_faces() for half in halves):
         return []
     first, second = halves if halves[0].role == "source" else halves[::-1]

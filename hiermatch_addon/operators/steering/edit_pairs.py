@@ -10,7 +10,7 @@ import bpy
 
 from ...common.access import view_layer_of
 from ...common.errors import ObjectError
-from ...properties.steering_lists import common_match, point_name
+from ...properties.steering_lists import common_match, pair_rows, point_name, steered_pair
 from ...properties.steering_properties import steering_of
 from ...scene.pair import check_pair
 from ...storage.landmarks import add_landmarks, find_landmarks, remove_landmark, select_on_side
@@ -19,7 +19,6 @@ from ...storage.writing import change_kept, take_away
 from .landmark_operator import LandmarkOperator
 
 if TYPE_CHECKING:
-    from ...properties.steering_properties import HIERMATCH_PG_pair
     from ...scene.character import Side
     from ...storage.halves import Half
 
@@ -44,26 +43,27 @@ class _PairOperator(LandmarkOperator):
     if TYPE_CHECKING:
         number: int
 
-    def _row(self, context: bpy.types.Context) -> HIERMATCH_PG_pair:
-        """Find the row of the list that is meant.
+    def _row(self, context: bpy.types.Context, source: Side, target: Side) -> dict[str, Any]:
+        """Find what the row of the list holds that is meant; the list may show another pair than the named one.
 
         Raises
         ------
         ObjectError
             If there is none.
         """
-        steering = steering_of(context)
-        rows = list(steering.pairs)
+        scene, steering = cast("bpy.types.Scene", context.scene), steering_of(context)
+        rows, listed = pair_rows(scene, (source, target)), steered_pair(scene) in (None, (source, target))
         if self.number:
-            rows = [row for row in rows if row.number == self.number]
-        elif rows:
-            rows = rows[steering.pair_index : steering.pair_index + 1]
-        if not rows:
+            chosen = [row for row in rows if row["number"] == self.number]
+        else:
+            chosen = rows[steering.pair_index : steering.pair_index + 1] if listed else []
+        if not chosen:
             raise ObjectError(
                 "There is no such matched point. Match Source and Target first, or choose a point in the list."
             )
-        steering.pair_index = [row.number for row in steering.pairs].index(rows[0].number)
-        return cast("HIERMATCH_PG_pair", rows[0])
+        if listed:
+            steering.pair_index = rows.index(chosen[0])
+        return chosen[0]
 
 
 class HIERMATCH_OT_select_pair(_PairOperator, bpy.types.Operator):
@@ -75,9 +75,9 @@ class HIERMATCH_OT_select_pair(_PairOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
-        row = self._row(context)
-        select_on_side(source, [row.source])
-        select_on_side(target, [row.target])
+        row = self._row(context, source, target)
+        select_on_side(source, [row["source"]])
+        select_on_side(target, [row["target"]])
         return ""
 
 
@@ -93,14 +93,14 @@ class HIERMATCH_OT_lock_pair(_PairOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
-        row = self._row(context)
-        pair = (row.source, row.target)
+        row = self._row(context, source, target)
+        pair = (row["source"], row["target"])
         for landmark in find_landmarks(source, target):
             if landmark.use and (landmark.source, landmark.target) == pair:
                 remove_landmark(source, target, landmark.number)
-                return f"Unlocked {row.name}"
+                return f"Unlocked {row['name']}"
         (added,) = add_landmarks(source, target, [pair])
-        return f"Locked {row.name} as landmark {added.number}"
+        return f"Locked {row['name']} as landmark {added.number}"
 
 
 class HIERMATCH_OT_remove_pair(_PairOperator, bpy.types.Operator):
@@ -113,10 +113,10 @@ class HIERMATCH_OT_remove_pair(_PairOperator, bpy.types.Operator):
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         check_pair(view_layer_of(context), source, target)
-        row = self._row(context)
-        number, name = row.number, row.name
-        halves = common_match(cast("bpy.types.Scene", context.scene))
-        if halves is None or {half.obj for half in halves} != {source, target}:
+        row = self._row(context, source, target)
+        number, name = row["number"], row["name"]
+        halves = common_match(cast("bpy.types.Scene", context.scene), (source, target))
+        if halves is None:
             raise ObjectError(f'"{source.name}" and "{target.name}" carry no match with one another.')
         leave_out(halves, number - 1)
         return f"Removed {name}"

@@ -10,7 +10,7 @@ from hiermatch.hiermatch_addon.operators.steering.landmark_picking import select
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, find_landmarks
 from hiermatch.hiermatch_addon.storage.stored_map import find_maps
 
-from tests.addon.scenes import QUICK, add_pair, snapshot, values_of, weights_of
+from tests.addon.scenes import QUICK, add_blob, add_pair, snapshot, values_of, weights_of
 
 
 def steering():
@@ -100,6 +100,32 @@ class TestPairs:
         assert sorted(after) == [number for number in range(1, 25) if number != 5]
         assert all(after[number][0] == before[number][0] for number in after)
         assert any(after[number][1] != before[number][1] for number in after)
+
+    def test_the_two_may_be_named_the_other_way_round(self, dense_pair):
+        row = steering().pairs[0]
+        expected = (row.source, row.target)
+        bpy.ops.hiermatch.lock_pair(source="Target", target="Source", number=row.number)
+        (landmark,) = find_landmarks(*dense_pair)
+        assert (landmark.source, landmark.target) == expected
+
+    def test_of_another_pair_than_the_picked_one(self, dense_pair):
+        bodies = [add_blob("One"), add_blob("Other")]
+        bpy.context.scene.hiermatch.source, bpy.context.scene.hiermatch.target = bodies
+        bpy.ops.hiermatch.match(**QUICK)
+        names = {"source": "Source", "target": "Target"}
+        weights = [weights_of(obj)["HM.003"] for obj in dense_pair]
+        before = [weights_of(obj) for obj in bodies]
+        bpy.ops.hiermatch.lock_pair(**names, number=3)
+        (landmark,) = find_landmarks(*dense_pair)
+        for vertex, of_point in zip((landmark.source, landmark.target), weights, strict=True):
+            assert of_point[vertex] == max(of_point.values())
+        bpy.ops.hiermatch.remove_pair(**names, number=3)
+        assert [weights_of(obj) for obj in bodies] == before
+        assert "HM.003" not in groups(dense_pair[0])
+        with pytest.raises(RuntimeError, match="no such matched point"):
+            bpy.ops.hiermatch.lock_pair(**names, number=3)
+        with pytest.raises(RuntimeError, match="no such matched point"):  # which the list does not show
+            bpy.ops.hiermatch.lock_pair(**names)
 
     def test_no_such_point(self, sparse_pair):
         assert sparse_pair
