@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ..common.errors import ObjectError
 from ..scene.character import parts_of
 from ..scene.worn.garments import meshes_of, undressed
 from ..transfers.options.wear import wear_settings
@@ -49,7 +50,16 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Fit and write."""
-    return run_transfers(parsed, console, "wear", transferring(_transfers, optional=False), choose=_undressed_pair)
+
+    def choose(options: Any, pair: tuple[Side, Side]) -> tuple[Side, Side]:  # noqa: ANN401 - as below
+        if options.wear_result == "KEY" and any(path.suffix.lower() != ".blend" for path in parsed.output):
+            raise ObjectError(
+                "A shape key fits the items where the source wears them, so they are no part of the target's file. "
+                "Write a .blend, or make fitted copies."
+            )
+        return _undressed_pair(options, pair)
+
+    return run_transfers(parsed, console, "wear", transferring(_transfers, optional=False), choose=choose)
 
 
 def _undressed_pair(options: Any, pair: tuple[Side, Side]) -> tuple[Side, Side]:  # noqa: ANN401 - as below

@@ -23,6 +23,8 @@ def test_a_wardrobe_is_fitted_and_goes_along_into_another_file(dense_pair, tmp_p
     assert len(shirt.data.vertices) > 100
     assert main(["wear", *arguments, "--collection=Drawer"]) == 1
     assert 'no collection called "Drawer"' in capsys.readouterr().err
+    assert main(["wear", *arguments, "--collection=Closet", "--wear-result=key"]) == 1
+    assert "Write a .blend, or make fitted copies" in capsys.readouterr().err
 
 
 def test_items_are_left_out_of_a_source_of_several_objects(dense_pair, tmp_path, capsys):
