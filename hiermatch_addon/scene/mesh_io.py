@@ -14,11 +14,11 @@ import numpy as np
 from mathutils import Matrix
 
 from ...engine import MeshError, TriangleMesh
-from ..common.access import mesh_of
+from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     import bpy
     from numpy.typing import NDArray
@@ -35,6 +35,7 @@ __all__ = [
     "rest_matrix",
     "topology",
     "vertex_positions",
+    "without_other_vertices",
 ]
 
 _MEMBERS: dict[str, tuple[str, type[np.generic], int]] = {
@@ -187,6 +188,23 @@ def _shown_mesh(
         yield mesh
     finally:
         evaluated.to_mesh_clear()
+
+
+@contextmanager
+def without_other_vertices(context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> Iterator[None]:
+    """Have modifiers switched off that add or hide vertices, so that those that deform the own ones alone are seen."""
+    layer = view_layer_of(context)
+    every = [modifier for obj in objects for modifier in obj.modifiers]
+    off = [one for one in every if one.type in _TOPOLOGY_MODIFIERS and one.show_viewport]
+    for modifier in off:
+        modifier.show_viewport = False
+    layer.update()
+    try:
+        yield
+    finally:
+        for modifier in off:
+            modifier.show_viewport = True
+        layer.update()
 
 
 def _modifier_message(obj: bpy.types.Object, before: int, after: int) -> str:

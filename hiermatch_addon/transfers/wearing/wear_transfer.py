@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ....engine import TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
-from ...common.errors import NothingToCarryError
+from ...common.errors import NothingToCarryError, ObjectError
 from ...common.phrases import counted
 from ...jobs.transfer import Transfer, TransferReport
 from ...scene.armatures import armature_of, find_armature, read_rig
 from ...scene.character import Character, parts_of, read_surface, whole
 from ...scene.deform_layer import check_weights_writable
+from ...scene.mesh_io import without_other_vertices
 from ...scene.pair import named_object
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
@@ -88,7 +89,7 @@ class WearTransfer(Transfer):
                 check_keys_writable(part, [])
         self._rig = read_rig(source)
         if any(not dressed_at_rest(item, source) for item in chosen):
-            self._posed = read_surface(source, depsgraph, use_modifiers=True).vertices
+            self._posed = _posed(context, source)
         body, other = (read_surface(side, depsgraph, use_modifiers=False) for side in (source, target))
         if isinstance(source, Character) and source.left_out:
             self._every = read_surface(whole(source), depsgraph, use_modifiers=False).triangles
@@ -219,6 +220,16 @@ class WearTransfer(Transfer):
             cover_body(context, target, [*worn, *worn_already(context, target, copies)], self._settings.hide)
         written = [report.done for report in reports if report.done]
         return TransferReport(", ".join([*written, counted(len(items), "item")]), tuple(notes), tuple(remarks))
+
+
+def _posed(context: bpy.types.Context, body: Side) -> NDArray[np.float64]:
+    """Read where the vertices of a body are as it is posed, whatever modifiers add to them or hide of them."""
+    depsgraph = context.evaluated_depsgraph_get()
+    try:
+        return read_surface(body, depsgraph, use_modifiers=True).vertices
+    except ObjectError:
+        with without_other_vertices(context, parts_of(body)):
+            return read_surface(body, context.evaluated_depsgraph_get(), use_modifiers=True).vertices
 
 
 def _overall_motion(source: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -34,6 +34,27 @@ def test_all_that_the_armature_moves_gets_the_weights_of_the_other_rig(dressed_p
     np.testing.assert_allclose(weights, 1, atol=1e-3)
 
 
+def test_a_posed_body_may_have_modifiers_that_add_and_hide_vertices(dressed_pair):
+    """What its armature does not move lies on the body as it is posed."""
+    source, _, shirt, _ = dressed_pair
+    rig = add_armature("Rig")
+    source.vertex_groups.new(name="neck").add(range(len(source.data.vertices)), 1.0, "REPLACE")
+    source.modifiers.new("Armature", "ARMATURE").object = rig
+    rig.pose.bones["neck"].location = (0.0, 0.0, 1.5)
+    bpy.context.view_layer.update()
+    shirt.matrix_world = rig.pose.bones["neck"].matrix @ rig.data.bones["neck"].matrix_local.inverted()
+    bpy.context.view_layer.update()
+    assert wear("Shirt", wear_fit_rig=False) == {"FINISHED"}
+    expected = in_world(fitted("Shirt"))
+    source.modifiers.new("Smooth", "SUBSURF").levels = 1
+    mask = source.modifiers.new("Hidden", "MASK")
+    mask.vertex_group = source.vertex_groups.new(name="nothing").name
+    bpy.context.view_layer.update()
+    assert wear("Shirt", wear_fit_rig=False) == {"FINISHED"}
+    np.testing.assert_allclose(in_world(fitted("Shirt")), expected, atol=1e-5)
+    assert all(modifier.show_viewport for modifier in source.modifiers)
+
+
 def test_bones_of_an_item_come_along_onto_the_other_rig(dressed_pair):
     source, target, shirt, coat = dressed_pair
     rigs = [add_armature("Rig A"), add_armature("Rig B")]
