@@ -48,6 +48,8 @@ class HIERMATCH_OT_refine(JobOperator, bpy.types.Operator):
     def _start(self, context: bpy.types.Context) -> RefineJob:
         """Read both objects."""
         state = state_of(context)
+        if not state.use_landmarks:
+            raise ObjectError("Use Landmarks is off, so there is nothing to refine around. Turn it on under Options.")
         halves = common_match(cast("bpy.types.Scene", context.scene))
         if halves is None:
             raise ObjectError("There is no match to refine. Pick two meshes as Source and Target, and match them.")

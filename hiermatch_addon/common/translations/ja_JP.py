@@ -2116,6 +2116,9 @@ MESSAGES: Final[dict[str, str]] = {
     'The match of "{0}" and "{1}" has no mirrored answer and no other: the meshes are not symmetric enough for one.': (
         "「{0}」と「{1}」のマッチングにはミラー解も他の解もありません。メッシュが十分に対称ではないためです。"
     ),
+    "Use Landmarks is off, so there is nothing to refine around. Turn it on under Options.": (
+        "「ランドマークを使用」がオフなので、改良の基準がありません。「オプション」でオンにしてください。"
+    ),
     'The match of "{0}" and "{1}" has the alternatives 1 to {2} only.': (
         "「{0}」と「{1}」のマッチングにある代替解は1から{2}までだけです。"
     ),

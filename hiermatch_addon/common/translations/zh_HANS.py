@@ -1749,6 +1749,9 @@ MESSAGES: Final[dict[str, str]] = {
     'The match of "{0}" and "{1}" has no mirrored answer and no other: the meshes are not symmetric enough for one.': (
         "“{0}”和“{1}”的匹配没有镜像解，也没有其他解：网格不够对称。"
     ),
+    "Use Landmarks is off, so there is nothing to refine around. Turn it on under Options.": (
+        "使用地标已关闭，因此没有可供改善的依据。请在选项中将其打开。"
+    ),
     'The match of "{0}" and "{1}" has the alternatives 1 to {2} only.': "“{0}”和“{1}”的匹配只有替代解 1 到 {2}。",
     "{0} have no landmarks that are on. Add some where the match is wrong, and lock points where it is right.": (
         "{0} 没有启用的地标。请在匹配错误处添加一些，并在正确处锁定点。"

@@ -137,6 +137,15 @@ class TestPairs:
 
 
 class TestRefine:
+    def test_not_around_landmarks_that_are_all_switched_off(self, dense_pair):
+        assert dense_pair
+        bpy.ops.hiermatch.lock_pair(number=1)
+        bpy.context.scene.hiermatch.use_landmarks = False
+        before = snapshot()
+        with pytest.raises(RuntimeError, match="Use Landmarks is off"):
+            bpy.ops.hiermatch.refine()
+        assert snapshot() == before
+
     def test_around_a_landmark(self, dense_pair):
         source, target = dense_pair
         found = find_maps(source, target).maps.of_source
