@@ -31,6 +31,7 @@ from ...scene.shape_key_io import (
 from ...scene.worn.fitted_copies import former_names, mark_names
 from ...scene.worn.garment_shape_io import write_shape
 from ...scene.worn.garments import fitted_copy
+from ...storage.writing import clear, prefixes
 from .item_reading import painted_groups
 
 if TYPE_CHECKING:
@@ -134,6 +135,8 @@ def write_copy(
             changed.object = armature
     if armature is not None:
         bind(copy, armature, item)
+    for prefix in reversed(prefixes(copy)):  # a match of the item is none of its copy
+        clear(copy, prefix)
     loose = bind_again(context, copy, target)
     if loose:
         notes.append(f'{listed(loose)} of "{copy.name}" could not be bound to "{target.name}". Bind it by hand.')

@@ -7,7 +7,7 @@ import bpy
 import pytest
 
 from tests.addon.garments import fitted, wear
-from tests.addon.scenes import DENSE
+from tests.addon.scenes import DENSE, QUICK, mesh_snapshot, weights_of
 
 
 @pytest.fixture
@@ -44,6 +44,20 @@ def test_the_outfit_of_a_body_is_a_collection_of_items():
     bpy.ops.object.select_all(action="DESELECT")
     assert bpy.ops.hiermatch.wear(collection="Outfit of Target", refine=False) == {"FINISHED"}
     assert fitted("Shirt on Target", "Third")
+
+
+def test_a_match_of_an_item_is_none_of_its_copy(dressed_pair):
+    """A character that was matched as a whole carries the match on its clothes as well."""
+    _, _, shirt, _ = dressed_pair
+    assert bpy.ops.hiermatch.match(source="Shirt", target="Coat", prefix="Of Rig", **QUICK) == {"FINISHED"}
+    before = mesh_snapshot(shirt)
+    assert "Of Rig.001" in weights_of(shirt)
+    assert wear("Shirt") == {"FINISHED"}
+    assert mesh_snapshot(shirt) == before
+    copy = fitted("Shirt")
+    names = (*copy.vertex_groups.keys(), *copy.data.attributes.keys())
+    assert not [name for name in names if name.startswith("Of Rig")]
+    assert "hiermatch" not in copy.data
 
 
 def test_where_no_target_is_picked_it_is_said_what_to_pick(dressed_pair):
