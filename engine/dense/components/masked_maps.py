@@ -5,6 +5,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
+from ...mesh.connectivity.components import joined_components
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Ints
@@ -56,15 +59,23 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: Ints) -> Bool
     Returns
     -------
     (n,) array of bool or None
-        None if nearly all have one, if nothing is known, or if needed ones have none.
+        None if nearly all have one, if nothing is known, or if needed ones have none or would be cut off from most.
     """
     if found is None:
         return None
     covered = found.has_partner & (found.confidence > 0)
     existing = needed[(needed >= 0) & (needed < len(covered))]
-    if not covered[existing].all() or share_of(mesh, covered) > 1 - _LEAST_LEFT:
+    if share_of(mesh, covered) > 1 - _LEAST_LEFT or not _hold_on(mesh, covered, existing):
         return None
     return covered
+
+
+def _hold_on(mesh: TriangleMesh, covered: Bools, needed: Ints) -> bool:
+    """Say whether needed vertices (k,) are on the largest part of what is covered, (n,), of their piece of a mesh."""
+    own = joined_components(len(covered), *mesh.edges[covered[mesh.edges].all(axis=1)].T)
+    whole = joined_components(len(covered), *mesh.edges.T)
+    areas = np.bincount(own, mesh.vertex_areas * covered)
+    return all(covered[one] and areas[own[one]] >= areas[own[whole == whole[one]]].max() for one in needed)
 
 
 def with_pieces_only(

@@ -44,6 +44,13 @@ def test_landmarks_speak_against_what_a_map_says(ball, upper):
     assert piece_of(ball, identity(ball, upper), np.array([above, 10**6, -1])) is not None
 
 
+def test_a_landmark_that_would_be_cut_off_from_most_speaks_against_it_too(ball):
+    heights = ball.vertices[:, 2]
+    known = identity(ball, (heights < 0) | (heights > 0.8))
+    assert piece_of(ball, known, np.array([int(heights.argmax())])) is None
+    assert piece_of(ball, known, np.array([int(heights.argmin())])) is not None
+
+
 @pytest.mark.parametrize("of_source", [True, False])
 def test_what_was_left_out_is_said_to_be_without_a_partner(of_source, ball, upper):
     quality = MatchQuality(1.0, 0.1, 0.9, 0.001, None, 0.8, "", 0.8)
