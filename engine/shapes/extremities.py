@@ -18,7 +18,7 @@ _MOST_TIPS = 16
 _PROMINENT, _BESIDE = 0.05, 10
 """By how much, in units of the mean of all places, ends of limbs are farther from the rest than all ways to farther
 ones, and how many samples lie beside one: hands, feet and heads of six characters have 0.09 to 0.97, hips, shins and
-breasts, which are tips as well by distance alone, less than 0.05."""
+breasts, which are tips as well by distance alone, less than 0.05 (tried once)."""
 
 _FILLED = 0.3
 """Distance, in sqrt(area), from all others of a place that stands in where there are too few tips."""

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Matches of bodies of very different proportions, by the ends of their limbs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from engine import MatchSettings, Shape, TriangleMesh, match
-from engine.matching.shape_matching import sampled_steps
-from engine.matching.standing_match import standing_ends
+from engine import MatchError, MatchSettings, Shape, TriangleMesh, match
+from engine.matching.shape_matching import MatchTask, sampled_steps
+from engine.matching.standing_match import standing_ends, standing_match_steps
 from engine.runtime.progress import run
 from tests.people import figure_surface
 from tests.shapes import creature, icosphere, rotation
@@ -91,6 +93,40 @@ def test_limbs_of_a_toy_go_to_those_of_a_usual_body_with_little_confidence(toy, 
 def test_what_was_only_tried_is_no_landmark(result):
     assert result.quality.likeness is not None
     assert result.source_to_target.confidence.max() < 0.5
+
+
+@pytest.fixture
+def tried(toy, usual, result, monkeypatch):
+    """What comes of a match that is known so well (confidence, pieces alone), if the other match is this one."""
+    shapes = Shape(toy[0]), Shape(usual[0])
+
+    def standing(confidence, alone, other):
+        def matched_steps(*_given):
+            if other is None:
+                raise MatchError("Two ends are at one vertex.")
+            return replace(result, quality=replace(result.quality, confidence=other))
+            yield
+
+        monkeypatch.setattr("engine.matching.standing_match.matched_steps", matched_steps)
+        known = replace(result, quality=replace(result.quality, confidence=confidence, pieces_alone=alone))
+        return run(standing_match_steps(known, *shapes, MatchTask(QUICK, None)))
+
+    return standing
+
+
+@pytest.mark.parametrize(
+    ("confidence", "alone", "other", "taken"),
+    [
+        (0.05, 0.0, 0.06, True),
+        (0.05, 0.0, 0.05, False),
+        (0.15, 0.0, 0.2, False),  # not hopeless
+        (0.15, 0.3, 0.05, True),  # a main part that was taken for all of a body
+        (0.35, 0.3, 0.4, False),  # beside which there is more, but it is clear
+        (0.05, 0.0, None, False),  # the ends cannot be used
+    ],
+)
+def test_the_more_credible_match_is_taken_if_the_known_one_is_hopeless(tried, confidence, alone, other, taken):
+    assert (tried(confidence, alone, other) is not None) == taken
 
 
 def test_where_landmarks_are_known_no_ends_are_paired(toy, usual):
