@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import bmesh
 import bpy
 import numpy as np
 from hiermatch.engine import CoarseMatch, MatchResult, SurfaceMap, SurfacePoints
@@ -26,12 +27,29 @@ MAP_ATTRIBUTES = [
 """Names of the attributes that keep a dense map."""
 
 
-def add_blob(name, segments=20, rings=14):
-    """Add a lopsided ball of triangles and quads, without symmetry."""
+def add_ball(name, segments, rings):
+    """Add a ball of triangles and quads, whose faces are always in the same order.
+
+    Blender sorts what it joins by addresses in memory, so that two balls of the same size may differ there.
+    """
     bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=rings)
     obj = bpy.context.object
     obj.name = name
     obj.data.name = name
+    faces = bmesh.new()
+    faces.from_mesh(obj.data)
+    ordered = sorted(faces.faces, key=lambda face: sorted(vertex.index for vertex in face.verts))
+    for number, face in enumerate(ordered):
+        face.index = number
+    faces.faces.sort()
+    faces.to_mesh(obj.data)
+    faces.free()
+    return obj
+
+
+def add_blob(name, segments=20, rings=14):
+    """Add a lopsided ball of triangles and quads, without symmetry."""
+    obj = add_ball(name, segments, rings)
     co = np.empty(3 * len(obj.data.vertices), np.float32)
     obj.data.vertices.foreach_get("co", co)
     x, y, z = co.reshape(-1, 3).T.astype(float)
@@ -53,10 +71,7 @@ def add_pair():
 
 def add_symmetric(name, segments=24, rings=16):
     """Add a long body with two equal sides, y and -y, and different ends, top and bottom."""
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=rings)
-    obj = bpy.context.object
-    obj.name = name
-    obj.data.name = name
+    obj = add_ball(name, segments, rings)
     for vertex in obj.data.vertices:
         x, y, z = vertex.co
         vertex.co = 1.6 * x * (1 + 0.6 * x), y * (1 + 0.5 * z) * (1 + 0.5 * x * x), (1.2 if z > 0 else 0.3) * z
