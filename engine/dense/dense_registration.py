@@ -19,7 +19,7 @@ from ..shapes.shape import Shape
 from .credibility import EVEN, LITTLE_RISE, RISE, is_clear_choice
 from .dense_hypotheses import USUAL, MapHypothesis, Selection, SparseStart, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
-from .proposers import Contest, are_distinct, contenders, proposed_steps
+from .proposers import Contest, are_distinct, proposed_steps
 from .registered_hypotheses import Candidate, CloseFit, Follower, Settling, at_vertices
 from .rough_maps.extremity_maps import RoughSearch
 
@@ -101,8 +101,8 @@ class Rival:
     behind_elsewhere: float
 
     @classmethod
-    def of(cls, other: Candidate | CloseFit, best: Candidate | CloseFit) -> Rival:
-        """Compare two that were registered in one way."""
+    def of(cls, other: Candidate, best: Candidate) -> Rival:
+        """Compare two that were registered."""
         behind = other.score - best.score
         return cls(other.registration, behind, behind + other.credit - best.credit)
 
@@ -188,22 +188,20 @@ def registered_pair_steps(
         raise MatchError("The surfaces are not enough alike to be matched.")
     if search:
         contest, candidates = yield from within(proposed_steps(contest, candidates), 0.6, 0.7)
-    # Where none can be right, the best one is followed as it is.
-    hopeful = contest.may_reach(EVEN, candidates, LITTLE_RISE if search else RISE)
-    contest.check_last(candidates)
-    fits = yield from within(_contest_steps(contest, candidates if hopeful else candidates[:1]), 0.7, 0.9)
-    contest.check_last([fits[0].candidate])
+    best, *others = candidates
+    contest.check_last([best])
+    # What cannot be right is followed as it is.
+    hopeful = contest.may_reach(EVEN, [best], LITTLE_RISE if search else RISE)
     follow = contest.follow if hopeful else replace(contest.follow, settling=Settling(disagree=()))
-    closest, trips = yield from within(follow.settled_steps(fits[0]), 0.9, 1.0)
-    best = closest.candidate
-    others = [candidate for candidate in candidates if candidate is not best]
+    fit = yield from within(follow.close_steps(best), 0.7, 0.9)
+    fit, trips = yield from within(follow.settled_steps(fit), 0.9, 1.0)
     if best.hypothesis.is_rough:
         # Others are compared with what functional maps make of it, not with the rough map.
         best = yield from within(follow.refined_steps(best), 1.0, 1.0)
-    rivals = _rivals(best, others, fits, () if as_they_are else untried, source.mass)
-    margin, alternatives = yield from alternatives_steps(follow, rivals, closest)
-    registered = closest.registration, closest.reverse, (best, *others)
-    in_place = follow.in_place(closest.registration.positions)
+    rivals = _rivals(best, others, () if as_they_are else untried, source.mass)
+    margin, alternatives = yield from alternatives_steps(follow, rivals, fit)
+    registered = fit.registration, fit.reverse, (best, *others)
+    in_place = follow.in_place(fit.registration.positions)
     if landmarks is not None and landmarks.assumed:
         landmarks, in_place = None, _LAID * in_place
     return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips, alternatives, in_place)
@@ -220,27 +218,14 @@ def _preview(hypothesis: MapHypothesis, registration: Registration | None = None
     return Preview(x.shape.surface.as_given(x.shape.mesh.vertices[x.vertices]), images)
 
 
-def _contest_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[CloseFit]]:
-    """Register the candidates that may be chosen closely; the most credible first."""
-    fits = yield from contest.follow.all_close_steps(contenders(contest, candidates))
-    return sorted(fits, key=lambda fit: fit.score)
-
-
 def _rivals(
-    best: Candidate, others: list[Candidate], fits: list[CloseFit], untried: Sequence[MapHypothesis], areas: Floats
+    best: Candidate, others: Sequence[Candidate], untried: Sequence[MapHypothesis], areas: Floats
 ) -> list[Rival]:
     """List other maps, and how each compares, by its own score if it was not registered."""
-    # Starts that differ in a limb may lead to the same place at last.
-    last = fits[0].registration.positions
-    others_closely = [fit for fit in fits[1:] if are_distinct(last, fit.registration.positions, areas)]
-    rivals = [Rival.of(fit, fits[0]) for fit in others_closely]
-    closely = {id(fit.candidate) for fit in fits}
-    for other in others:
-        taken = other.registration.positions
-        if id(other) not in closely and are_distinct(best.registration.positions, taken, areas):
-            rivals.append(Rival.of(other, best))
-    unregistered = [(each, each.score - best.hypothesis.score) for each in untried]
-    return rivals + [Rival(each, behind, behind) for each, behind in unregistered]
+    taken = best.registration.positions
+    registered = [Rival.of(each, best) for each in others if are_distinct(taken, each.registration.positions, areas)]
+    behind = [each.score - best.hypothesis.score for each in untried]
+    return [*registered, *map(Rival, untried, behind, behind)]
 
 
 def alternatives_steps(
@@ -273,7 +258,7 @@ def alternatives_steps(
             images = yield from within(rival.images_steps(), 1.0, 1.0)
             positions, points = follow.start(images), at_vertices(follow.target, images.on_y)
             back = at_vertices(follow.source, images.on_x)
-            behind += max(chosen.credit - follow.credit(positions), 0.0)
+            behind += max(chosen.candidate.credit - follow.credit(positions), 0.0)
         else:
             positions, points, back = rival.positions, rival.on_target, rival.on_source
         areas = follow.source.mass * (partnered | follow.partnered(points, back))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from typing import Any, ClassVar
@@ -143,18 +143,11 @@ class CloseFit:
         The source on the target.
     reverse : Registration
         The target on the source.
-    score : float
-        Smaller is more credible: the mean of the scores of the soft registration and of the close one.  A rough start
-        may lead the soft one of the true map to where the surfaces meet badly, and a close one fits wrong maps as well.
-    credit : float
-        By how much that is smaller because of what is left in place.
     """
 
     candidate: Candidate
     registration: Registration
     reverse: Registration
-    score: float
-    credit: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,9 +276,11 @@ class Follower:
 
     def _judged(self, hypothesis: MapHypothesis, registration: Registration) -> Candidate:
         """Say how credible a hypothesis is by the soft registration that it led to."""
-        score, terms, credit = self._assessed(hypothesis, registration)
+        lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
+        credit = self.credit(registration.positions)
+        score = registered_score(lead.score, registration.gaps, credit)
         # The rough map that it began with may be no isometry though the bodies are alike.
-        isometry = float(np.clip((_BUILT - terms["waves"]) / (_BUILT - _POSED), 0, 1))
+        isometry = float(np.clip((_BUILT - lead.terms["waves"]) / (_BUILT - _POSED), 0, 1))
         alike = likeness(hypothesis.score, registration.cost)
         return Candidate(
             hypothesis, registration, score, alike, isometry, self.in_place(registration.positions), credit
@@ -295,11 +290,6 @@ class Follower:
         """Judge a candidate anew by what is known to be left in place by now."""
         credit = self.credit(candidate.registration.positions)
         return replace(candidate, score=candidate.score + candidate.credit - credit, credit=credit)
-
-    def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
-        """Register several candidates closely; see `close_steps`."""
-        found = yield from shared_steps(_closely_followed_steps, self, candidates)
-        return [CloseFit(candidate, *rest) for candidate, rest in zip(candidates, found, strict=True)]
 
     def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
         """Register closely: the source, then the target from where it lies, then the source again."""
@@ -317,8 +307,7 @@ class Follower:
         else:  # what landmarks hold stays the way round it is
             (first,) = yield from within(register_all_steps([positions]), 0.0, 0.2)
         reverse, final = yield from within(self.again_steps(candidate, first), 0.2, 1.0)
-        score, _, credit = self._assessed(candidate.hypothesis, final)
-        return CloseFit(candidate, final, reverse, (candidate.score + score) / 2, (candidate.credit + credit) / 2)
+        return CloseFit(candidate, final, reverse)
 
     def settled_steps(self, fit: CloseFit) -> Steps[tuple[CloseFit, Trips]]:
         """Go on from either side in turn, while the two disagree and come nearer to each other by that.
@@ -380,14 +369,6 @@ class Follower:
         matches, guides = (reverse.on_source, reverse.on_target), (here, there)
         steps = restart(source, target, self.x.unit_functions(_DETAILED), matches, ties=self.ties, guides=guides)
         return reverse, (yield from within(steps, 0.5, 1.0))
-
-    def _assessed(
-        self, hypothesis: MapHypothesis, registration: Registration
-    ) -> tuple[float, Mapping[str, float], float]:
-        """Score what a hypothesis has led to; the terms of the score without the gaps; its credit, see `credit`."""
-        lead = assessed_everywhere(hypothesis.domains, self.vertex_maps(registration))
-        credit = self.credit(registration.positions)
-        return registered_score(lead.score, registration.gaps, credit), lead.terms, credit
 
     def in_place(self, positions: Floats) -> float:
         """Estimate how probably it is right where the source lies because it is left as it stands, 0 to 1.
@@ -458,14 +439,6 @@ def _lying_steps(follow: Follower, item: tuple[Candidate, Floats]) -> Steps[_Jud
 def _judged(found: Candidate) -> _Judged:
     """Take what is sent of a candidate, the hypothesis of which is known."""
     return found.registration, found.score, found.likeness, found.isometry, found.in_place, found.credit
-
-
-def _closely_followed_steps(
-    follow: Follower, candidate: Candidate
-) -> Steps[tuple[Registration, Registration, float, float]]:
-    """Find what `Follower.close_steps` does, beside the candidate."""
-    found = yield from follow.close_steps(candidate)
-    return found.registration, found.reverse, found.score, found.credit
 
 
 def _registered_steps(follow: Follower, item: tuple[Floats, Stage, float]) -> Steps[Registration]:
