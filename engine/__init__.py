@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The engine of HierMatch: NumPy and SciPy only, no Blender."""
 
+from .dense.credibility import DOUBTFUL
 from .dense.densify import densify, densify_steps
 from .dense.quality import DenseMatch, MatchQuality, exchanged_sentence
 from .geometry.geodesics import GeodesicSolver
@@ -66,6 +67,7 @@ from .shapes.surface_distances import distances_to_vertices_steps
 
 __all__ = [
     "DIRECT",
+    "DOUBTFUL",
     "MIRRORED",
     "SETUPS",
     "Background",

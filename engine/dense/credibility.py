@@ -69,6 +69,10 @@ as if one character in ten looked the other way, such as those made for VRM 0.""
 _CLEAR = 0.816
 """Probability that the better of two maps is right from which on the choice was clear: scores that differ by one."""
 
+DOUBTFUL = 0.3
+"""Confidence of a whole map below which it is not trusted unless the user wants it: chosen by hand, as more of such
+maps is wrong than right."""
+
 _LEAST_CREDIBILITY = 0.1
 """What vertices of a map that is surely wrong are still trusted: none at all are those without a partner."""
 

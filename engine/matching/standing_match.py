@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from ..dense.credibility import DOUBTFUL
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
@@ -22,10 +23,10 @@ _HOPELESS = 0.1
 """Confidence of a match below which limbs are compared: chosen by hand.  More is found right otherwise, such as a man
 laid onto a figure with a large head (0.25, tried once)."""
 
-_ALONE, _DOUBTFUL = 0.2, 0.3
+_ALONE = 0.2
 """Part of a body in pieces without a counterpart from which on its main part was taken for something else, such as a
-head for all of a body, and confidence below which a match is not trusted in spite of that.  Without it, the knight of
-``python -m tests.benchmarks.maker_rigs`` has no limb bone right on the Mesh2Motion man."""
+head for all of a body, if the match is doubtful.  Without it, the knight of ``python -m tests.benchmarks.maker_rigs``
+has no limb bone right on the Mesh2Motion man."""
 
 _FEWEST = 4
 """Pairs of them that are needed: three are in a plane, which does not tell front from back."""
@@ -84,7 +85,7 @@ def standing_match_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTas
 def _worth(result: MatchResult) -> float:
     """Tell the confidence of a match, if it is of all of the bodies or clear."""
     quality = result.dense.quality
-    return 0.0 if quality.pieces_alone > _ALONE and quality.confidence < _DOUBTFUL else quality.confidence
+    return 0.0 if quality.pieces_alone > _ALONE and quality.confidence < DOUBTFUL else quality.confidence
 
 
 def standing_ends(x: Shape, y: Shape) -> Ints:

@@ -6,16 +6,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from ...engine import open_ends
+from ...engine import DOUBTFUL, open_ends
 
 if TYPE_CHECKING:
     from ...engine import MatchQuality, TriangleMesh
     from ..storage.stored_match import Quality
 
-__all__ = ["ANSWERS", "DOUBTFUL", "GOOD", "Verdict", "advice_on", "asymmetry_note"]
-
-DOUBTFUL: Final = 0.3
-"""Below this confidence nothing is carried across a match unless the user wants it: more of it is wrong than right."""
+__all__ = ["ANSWERS", "GOOD", "Verdict", "advice_on", "asymmetry_note"]
 
 GOOD: Final = 0.7
 """Confidence from which on a match is called good."""

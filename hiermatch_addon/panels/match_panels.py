@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
 
+from ...engine import DOUBTFUL
 from ..common.access import layout_of, view_layer_of
 from ..common.translated_text import translated
-from ..jobs.verdict import DOUBTFUL, GOOD
+from ..jobs.verdict import GOOD
 from ..properties.panel_state import picked, state_of
 from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups

@@ -12,6 +12,7 @@ from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from ...dense.credibility import DOUBTFUL
 from ...geometry.procrustes import least_turns, nearest_frame, nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
@@ -52,9 +53,9 @@ _STRAY_DIRECTION = np.radians(35.0)
 """A bone whose direction by the joints is further from that by the map keeps the latter: its joint means another
 place."""
 
-_DOUBTFUL, _STRAY_IF_DOUBTFUL = 0.3, np.radians(60.0)
-"""Mean confidence of a map below which joints tell more of directions than it does, and the angle then: with it, limbs
-of the Mesh2Motion woman who walks as the knight does point elsewhere by 15 instead of 30 degrees, see ``python -m
+_STRAY_IF_DOUBTFUL = np.radians(60.0)
+"""The same angle where a map is doubtful, so that joints tell more of directions than it does: with it, limbs of the
+Mesh2Motion woman who walks as the knight does point elsewhere by 15 instead of 30 degrees, see ``python -m
 tests.benchmarks.maker_rigs``."""
 
 _TRUNK_NEAR_AXES = np.radians(20.0)
@@ -179,7 +180,7 @@ def pair_bones(
     seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
     evened = evened_rotations(seen[sources], (sources, targets), trees, mirrors, upright)
     confidence = np.average(rig.target_to_source.confidence, weights=target.vertex_areas)
-    rotations = _swung(evened, (sources, targets), trees, doubtful=bool(confidence < _DOUBTFUL))
+    rotations = _swung(evened, (sources, targets), trees, doubtful=bool(confidence < DOUBTFUL))
     return BonePairing(sources, targets, worth, rotations, placed.heads[sources], upright)
 
 

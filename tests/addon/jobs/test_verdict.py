@@ -4,8 +4,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hiermatch.engine import MatchQuality, TriangleMesh
-from hiermatch.hiermatch_addon.jobs.verdict import DOUBTFUL, Verdict, advice_on
+from hiermatch.engine import DOUBTFUL, MatchQuality, TriangleMesh
+from hiermatch.hiermatch_addon.jobs.verdict import Verdict, advice_on
 
 from tests.shapes import cylinder, icosphere
 
