@@ -36,9 +36,10 @@ none is around at 0.31 and more."""
 _FINER = 4
 """How many times the vertices of a small body its surface has at most: about as many as `Proxy.finer` makes of them."""
 
-_SPACING = 0.005
+_SPACING, _PER_VERTEX = 0.005, 0.35
 """Distance of the places of the grid, in sqrt(area): a third of a finger of a person, which loses 2 cm of its length on
-a body that loses 4 cm with .007 and one with .0035, in twice the time."""
+a body that loses 4 cm with .007 and one with .0035, in twice the time.  And if that is more, as for a small body, in
+the root of the area of a vertex of the surface: eight places for each, as many as the former gives 5,000 vertices."""
 
 _LEVEL = 0.4
 """How far inside counts as inside: less than half, so that open ends that stop short of each other meet."""
@@ -181,15 +182,17 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
     """
     pieces, taking_part = cleaned.pieces, cleaned.of_body.copy()
     count = sum(piece.mesh.vertex_count for piece, takes in zip(pieces, taking_part, strict=True) if takes)
-    skin = yield from within(_skin_steps(pieces, taking_part, ~taking_part), 0.0, 0.5, _LABEL)
-    lying = _lying_on(skin, pieces) if skin is not None else taking_part
+    most = min(most, _FINER * count)
+    apart = max(_SPACING, _PER_VERTEX / np.sqrt(most))
+    skin = yield from within(_skin_steps(pieces, taking_part, ~taking_part, apart), 0.0, 0.5, _LABEL)
+    lying = _lying_on(skin, pieces, apart) if skin is not None else taking_part
     if skin is not None and (taking_part & ~lying).any():
         taking_part |= _between(pieces, taking_part & lying, taking_part & ~lying)
-        skin = yield from within(_skin_steps(pieces, taking_part, ~lying), 0.5, 0.6, _LABEL)
-        lying = _lying_on(skin, pieces) if skin is not None else taking_part
+        skin = yield from within(_skin_steps(pieces, taking_part, ~lying, apart), 0.5, 0.6, _LABEL)
+        lying = _lying_on(skin, pieces, apart) if skin is not None else taking_part
     if skin is None:
         return None
-    coarse = yield from within(proxy_steps(skin, min(most, _FINER * count)), 0.6, 0.9, _LABEL)
+    coarse = yield from within(proxy_steps(skin, most), 0.6, 0.9, _LABEL)
     # What is too far away from all else was not reached.
     taking_part &= lying
     if not taking_part[0] or taking_part.sum() == 1:
@@ -214,12 +217,17 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
     )
 
 
-def _skin_steps(pieces: tuple[SurfacePart, ...], taking_part: Bools, thin: Bools) -> Steps[TriangleMesh | None]:
-    """Find the surface around pieces (p,) that take part, some too thin for the grid; None if they have no inside."""
+def _skin_steps(
+    pieces: tuple[SurfacePart, ...], taking_part: Bools, thin: Bools, apart: float
+) -> Steps[TriangleMesh | None]:
+    """Find the surface around pieces (p,) that take part, some too thin for the grid; None if they have no inside.
+
+    The places of the grid are that far apart, in sqrt(area).
+    """
     body = _Body.of([piece for piece, takes in zip(pieces, taking_part, strict=True) if takes])
     unit = float(np.sqrt(body.mesh.area))
     yield Progress(0.0, _LABEL)
-    solid = solid_indicator(body.solid, _SPACING * unit)
+    solid = solid_indicator(body.solid, apart * unit)
     for number in np.flatnonzero(taking_part & thin):
         places = np.rint((_midst(pieces[number], solid.spacing) - solid.origin) / solid.spacing).astype(np.int64)
         solid.values[tuple(places.T)] = np.maximum(solid.values[tuple(places.T)], (1 + _LEVEL) / 2)
@@ -257,13 +265,13 @@ def _between(pieces: tuple[SurfacePart, ...], reached: Bools, lost: Bools) -> Bo
     return ((touching[1] > 0) | (areas <= areas[lost].max())) & (touching.sum(axis=0) > 1)
 
 
-def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...]) -> Bools:
-    """Tell which pieces (p,) lie on a surface, or near beneath it, for the most part."""
+def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...], apart: float) -> Bools:
+    """Tell which pieces (p,) lie on a surface made on such a grid, or near beneath it, for the most part."""
     tree, lying = cKDTree(mesh.vertices), np.zeros(len(pieces), bool)
     for number, piece in enumerate(pieces):
         distances = tree.query(even_samples(piece.mesh, mesh.area / SAMPLES).positions)[0]
         unit, own = np.sqrt(mesh.area), np.sqrt(piece.mesh.area)
-        lying[number] = np.median(distances) < min(_LYING * unit, max(_SPACING * unit, _ITS_OWN * own))
+        lying[number] = np.median(distances) < min(_LYING * unit, max(apart * unit, _ITS_OWN * own))
     return lying
 
 

@@ -67,9 +67,31 @@ class ConsistentSet:
     weights: NDArray[np.float32]
 
 
+class Together:
+    """How well candidates go together, and the best of each place.
+
+    Parameters
+    ----------
+    values : (k, k) array of float
+        How well each two go together, see `compatibilities`.
+    first : (k,) array of int
+        Their places of the first surface, in order.
+    """
+
+    def __init__(self, values: NDArray[np.float32], first: Ints) -> None:
+        self.values = values
+        self.places, self._starts = np.unique(first, return_index=True)
+        self._of = np.repeat(np.arange(len(self.places)), np.diff(np.append(self._starts, len(first))))
+        self.best = np.maximum.reduceat(values, self._starts, axis=0)  # (p, k): how each goes with the best of a place
+
+    def is_best(self, weights: NDArray[np.float32]) -> Bools:
+        """Say whether each weight, (k,), is the largest of its place."""
+        return weights >= np.maximum.reduceat(weights, self._starts)[self._of] - _TIE
+
+
 def consistent_sets(
     candidates: Candidates,
-    together: NDArray[np.float32],
+    together: Together,
     patches: tuple[OrientedPatches, OrientedPatches],
     shares: Floats,
     plan: Plan,
@@ -80,7 +102,7 @@ def consistent_sets(
     ----------
     candidates : Candidates
         The candidates, k.
-    together : (k, k) array of float
+    together : Together
         How well each two go together.
     patches : pair of OrientedPatches
         The places of the two surfaces.
@@ -96,11 +118,10 @@ def consistent_sets(
     """
     first, share = candidates.first, shares.astype(np.float32)
     near = patches[0].between < plan.radius
-    of_places = _Places(first)
-    support = ((near[first][:, of_places.numbers] * share[of_places.numbers]) * of_places.best(together).T).sum(axis=1)
+    support = ((near[first][:, together.places] * share[together.places]) * together.best.T).sum(axis=1)
     found: list[tuple[float, ConsistentSet]] = []
     for seed in _seeds(support, first, plan.seeds):
-        grown = _grown(together, of_places, int(seed), share[first], near[first[seed]][first])
+        grown = _grown(together, int(seed), share[first], near[first[seed]][first])
         if grown is not None:
             found.append(grown)
     found.sort(key=lambda pair: -pair[0])
@@ -120,23 +141,23 @@ def _seeds(support: NDArray[np.float32], first: Ints, most: int) -> Ints:
 
 
 def _grown(
-    together: NDArray[np.float32], places: _Places, seed: int, share: NDArray[np.float32], near: Bools
+    together: Together, seed: int, share: NDArray[np.float32], near: Bools
 ) -> tuple[float, ConsistentSet] | None:
     """Grow a set from a seed among candidates that are near, with its strength; None if it stays too small."""
-    weights = together[seed] * near
+    weights = together.values[seed] * near
     weights[seed] = 1
     for _ in range(_ROUNDS):
-        kept = np.flatnonzero(places.is_best(weights) & (weights > 0))
+        kept = np.flatnonzero(together.is_best(weights) & (weights > 0))
         amounts = weights[kept] * share[kept]
         # Whole rows are gathered far faster than what of them is near.
-        support = amounts @ together[kept] * near / max(float(amounts.sum()), _TIE)
+        support = amounts @ together.values[kept] * near / max(float(amounts.sum()), _TIE)
         weights = support * (support > _WEAK)
         weights /= max(float(weights.max()), _TIE)
-    kept = np.flatnonzero(places.is_best(weights) & (weights > _LEAST_SHARE))
+    kept = np.flatnonzero(together.is_best(weights) & (weights > _LEAST_SHARE))
     if len(kept) < _LEAST:
         return None
     amounts = weights[kept] * share[kept]
-    strength = float(amounts @ together[np.ix_(kept, kept)] @ amounts / max(float(amounts.sum()), _TIE))
+    strength = float(amounts @ together.values[np.ix_(kept, kept)] @ amounts / max(float(amounts.sum()), _TIE))
     return strength, ConsistentSet(kept, weights[kept])
 
 
@@ -163,19 +184,3 @@ def _are_alike(images: Ints, others: Ints, between: Floats) -> bool:
     if both.sum() < _COMMON * min((images >= 0).sum(), (others >= 0).sum()):
         return False
     return bool(np.median(between[images[both], others[both]]) < _APART)
-
-
-class _Places:
-    """Candidates in the order of their places, to find the best of each."""
-
-    def __init__(self, places: Ints) -> None:
-        self.numbers, self._starts = np.unique(places, return_index=True)
-        self._of = np.repeat(np.arange(len(self.numbers)), np.diff(np.append(self._starts, len(places))))
-
-    def best(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Largest of the values (k, ...) of each place."""
-        return np.maximum.reduceat(values, self._starts, axis=0)
-
-    def is_best(self, values: NDArray[np.float32]) -> Bools:
-        """Say whether each value, (k,), is the largest of its place."""
-        return values >= self.best(values)[self._of] - _TIE

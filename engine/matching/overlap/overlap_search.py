@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ...geometry.best_distinct import best_distinct
 from ...runtime.arrays import Floats
 from ...runtime.progress import Progress, Steps, within
-from .consistent_sets import PLANS, consistent_sets
+from .consistent_sets import PLANS, Together, consistent_sets
 from .oriented_patches import OrientedPatches
 from .overlap_score import overlap_score
 from .part_registration import FAST, REST, Fit, Landmarks, Round, placed, register_parts
@@ -133,7 +133,7 @@ def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
     coarse = pair.coarse[0]
     patches = pair.patches[0].first(_LAID), pair.patches[1]
     candidates = patch_candidates(*patches)
-    together = compatibilities(candidates, pair.surfaces, patches)
+    together = Together(compatibilities(candidates, pair.surfaces, patches), candidates.first)
     yield Progress(0.5, _LABEL)
     shares = np.bincount(patches[0].paths.argmin(axis=0), here.mass, len(patches[0])) / here.area
     nearest = cKDTree(coarse.vertices).query(here.vertices[patches[0].vertices])[1]

@@ -137,11 +137,15 @@ def compatibilities(
         for surface, patch, number in zip(surfaces, patches, numbers, strict=True)
     ]
     rotations, credit = candidates.rotations.astype(np.float32), candidates.credit.astype(np.float32)
+    places = _place_terms(rotations, sides[0].places, sides[1].places)
     together = np.empty((len(candidates), len(candidates)), np.float32)
     for rows in slices(len(candidates), _ROWS):
-        block = np.exp(-_doubts((sides[0], sides[1]), rotations, rows))
-        block[candidates.first[rows, None] == candidates.first] = 0
-        together[rows] = block * (credit[rows, None] * credit)
+        others = slice(rows.start, None)  # those before go together with them as they do with those
+        block = np.exp(-_doubts((sides[0], sides[1]), rotations.reshape(-1, 9), places, rows))
+        block[candidates.first[rows, None] == candidates.first[others]] = 0
+        block *= credit[rows, None] * credit[others]
+        together[rows, others] = block
+        together[others, rows] = block.T
     return together
 
 
@@ -166,26 +170,60 @@ class _Side(NamedTuple):
     patches: Ints
 
 
-def _doubts(sides: tuple[_Side, _Side], rotations: NDArray[np.float32], rows: slice) -> NDArray[np.float32]:
-    """Say how much speaks against some candidates, the rows, going together with each: sums of squares, (r, k)."""
-    lengths = [side.lengths[side.patches[rows]] for side in sides]
+def _place_terms(
+    rotations: NDArray[np.float32], here: NDArray[np.float32], there: NDArray[np.float32]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Take apart how far off two candidates lie by each other's rotations: (k, 34) twice, the products of which tell.
+
+    The square of the distance between where the rotation of i, about its own place, has the place of j and where that
+    is, is a sum of products of what is known of i and what is known of j; and so it is the other way round.
+    """
+    offsets = there - np.einsum("kab,kb->ka", rotations, here)
+    back = np.einsum("kab,ka->kb", rotations, offsets)
+    ones = np.ones((len(here), 1), np.float32)
+    size = np.square(offsets).sum(axis=1, keepdims=True)
+    turning = np.concatenate([-2 * rotations.reshape(-1, 9), 2 * back, -2 * offsets, size, ones], axis=1)
+    sizes = (np.square(here) + np.square(there)).sum(axis=1, keepdims=True)
+    products = (there[:, :, None] * here[:, None, :]).reshape(-1, 9)
+    turned = np.concatenate([products, here, there, ones, sizes], axis=1)
+    return np.concatenate([turning, turned], axis=1), np.concatenate([turned, turning], axis=1)
+
+
+def _doubts(
+    sides: tuple[_Side, _Side],
+    rotations: NDArray[np.float32],
+    places: tuple[NDArray[np.float32], NDArray[np.float32]],
+    rows: slice,
+) -> NDArray[np.float32]:
+    """Say how much speaks against some candidates, the rows, going together with those from the first of them on.
+
+    Parameters
+    ----------
+    sides : pair of _Side
+        Of both surfaces.
+    rotations : (k, 9) array of float
+        The rotations.
+    places : pair of (k, 34) arrays of float
+        See `_place_terms`.
+    rows : slice
+        Which, r of k.
+
+    Returns
+    -------
+    (r, c) array of float
+        Sums of squares.
+    """
+    others = slice(rows.start, None)
+    lengths = [side.lengths[side.patches[rows], others] for side in sides]
     far = (lengths[0] + lengths[1]) / 2
     past = np.zeros(far.shape, bool)
     for side, length in zip(sides, lengths, strict=True):
-        past |= length > side.to_border[rows, None] + side.to_border - np.float32(1e-3)  # that is rounding
+        past |= length > side.to_border[rows, None] + side.to_border[others] - np.float32(1e-3)  # that is rounding
     tolerance = _LENGTHS + _STRETCH * far + past * (_PAST * np.minimum(far / _PAST_FROM, 1))
     doubts = np.square((lengths[0] - lengths[1]) / tolerance)
-    flat = rotations.reshape(-1, 9)
-    angles = np.arccos(np.clip((flat[rows] @ flat.T - 1) / 2, -1, 1))
+    angles = np.arccos(np.clip((rotations[rows] @ rotations[others].T - 1) / 2, -1, 1))
     doubts += np.square(angles / (_ROTATIONS + np.minimum(far, _FARTHEST_BEND)))
     # Where the rotation of one has the other, and of the other the one, against where these are.
-    here, there = sides[0].places, sides[1].places
-    turned = np.einsum("kab,kb->ka", rotations, here)
-    apart = np.zeros_like(far)
-    for axis in range(3):
-        along = rotations[:, axis]
-        step = there[rows, axis, None] - there[:, axis]
-        apart += np.square(along[rows] @ here.T - turned[rows, axis, None] + step)
-        apart += np.square(here[rows] @ along.T - turned[:, axis] - step)
+    apart = np.maximum(places[0][rows] @ places[1][others].T, 0)
     wide = (far + _BESIDE) * (_DIRECTIONS + _BENT * np.minimum(far, _FARTHEST))
     return doubts + apart / (np.square(wide) * 4)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.matching.overlap.consistent_sets import Plan, _seeds, consistent_sets
+from engine.matching.overlap.consistent_sets import Plan, Together, _seeds, consistent_sets
 from engine.matching.overlap.oriented_patches import oriented_patches
 from engine.matching.overlap.part_surface import PartSurface
 from engine.matching.overlap.patch_candidates import compatibilities, patch_candidates
@@ -53,7 +53,7 @@ def test_the_true_places_go_together_and_others_do_not(compared):
 def test_the_true_places_are_found_as_a_set(compared):
     _, patches, candidates, together = compared
     shares = np.full(COUNT, 1 / COUNT)
-    best = consistent_sets(candidates, together, patches, shares, Plan(np.inf, 20, 5))[0]
+    best = consistent_sets(candidates, Together(together, candidates.first), patches, shares, Plan(np.inf, 20, 5))[0]
     np.testing.assert_array_equal(candidates.first[best.members], np.arange(COUNT))
     np.testing.assert_array_equal(candidates.second[best.members], np.arange(COUNT))
     assert best.weights.max() == pytest.approx(1)
@@ -62,7 +62,7 @@ def test_the_true_places_are_found_as_a_set(compared):
 def test_small_sets_stay_around_their_seeds_and_differ(compared):
     _, patches, candidates, together = compared
     shares = np.full(COUNT, 1 / COUNT)
-    found = consistent_sets(candidates, together, patches, shares, Plan(0.5, 30, 8))
+    found = consistent_sets(candidates, Together(together, candidates.first), patches, shares, Plan(0.5, 30, 8))
     assert 1 <= len(found) <= 8
     for each in found:
         places = candidates.first[each.members]
