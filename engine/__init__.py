@@ -24,7 +24,7 @@ from .retarget.motion.bone_pairing import BonePairing, pair_bones
 from .retarget.motion.key_reduction import reduced_keys, slopes_of
 from .retarget.motion.motion_transfer import MotionSettings, TransferredMotion, transfer_motion, transfer_motion_steps
 from .retarget.motion.paired_weights import paired_weights
-from .retarget.motion.posed_motion import LocalTransforms, Motion, local_transforms, posed_motion
+from .retarget.motion.posed_motion import LocalTransforms, Motion, local_transforms, motion_of_matrices, posed_motion
 from .retarget.motion.rotation_channels import rotation_channels, rotation_matrices
 from .retarget.open_ends import open_ends
 from .retarget.rig.fitted_rig import FittedRig
@@ -161,6 +161,7 @@ __all__ = [
     "match",
     "match_steps",
     "mend_weights_steps",
+    "motion_of_matrices",
     "moved_into",
     "moved_with_items",
     "nearest_regions",

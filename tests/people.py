@@ -181,8 +181,11 @@ def skinned(vertices, rig, motion):
     return result
 
 
-def moved(rig, angles, ways=None):
-    """Motion of a rig: for some bones rotation vectors (f, 3) in space against the parent, and the way of the first."""
+def moved(rig, angles, ways=None, slides=None):
+    """Motion of a rig: for some bones rotation vectors (f, 3) in space against the parent, and the way of the first.
+
+    `slides` are the ways of others against what they hang on, (f, 3) each.
+    """
     count = max((len(vectors) for vectors in angles.values()), default=1)
     basis = np.tile(np.eye(4), (count, len(rig.names), 1, 1))
     for name, vectors in angles.items():
@@ -193,6 +196,8 @@ def moved(rig, angles, ways=None):
                     basis[frame, rig.names.index(name), :3, :3] = rotation(vector, angle)
     if ways is not None:
         basis[:, 0, :3, 3] = ways
+    for name, way in (slides or {}).items():
+        basis[:, rig.names.index(name), :3, 3] = way
     rest = np.tile(np.eye(4), (len(rig.names), 1, 1))
     rest[:, :3, 3] = rig.skeleton.heads
     return posed_motion(rig.skeleton, rest, basis)

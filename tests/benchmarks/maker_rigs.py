@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pair the bones of characters of several makers, and let one walk as the other does.
 
-    python -m tests.benchmarks.maker_rigs --data FOLDER [--only SOURCE:TARGET,...] [--feet] [--save FOLDER]
-                                         [--strips FOLDER]
+    python -m tests.benchmarks.maker_rigs --data FOLDER [--only SOURCE:TARGET,...] [--feet] [--action NAME]
+                                         [--save FOLDER] [--strips FOLDER]
 
 FOLDER holds rigged characters as .glb or .vrm files. Without --only these are all pairs of people of different makers,
 and of four-legged animals, that are named in `PEOPLE` and `ANIMALS`, each once. Everything goes through the buttons:
-import, Pair Bones, Retarget Action. A source without an action gets a walk, by what its limbs are called.
+import, Pair Bones, Retarget Action. NAME is a part of the name of the action, "walk" if not given; a source without one
+gets a walk, by what its limbs are called.
 
 A row holds the confidence of the match in %; how many limb bones of the target are paired right, of those that the
 source has as well, told by names; how many are paired with the other side; the mean and the largest angle between
@@ -91,11 +92,11 @@ def moved_by(obj, rig):
     return any(getattr(one, "object", None) == rig for one in obj.modifiers)
 
 
-def action_of(rig):
-    """A walk among what was imported for a rig, or one that is made."""
+def action_of(rig, name):
+    """An action with such a name among what was imported for a rig, or a walk that is made."""
     data = rig.animation_data
     strips = [strip.action for track in data.nla_tracks for strip in track.strips] if data else []
-    found = [one for one in [data and data.action, *strips] if one is not None and "walk" in one.name.lower()]
+    found = [one for one in [data and data.action, *strips] if one is not None and name in one.name.lower()]
     return found[0] if found else walk(rig)
 
 
@@ -215,7 +216,7 @@ def row(folder, names, options):
     """Return the numbers of one pair, and what was paired wrong."""
     bpy.ops.wm.read_homefile(use_empty=True)
     (source, its), (target, others) = (added(folder / name) for name in names)
-    action = action_of(source)
+    action = action_of(source, options.action.lower())
     played(source, action)
     still(target)
     bpy.context.scene.frame_set(0)
@@ -273,6 +274,7 @@ def main():
     parser.add_argument("--data", type=Path, required=True, help="folder with the characters")
     parser.add_argument("--only", help="pairs of files, SOURCE:TARGET,... (default: all of other makers)")
     parser.add_argument("--feet", action="store_true", help="keep feet on the ground")
+    parser.add_argument("--action", default="walk", help="part of the name of the action")
     parser.add_argument("--guided", action="store_true", help="give the tips of hands and feet as landmarks")
     parser.add_argument("--save", type=Path, help="folder for a .blend of each pair")
     parser.add_argument("--strips", type=Path, help="folder for a picture of each pair")

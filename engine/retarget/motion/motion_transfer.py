@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
@@ -20,7 +21,7 @@ from .hand_contacts import BodyLine, hand_shifts
 from .limbs import Limb, limbs_of
 from .posed_motion import Motion
 from .rest_rotations import posed_rotations
-from .segments import Segments
+from .segments import Segments, ways_up
 from .two_bone_ik import bent_limb, needed_drop
 
 _RATIOS = (1e-5, 1e5)
@@ -69,9 +70,12 @@ class TransferredMotion:
     moved : (b,) array of bool
         Which of them turn by themselves: those with partners.
     placed : (b,) array of bool
-        Which also have a place of their own: the topmost ones, and those that hang elsewhere than on what holds them.
+        Which also have a place of their own: the topmost ones, those that hang elsewhere than on what holds them, and
+        those that slide on it.
     rooted : (b,) array of bool
         Which of these hang on nothing that moves: they carry the body.
+    fixed : (b,) array of bool
+        Which would slide on what they hang on, but are connected with it.
     scale : float
         How many times as long the target's legs are.
     """
@@ -80,6 +84,7 @@ class TransferredMotion:
     moved: Bools
     placed: Bools
     rooted: Bools
+    fixed: Bools
     scale: float
 
     def __repr__(self) -> str:
@@ -94,6 +99,7 @@ def transfer_motion_steps(
     settings: MotionSettings | None = None,
     *,
     ups: Floats | None = None,
+    connected: Bools | None = None,
 ) -> Steps[TransferredMotion]:
     r"""Transfer motion from one skeleton to another.
 
@@ -102,7 +108,8 @@ def transfer_motion_steps(
     :math:`G D M^T`: its surface then lies as the source's does, turned by :math:`G`, whatever the rest poses and the
     axes of the bones are.  Bones that do together what other bones of the source do are turned so that what they carry
     lies where the source has it (`fitted_chains`).  Bones without a partner go with what they hang on.  The way of the
-    topmost bones is scaled by the lengths of the legs.
+    topmost bones is scaled by the lengths of the legs, and that of a joint that slides on what it hangs on, such as a
+    jaw's or that of an arm that is stretched, by the distances between the joints there.
 
     Parameters
     ----------
@@ -116,6 +123,8 @@ def transfer_motion_steps(
         How.
     ups : (2, 3) array of float, optional
         Directions away from the ground in the source's and the target's space; z if not given.
+    connected : (b,) array of bool, optional
+        Which of the target's bones stay where the bone that they hang on takes them; none if not given.
 
     Returns
     -------
@@ -132,28 +141,28 @@ def transfer_motion_steps(
     ups = np.array([[0.0, 0, 1]] * 2) if ups is None else ups / np.linalg.norm(ups, axis=1, keepdims=True)
     yield Progress(0.0, "Transferring rotations")
     body = _Body(motion, pairing, target, ups)
+    fixed = body.fix(np.zeros(len(target), bool) if connected is None else connected)
     turns = body.turns(motion.turns)
     yield Progress(0.3, "Posing the bones")
-    paths = body.paths(motion.heads, turns, settings.stride)
-    posed = body.posed(turns, paths)
+    places = _Places(body.paths(motion.heads, turns, settings.stride), body.slides(turns))
+    posed = body.posed(turns, places)
     if body.feet:
-        lifts = _carried_lifts(body, motion, posed)
-        paths = {part: path + lifts[:, None, None] * ups[1] for part, path in paths.items()}
-        posed = body.posed(turns, paths)
+        places = places.lifted(_carried_lifts(body, motion, posed), ups[1])
+        posed = body.posed(turns, places)
     if settings.feet and body.feet and len(motion) > 1:
         yield Progress(0.5, "Keeping the feet")
         goals, drop = _with_feet(body, motion, posed, settings)
-        paths = {part: path - drop[:, None, None] * ups[1] for part, path in paths.items()}
-        turns = body.bent(turns, paths, body.feet, goals)
-        posed = body.posed(turns, paths)
+        places = places.lifted(-drop, ups[1])
+        turns = body.bent(turns, places, body.feet, goals)
+        posed = body.posed(turns, places)
     arms = _arms(body.limbs)
     if settings.hands and arms:
         yield Progress(0.75, "Keeping the hands")
-        turns = body.bent(turns, paths, arms, _hand_goals(body, motion, posed, arms))
-        posed = body.posed(turns, paths)
+        turns = body.bent(turns, places, arms, _hand_goals(body, motion, posed, arms))
+        posed = body.posed(turns, places)
     if settings.in_place and len(motion) > 1:
-        posed = _in_place(posed, ups[1], np.flatnonzero(body.placed))
-    return TransferredMotion(posed, body.moved, body.placed, body.rooted, body.scale)
+        posed = _in_place(posed, ups[1], np.flatnonzero(body.rooted))
+    return TransferredMotion(posed, body.moved, body.placed, body.rooted, fixed, body.scale)
 
 
 transfer_motion = at_once(transfer_motion_steps)
@@ -166,6 +175,20 @@ def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: Mot
         raise RigError("The pairs name bones that the rigs do not have. Pair the bones again.")
     if not settings.rate > 0 or not settings.stride >= 0:
         raise RigError("The frame rate must be larger than zero, and the stride must not be negative.")
+
+
+class _Places(NamedTuple):
+    """Where the first bones of segments that hang on nothing are, (f, t, 3) each, and how far bones slide, (f, 3) each.
+
+    Slides are in the axes that what holds a bone has at rest.
+    """
+
+    tops: dict[int, Floats]
+    slides: dict[int, Floats]
+
+    def lifted(self, lifts: Floats, up: Floats) -> _Places:
+        """Lift the body as a whole by so much, (f,)."""
+        return self._replace(tops={part: path + lifts[:, None, None] * up for part, path in self.tops.items()})
 
 
 class _Body:
@@ -193,6 +216,13 @@ class _Body:
         rests = posed_rotations(pairing, self.segments, self.limbs, trees, ups[1])
         self._chains = fitted_chains(pairing, rests, self.segments, trees, self._holders, arms=_arms(self.limbs))
         self.scale = self._scale()
+        # How far bones slide on what they hang on, (f, 3) each.
+        self._slid = {
+            bone: self._unit(part) * slid @ pairing.upright.T
+            for part, slid in self.segments.sliding_in(motion).items()
+            for bone in self.tops[part]
+        }
+        self.placed[list(self._slid)] = True
         self._rise = 0.0
         # In the pose in which the source rests the target's feet are to be as high as they are in its own.
         if self.feet:
@@ -200,11 +230,18 @@ class _Body:
             rises = [(limb.target_points(resting)[0] - limb.target_points(target))[0] @ ups[1] for limb in self.feet]
             self._rise = float(np.mean(rises))
 
+    def fix(self, connected: Bools) -> Bools:
+        """Let bones (b,) not slide on what they hang on; and tell which of them would."""
+        would = marked(np.array([bone for bone in self._slid if connected[bone]], np.int64), len(self.target))
+        self._slid = {bone: way for bone, way in self._slid.items() if not would[bone]}
+        self.placed[would] = False
+        return would
+
     def rest_pose(self) -> Motion:
         """Pose the target as the source rests."""
         heads = self.source.heads[None]
         turns = self.turns(np.tile(np.eye(3), (1, len(self.source), 1, 1)))
-        return self.posed(turns, self.paths(heads, turns, 1.0))
+        return self.posed(turns, _Places(self.paths(heads, turns, 1.0), {}))
 
     def turns(self, source_turns: Floats) -> Floats:
         """How the target's bones with partners turn, (f, b, 3, 3); the others are left at rest."""
@@ -215,13 +252,12 @@ class _Body:
 
     def _scale(self) -> float:
         """How many times as long the target's legs are; without legs, how many times as large the skeleton is."""
-        feet = self.feet
-        lengths: tuple[float, ...] = sum(limb.source_length for limb in feet), sum(limb.target_length for limb in feet)
-        if not feet:
-            points = self.source.heads[self.pairing.sources], self.target.heads[self.pairing.targets]
-            lengths = tuple(float(np.linalg.norm(each - each.mean(axis=0))) for each in points)
-        ratio = lengths[1] / lengths[0] if min(lengths) > 0 else 1.0
-        return float(ratio) if _RATIOS[0] < ratio < _RATIOS[1] else 1.0
+        if self.feet:
+            before, after = (sum(getattr(limb, of) for limb in self.feet) for of in ("source_length", "target_length"))
+        else:
+            pairs = self.source.heads[self.pairing.sources], self.target.heads[self.pairing.targets]
+            before, after = (_spread(heads) for heads in pairs)
+        return _ratio(before, after) or 1.0
 
     def paths(self, source_heads: Floats, turns: Floats, stride: float) -> dict[int, Floats]:
         """Where the first bones of the segments are that hang on nothing, (f, t, 3) each."""
@@ -237,11 +273,28 @@ class _Body:
             paths[int(part)] = (joint + way)[:, None] + np.einsum("ftij,tj->fti", turns[:, self.tops[part]], offsets)
         return paths
 
-    def posed(self, turns: Floats, paths: dict[int, Floats]) -> Motion:
+    def _unit(self, part: int) -> float:
+        """How many times as far joints are apart in the target that hang where a segment does."""
+        above = int(self.segments.parents[part])
+        bones = [int(self.segments.sources[each][0]) for each in (above, *self.segments.below(above))]
+        rows = [int(np.flatnonzero(self.pairing.sources == bone)[0]) for bone in bones]
+        return _ratio(_spread(self.source.heads[bones]), _spread(self.pairing.places[rows])) or self.scale
+
+    def slides(self, turns: Floats) -> dict[int, Floats]:
+        """How far bones slide, (f, 3) each, in the axes that what holds them has at rest."""
+        found = {}
+        for bone, slid in self._slid.items():
+            held = next((up for up in ways_up(self._holders, bone) if self.moved[up]), -1)
+            found[bone] = slid if held < 0 else np.einsum("fji,fj->fi", turns[:, held], slid)
+        return found
+
+    def posed(self, turns: Floats, places: _Places) -> Motion:
         """Pose all bones: those without partners go with their parents."""
         target = self.target
         full, heads = turns.copy(), np.tile(target.heads, (len(turns), 1, 1))
-        own = {bone: path[:, number] for part, path in paths.items() for number, bone in enumerate(self.tops[part])}
+        own = {
+            bone: path[:, number] for part, path in places.tops.items() for number, bone in enumerate(self.tops[part])
+        }
         for bone in self._order:
             parent, holder = target.parents[bone], self._holders[bone]
             if not self.moved[bone] and parent >= 0:
@@ -249,12 +302,13 @@ class _Body:
             if bone in own:
                 heads[:, bone] = own[bone]
             elif holder >= 0:
-                heads[:, bone] = heads[:, holder] + full[:, holder] @ (target.heads[bone] - target.heads[holder])
+                offsets = target.heads[bone] - target.heads[holder] + places.slides.get(bone, 0.0)
+                heads[:, bone] = heads[:, holder] + (full[:, holder] @ offsets[..., None])[..., 0]
         return Motion(target, full, heads)
 
-    def bent(self, turns: Floats, paths: dict[int, Floats], limbs: list[Limb], goals: list[Floats]) -> Floats:
+    def bent(self, turns: Floats, places: _Places, limbs: list[Limb], goals: list[Floats]) -> Floats:
         """Bend limbs so that they end at goals (f, 3); what is beyond stays turned as it was."""
-        posed, result = self.posed(turns, paths), turns.copy()
+        posed, result = self.posed(turns, places), turns.copy()
         for limb, goal in zip(limbs, goals, strict=True):
             upper, lower = bent_limb(limb.joints(posed), goal)
             result[:, limb.upper] = upper[:, None] @ turns[:, limb.upper]
@@ -276,6 +330,17 @@ class _Body:
             known.update(ready)
             left = [bone for bone in left if bone not in known]
         return np.array(found, np.int64)
+
+
+def _spread(points: Floats) -> float:
+    """How far points (k, 3) are from their middle."""
+    return float(np.linalg.norm(points - points.mean(axis=0)))
+
+
+def _ratio(before: float, after: float) -> float | None:
+    """How many times as large a size is; None if that comes from rigs without extent."""
+    ratio = after / before if before > 0 else 0.0
+    return float(ratio) if _RATIOS[0] < ratio < _RATIOS[1] else None
 
 
 def _with_feet(body: _Body, motion: Motion, posed: Motion, settings: MotionSettings) -> tuple[list[Floats], Floats]:

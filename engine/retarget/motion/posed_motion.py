@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,20 +29,26 @@ class Motion:
         How each bone is turned from rest.
     heads : (f, b, 3) array of float
         Where its head is.
+    slides : (f, b, 3) array of float, optional
+        How far that is from where the bone that it hangs on takes it, with the size that this one has: what moves the
+        bone itself, as in a jaw or a stretched arm.  Nothing does if not given.
     """
 
     skeleton: Skeleton
     turns: Floats
     heads: Floats
+    slides: Floats | None = None
 
     def __post_init__(self) -> None:
         count = len(self.skeleton)
-        if self.turns.shape[1:] != (count, 3, 3) or self.heads.shape != (*self.turns.shape[:2], 3):
+        slides = self.heads if self.slides is None else self.slides
+        shapes = {self.heads.shape, slides.shape}
+        if self.turns.shape[1:] != (count, 3, 3) or shapes != {(*self.turns.shape[:2], 3)}:
             raise RigError(
                 f"The motion of {count} bones needs a rotation and a place for each of them in each pose, but got "
                 f"arrays of the shapes {self.turns.shape} and {self.heads.shape}."
             )
-        if not (np.isfinite(self.turns).all() and np.isfinite(self.heads).all()):
+        if not all(np.isfinite(values).all() for values in (self.turns, self.heads, slides)):
             raise RigError("The motion has a pose with a number that is not finite.")
 
     def __len__(self) -> int:
@@ -55,12 +62,20 @@ class Motion:
         """Where the tails of the bones are, (f, b, 3)."""
         return self.heads + np.einsum("fbij,bj->fbi", self.turns, self.skeleton.tails - self.skeleton.heads)
 
+    @classmethod
+    def joined(cls, parts: Sequence[Motion]) -> Motion:
+        """Play motions of one skeleton one after another."""
+        turns, heads = (np.concatenate([getattr(part, name) for part in parts]) for name in ("turns", "heads"))
+        slides = [np.zeros_like(part.heads) if part.slides is None else part.slides for part in parts]
+        return cls(parts[0].skeleton, turns, heads, np.concatenate(slides))
+
     def moved(self, transforms: Floats) -> Motion:
         """Move the whole skeleton in each pose by a similarity, (f, 4, 4), of which bones take the rotation."""
         linear = transforms[:, :3, :3]
         turns = nearest_rotations(linear)[:, None] @ self.turns
         heads = np.einsum("fij,fbj->fbi", linear, self.heads) + transforms[:, None, :3, 3]
-        return Motion(self.skeleton, turns, heads)
+        slides = None if self.slides is None else np.einsum("fij,fbj->fbi", linear, self.slides)
+        return Motion(self.skeleton, turns, heads, slides)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,11 +121,36 @@ def posed_motion(skeleton: Skeleton, rest: Floats, basis: Floats) -> Motion:
         parent = skeleton.parents[bone]
         own = rest[bone] @ basis[:, bone]
         posed[:, bone] = own if parent < 0 else posed[:, parent] @ (inverse[parent] @ own)
-    turns = posed[..., :3, :3] @ inverse[:, :3, :3]
+    return motion_of_matrices(skeleton, rest, posed)
+
+
+def motion_of_matrices(skeleton: Skeleton, rest: Floats, posed: Floats) -> Motion:
+    """Take poses from the transforms of the bones.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        The bones at rest, b.
+    rest : (b, 4, 4) array of float
+        Axes and head of each at rest.
+    posed : (f, b, 4, 4) array of float
+        The same in each pose, with its size.
+
+    Returns
+    -------
+    Motion
+        The poses.
+    """
+    inverse = np.linalg.inv(rest)
+    turns, heads = posed[..., :3, :3] @ inverse[:, :3, :3], posed[..., :3, 3].copy()
+    slides, hanging = np.zeros_like(heads), np.flatnonzero(skeleton.parents >= 0)
+    parents = skeleton.parents[hanging]
+    offsets = skeleton.heads[hanging] - skeleton.heads[parents]
+    slides[:, hanging] = heads[:, hanging] - heads[:, parents] - np.einsum("fbij,bj->fbi", turns[:, parents], offsets)
     scaled = np.abs(np.linalg.norm(turns, axis=-2) - 1).max(axis=-1) > _SCALED
     if scaled.any():
         turns[scaled] = nearest_rotations(turns[scaled])
-    return Motion(skeleton, turns, posed[..., :3, 3].copy())
+    return Motion(skeleton, turns, heads, slides)
 
 
 def local_transforms(motion: Motion, axes: Floats, inherits: Bools | None = None) -> LocalTransforms:

@@ -20,6 +20,10 @@ other places."""
 _FIXED = 0.01
 """How far a joint may move against a bone that holds it, in units of the rig's extent."""
 
+_SLIDING = 1e-3
+"""How far a joint slides on what it hangs on to be moved by itself, in units of the rig's extent: two millimetres of a
+person, of whose face a lip moves by five and a lid by ten."""
+
 
 @dataclass(frozen=True, eq=False)
 class Segments:
@@ -167,6 +171,28 @@ class Segments:
             if np.abs(np.einsum("fji,fj->fi", motion.turns[:, bone], away) - offset).max() > reach:
                 parents[part] = -1
         return replace(self, parents=parents)
+
+    def sliding_in(self, motion: Motion) -> dict[int, Floats]:
+        """Find what is moved on what it hangs on, such as a jaw or an arm that is stretched, and how far, (f, 3) each.
+
+        What moves within a segment moves what hangs on that as well.  A joint that is elsewhere than at rest all the
+        time is how the body is built.
+        """
+        found: dict[int, Floats] = {}
+        if motion.slides is None:
+            return found
+        least = _SLIDING * np.ptp(motion.skeleton.heads, axis=0).max()
+        for part in np.flatnonzero((self.parents >= 0) & self.carried).tolist():
+            first, above = int(self.sources[part][0]), self.sources[self.parents[part]]
+            way = [first, *motion.skeleton.above(first)]
+            met = np.flatnonzero(np.isin(way, above))
+            if not len(met):
+                continue
+            slid = motion.slides[:, way[: met[-1]]].sum(axis=1)
+            seen = np.einsum("fji,fj->fi", motion.turns[:, way[met[0]]], slid)
+            if (np.ptp(seen, axis=0) if len(seen) > 1 else np.abs(seen)).max() > least:
+                found[part] = slid
+        return found
 
 
 def _in_order(tree: Skeleton, bones: Ints) -> Ints:

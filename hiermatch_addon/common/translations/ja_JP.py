@@ -1211,6 +1211,11 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0}はオブジェクト"{1}"のサイズも変えます。それは移されませんでした。'
     ),
+    "Bones that are connected do not move away from what they hang on, as those of the source do: {0} of "
+    '"{1}". To carry that as well disconnect them (Armature > Parent > Disconnect Bone in Edit Mode).': (
+        '接続されたボーンは、ソースのボーンのように親から離れて動きません: "{1}"の{0}。それも移すには、'
+        "接続を解除してください(編集モードでアーマチュア > ペアレント > ボーンを切り離す)。"
+    ),
     'The sizes that bones of "{0}" get were left out: {1}.': '"{0}"のボーンのサイズの変化は移されませんでした: {1}。',
     'The action "{0}" was deleted meanwhile. Nothing was written.': (
         'アクション"{0}"がその間に削除されました。何も書き込まれていません。'

@@ -1011,6 +1011,11 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0} 还会改变物体 "{1}" 的大小。这部分被略去。'
     ),
+    "Bones that are connected do not move away from what they hang on, as those of the source do: {0} of "
+    '"{1}". To carry that as well disconnect them (Armature > Parent > Disconnect Bone in Edit Mode).': (
+        '相连的骨骼不会像源的骨骼那样离开父级移动："{1}" 的 {0}。若也要传递这种移动，请断开它们'
+        "（编辑模式下骨架 > 父级 > 断开骨骼）。"
+    ),
     'The sizes that bones of "{0}" get were left out: {1}.': '"{0}" 的骨骼大小变化被略去：{1}。',
     'The action "{0}" was deleted meanwhile. Nothing was written.': '动作 "{0}" 在此期间被删除。未写入任何内容。',
     'Source and Target are both "{0}". Choose two different armatures.': '源和目标都是 "{0}"。请选择两个不同的骨架。',

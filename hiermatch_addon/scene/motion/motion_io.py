@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from mathutils import Matrix
 
-from ....engine import Motion, posed_motion, rotation_matrices
+from ....engine import Motion, motion_of_matrices, posed_motion, rotation_matrices
 from ..armatures import armature_of
 from .action_curves import (
     CurveMaker,
@@ -261,11 +261,7 @@ def evaluated_frames(action: bpy.types.Action, armature: bpy.types.Object, frame
 
 def _motion_of(armature: bpy.types.Object, posed: NDArray[np.float64]) -> Motion:
     """Make a motion of the matrices of the bones (f, b, 4, 4) in the armature's space."""
-    skeleton, rest = own_skeleton(armature), rest_matrices(armature)
-    # As if nothing hung on anything: each matrix is against its rest.
-    loose = type(skeleton)(np.full(len(skeleton), -1), skeleton.heads, skeleton.tails)
-    motion = posed_motion(loose, rest, np.linalg.inv(rest) @ posed)
-    return Motion(skeleton, motion.turns, motion.heads)
+    return motion_of_matrices(own_skeleton(armature), rest_matrices(armature), posed)
 
 
 def write_action(

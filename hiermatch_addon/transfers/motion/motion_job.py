@@ -125,6 +125,7 @@ class MotionJob(SteppedJob):
         self._found: dict[tuple[str, str], list[BoneKeys]] = {}
         self._poses: dict[str, TransferredMotion] = {}
         self._steered: dict[str, SteeredRig] = {}
+        self._fixed: dict[str, list[str]] = {}
         super().__init__()
 
     def close(self) -> None:
@@ -173,6 +174,12 @@ class MotionJob(SteppedJob):
             remarks = () if steered is None else steered.finished(rig)
             played = not actions or (self._plan.assign and len(actions) == 1)
             notes = _notes(source, rig, actions, moved, played=played and steered is None)
+            if fixed := self._fixed.get(rig.name):
+                notes.append(
+                    "Bones that are connected do not move away from what they hang on, as those of the source do: "
+                    f'{listed(fixed)} of "{rig.name}". To carry that as well disconnect them (Armature > Parent > '
+                    "Disconnect Bone in Edit Mode)."
+                )
             if lost := lost_bones(cast("bpy.types.Scene", context.scene), source, rig):
                 notes.append(
                     f"Pairs of bones that are gone, or called otherwise by now, were left out: {listed(lost)}. Pair "
@@ -235,6 +242,7 @@ class MotionJob(SteppedJob):
         for link, pairing in zip(self._targets, pairings, strict=True):
             steps = _transfer_steps(motion, turn, pairing, link, MotionSettings(hands=self._plan.settings.hands))
             found = self._poses[link.name] = yield from steps
+            self._keep_fixed(link, found)
             steered = yield from steered_steps(link, found)
             if steered is not None:
                 self._steered[link.name] = steered
@@ -258,8 +266,8 @@ class MotionJob(SteppedJob):
         for number, (link, pairing) in enumerate(zip(self._targets, pairings, strict=True)):
             start, end = (0.5 + 0.5 * (number + step) / count for step in range(2))
             found = yield from within(_transfer_steps(motion, turn, pairing, link, settings), start, end)
-            rigs = found_again(self._source), found_again(link)
-            channels = bone_channels(rigs[1], found)
+            self._keep_fixed(link, found)
+            channels = bone_channels(found_again(link), found)
             if link.name not in self._steered:
                 steered = yield from steered_steps(link, found)
                 if steered is not None:
@@ -274,6 +282,12 @@ class MotionJob(SteppedJob):
                 tolerance = None if self._plan.keys == "ALL" else self._plan.tolerance
                 made = baked_keys(channels, frames, tolerance, keys, movers)
             self._found[link.name, name] = made
+
+    def _keep_fixed(self, link: SideReference, found: TransferredMotion) -> None:
+        """Keep the names of bones that cannot be moved as those of the source are."""
+        names = [bone.name for bone in armature_of(found_again(link)).bones]
+        known = self._fixed.setdefault(link.name, [])
+        known += [names[number] for number in np.flatnonzero(found.fixed) if names[number] not in known]
 
     def _is_sparse(self, keys: ActionKeys, count: float) -> bool:
         """Tell whether the target gets keys where the source has them."""
@@ -296,9 +310,7 @@ class MotionJob(SteppedJob):
                 parts.append(evaluated_frames(action, rig, some))
             else:
                 parts.append(posed_at(action, rig, some))
-        turns, heads = (np.concatenate([getattr(part, what) for part in parts]) for what in ("turns", "heads"))
-        motion = Motion(parts[0].skeleton, turns, heads)
-        return with_object(motion, self._action(name), found_again(self._source), frames, first)
+        return with_object(Motion.joined(parts), self._action(name), found_again(self._source), frames, first)
 
 
 def _transfer_steps(
@@ -307,7 +319,9 @@ def _transfer_steps(
     """Compute the motion of one target from that of a source which is turned so in the world, (3, 3)."""
     rig = found_again(link)
     ups = np.array([turn[2], object_rotation(rig)[2]])  # the world's z axis in their spaces
-    return (yield from transfer_motion_steps(motion, pairing, own_skeleton(rig), settings, ups=ups))
+    connected = np.array([bone.use_connect for bone in armature_of(rig).bones], bool)
+    steps = transfer_motion_steps(motion, pairing, own_skeleton(rig), settings, ups=ups, connected=connected)
+    return (yield from steps)
 
 
 def _said(made: dict[str, bpy.types.Action]) -> str:

@@ -46,6 +46,39 @@ def test_the_target_moves_as_the_source_does(options, most):
     assert source.animation_data.action.name == "Wave"
 
 
+@pytest.mark.parametrize("constrained", [False, True])
+def test_bones_that_are_moved_on_what_they_hang_on_are_moved_so(capfd, constrained):
+    """Jaws, lids and stretched arms of many rigs are."""
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed", rolls=0.7)
+    add_action(source)
+    head = source.pose.bones["head"]
+    for frame, way in ((1, 0.0), (11, 0.1), (21, -0.05)):
+        head.location = (way, way, 0.3 * way)
+        head.keyframe_insert("location", frame=frame)
+    if constrained:
+        source.pose.bones["neck"].constraints.new("LIMIT_ROTATION")
+    assert carry(source="A", target="B", action="Wave") == {"FINISHED"}
+    assert worst(source, target, (1, 11, 21)) < 2e-3
+    name = made.names[next(number for number, origin in enumerate(made.origins) if "head" in origin)]
+    path = f'pose.bones["{name}"].location'
+    assert (path, 0) in curves_of(target.animation_data.action)
+    # Retarget Pose does so, too, and a bone that is connected cannot be moved.
+    said = f'do not move away from what they hang on, as those of the source do: "{name}" of "B"'
+    assert said not in capfd.readouterr().out
+    bpy.context.scene.frame_set(11)
+    pose(source="A", target="B")
+    assert np.linalg.norm(target.pose.bones[name].location) > 0.1
+    target.animation_data_clear()
+    bpy.context.view_layer.objects.active = target
+    bpy.ops.object.mode_set(mode="EDIT")
+    target.data.edit_bones[name].use_connect = True
+    bpy.ops.object.mode_set(mode="OBJECT")
+    carry(source="A", target="B", action="Wave")
+    assert (path, 0) not in curves_of(target.animation_data.action)
+    assert said in capfd.readouterr().out
+
+
 def test_what_constraints_do_to_the_source_is_carried_too():
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed")

@@ -61,6 +61,64 @@ def test_a_target_of_other_size_that_faces_elsewhere_goes_its_way(someone, paire
     assert np.allclose(found.motion.turns, turn @ wild.turns @ turn.T, atol=1e-6)
 
 
+@pytest.fixture(scope="module")
+def stretchy(someone):
+    """Random turns, and a head, a forearm and a toe that are moved on what they hang on."""
+    random = np.random.default_rng(2)
+    angles = {name: 0.3 * random.normal(size=(4, 3)) for name in someone.rig.names}
+    slides = {name: 0.1 * random.normal(size=(4, 3)) for name in ("head", "forearm.L", "toe.R")}
+    return moved(someone.rig, angles, random.normal(size=(4, 3)), slides)
+
+
+def test_what_is_moved_on_what_it_hangs_on_is_moved_so(someone, paired, stretchy):
+    rig = renamed(someone.rig)
+    found = transfer_motion(stretchy, paired(someone, rig), rig.skeleton)
+    assert error(someone, someone, rig, stretchy, found) < 1e-6
+    assert np.allclose(np.sort(found.motion.heads, axis=1), np.sort(stretchy.heads, axis=1))
+    origins = [rig.origins[bone] for bone in np.flatnonzero(found.placed & ~found.rooted)]
+    assert set(origins) == {frozenset([name]) for name in ("head", "forearm.L", "toe.R")}
+    assert not found.fixed.any()
+    connected = np.array([origin == {"head"} for origin in rig.origins])
+    held = transfer_motion(stretchy, paired(someone, rig), rig.skeleton, connected=connected)
+    assert np.array_equal(held.fixed, connected)
+    assert np.array_equal(held.placed, found.placed & ~connected)
+    assert np.allclose(held.motion.heads[:, ~connected], found.motion.heads[:, ~connected])
+    neck = rig.skeleton.parents[connected]
+    spans = [each.heads[:, connected] - each.heads[:, neck] for each in (held.motion, found.motion)]
+    rest = np.linalg.norm(rig.skeleton.heads[connected] - rig.skeleton.heads[neck])
+    assert np.allclose(np.linalg.norm(spans[0], axis=-1), rest)
+    assert np.ptp(np.linalg.norm(spans[1], axis=-1)) > 0.01
+
+
+@pytest.mark.parametrize(("make", "most"), [(fine_rig, 0.004), (coarse_rig, 0.012)])
+def test_with_more_or_fewer_bones_what_slides_is_nearly_there(someone, paired, stretchy, make, most):
+    rig = make(someone)
+    still = Motion(stretchy.skeleton, stretchy.turns, stretchy.heads)
+    errors = [
+        error(someone, someone, rig, stretchy, transfer_motion(motion, paired(someone, rig), rig.skeleton))
+        for motion in (stretchy, still)
+    ]
+    assert errors[0] < most
+    assert errors[1] > errors[0] + 0.005
+
+
+def test_what_slides_does_so_in_units_of_what_is_around(someone, stretchy):
+    """A jaw goes as far as the head is large, however long the legs are."""
+    tree, numbers = someone.rig.skeleton, np.arange(len(someone.rig.names))
+    knees = [0.0, 0.92, 2.0], [0.0, 1.84, 2.92]  # heights of soles, hips, heads
+    ends = [np.c_[points[:, :2], np.interp(points[:, 2], *knees)] for points in (tree.heads, tree.tails)]
+    target, same = Skeleton(tree.parents, *ends), np.tile(np.eye(3), (len(tree), 1, 1))
+    pairing = BonePairing(numbers, numbers, np.ones(len(tree)), same, target.heads, np.eye(3))
+    found = transfer_motion(stretchy, pairing, target, MotionSettings(feet=True, in_place=True))
+    assert found.scale > 1.5
+    for bone, above in (("forearm.L", "upper_arm.L"), ("head", "neck")):
+        ways = [
+            each.heads[:, someone.rig.names.index(bone)] - each.heads[:, someone.rig.names.index(above)]
+            for each in (found.motion, stretchy)
+        ]
+        assert np.allclose(*ways)
+
+
 def slide(heads, standing):
     """How far feet move at most while they stand."""
     starts = np.flatnonzero(np.append(True, standing[1:] != standing[:-1]))

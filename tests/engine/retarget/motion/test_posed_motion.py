@@ -33,6 +33,9 @@ def test_local_transforms_are_the_inverse_of_posing(limb):
     local = local_transforms(motion, rest[:, :3, :3])
     assert np.allclose(local.rotations, basis[..., :3, :3])
     assert np.allclose(local.locations, basis[..., :3, 3])
+    assert not motion.slides[:, 0].any()
+    ways = np.einsum("fij,fj->fi", motion.turns[:, 0] @ rest[1, :3, :3], basis[:, 1, :3, 3])
+    assert np.allclose(motion.slides[:, 1], ways)
 
 
 def test_a_bone_that_does_not_turn_with_its_parent_stores_all_of_its_turn(limb):
@@ -50,6 +53,7 @@ def test_scale_moves_children_but_turns_nothing(limb):
     motion = posed_motion(skeleton, rest, basis)
     assert np.allclose(motion.turns, np.eye(3))
     assert np.allclose(motion.heads[0] - motion.heads[0, 0], 2 * (skeleton.heads - skeleton.heads[0]))
+    assert np.allclose(motion.slides, 0)
 
 
 def test_tails_are_where_the_children_of_connected_bones_are(limb):
@@ -64,17 +68,32 @@ def test_tails_are_where_the_children_of_connected_bones_are(limb):
 def test_what_is_no_motion_of_the_skeleton_is_refused(limb):
     with pytest.raises(RigError, match="needs a rotation and a place"):
         Motion(limb[0], np.tile(np.eye(3), (2, 4, 1, 1)), np.zeros((2, 4, 3)))
-    with pytest.raises(RigError, match="not finite"):
-        Motion(limb[0], np.tile(np.eye(3), (2, 3, 1, 1)), np.full((2, 3, 3), np.nan))
+    turns, heads = np.tile(np.eye(3), (2, 3, 1, 1)), np.zeros((2, 3, 3))
+    with pytest.raises(RigError, match="needs a rotation and a place"):
+        Motion(limb[0], turns, heads, heads[:, :2])
+    for places in ((heads + np.nan, None), (heads, heads + np.nan)):
+        with pytest.raises(RigError, match="not finite"):
+            Motion(limb[0], turns, *places)
 
 
 def test_moved_as_a_whole_ends_of_bones_move_with_it_and_bones_turn():
     skeleton = Skeleton(np.array([-1, 0]), np.array([[0.0, 0, 0], [0, 0, 1]]), np.array([[0.0, 0, 1], [0, 0, 3]]))
     turns = np.stack([[np.eye(3), rotation([0, 1, 0], 0.4)], [rotation([1, 0, 0], 0.2)] * 2])
-    motion = Motion(skeleton, turns, np.tile(skeleton.heads, (2, 1, 1)))
+    slides = np.tile([[0.0, 0, 0], [0.1, 0, 0]], (2, 1, 1))
+    motion = Motion(skeleton, turns, np.tile(skeleton.heads, (2, 1, 1)), slides)
     transforms = np.tile(np.eye(4), (2, 1, 1))
     transforms[1, :3, :3], transforms[1, :3, 3] = 2 * rotation([0, 0, 1], 0.7), (1, 2, 3)
     moved = motion.moved(transforms)
     np.testing.assert_allclose(moved.turns[0], motion.turns[0])
     np.testing.assert_allclose(moved.heads[1], motion.heads[1] @ transforms[1, :3, :3].T + (1, 2, 3))
     np.testing.assert_allclose(moved.turns[1], rotation([0, 0, 1], 0.7) @ motion.turns[1], atol=1e-12)
+    np.testing.assert_allclose(moved.slides[1], slides[1] @ transforms[1, :3, :3].T)
+
+
+def test_motions_are_joined(limb):
+    skeleton, rest = limb
+    motion = posed_motion(skeleton, rest, basis_of(np.random.default_rng(3)))
+    still = Motion(skeleton, motion.turns[:1], motion.heads[:1])
+    joined = Motion.joined([motion, still])
+    assert np.array_equal(joined.heads, motion.heads[[0, 1, 2, 3, 0]])
+    assert np.array_equal(joined.slides, [*motion.slides, np.zeros((3, 3))])

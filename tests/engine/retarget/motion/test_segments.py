@@ -5,6 +5,7 @@ import numpy as np
 
 from engine import Motion, Skeleton
 from engine.retarget.motion.segments import Segments
+from tests.shapes import rotation
 
 
 def tree(parents):
@@ -67,6 +68,30 @@ def test_hips_that_move_above_a_root_have_a_place_of_their_own():
     stretched = places.copy()
     stretched[:, 3, 2] += np.linspace(0, 1, 5)  # a part that carries little stays where it hangs
     assert segments.freed_in(Motion(bones, turns, stretched)).parents.tolist() == parents
+
+
+def test_what_is_moved_on_what_it_hangs_on_slides():
+    heads = np.array([[0.0, 0, number] for number in range(5)])
+    bones = Skeleton(np.arange(5) - 1, heads, heads + np.array([0, 0, 1]))
+    segments = Segments.of(np.array([0, 1, 2, 3, 4]), np.array([0, 1, 1, 1, 2]), bones, tree([-1, 0, 1]))
+    turns = np.tile(rotation([1, 0, 0], 0.3), (5, 5, 1, 1))
+    places, none = np.tile(heads, (5, 1, 1)), np.zeros((5, 5, 3))
+    assert not segments.sliding_in(Motion(bones, turns, places))
+    assert not segments.sliding_in(Motion(bones, turns, places, none))
+    slides, way = none.copy(), np.linspace(0, 1, 5)[:, None] * [0, 0, 0.5]
+    slides[:, 4] = way
+    found = segments.sliding_in(Motion(bones, turns, places, slides))
+    assert list(found) == [2]
+    assert np.allclose(found[2], way)
+    # What slides within three bones that stand for one moves what hangs on that, and their first moves that.
+    slides[:, 1], slides[:, 2], slides[:, 3] = -way, 2 * way, 3 * way
+    found = segments.sliding_in(Motion(bones, turns, places, slides))
+    assert np.allclose(found[1], -way)
+    assert np.allclose(found[2], 6 * way)
+    # A rig that is built otherwise than its rest says, and rounding.
+    for still in (np.full((5, 5, 3), 0.2), 1e-6 * slides):
+        assert not segments.sliding_in(Motion(bones, turns, places, still))
+    assert list(segments.sliding_in(Motion(bones, turns[:1], places[:1], slides[-1:]))) == [1, 2]
 
 
 def test_without_pairs_there_are_none():
