@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
+from mathutils import Matrix
 
 from ..common.phrases import listed
 from .armatures import armature_modifier, armature_of, find_armature, moving_armatures
@@ -17,7 +18,17 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = ["bind", "hand_over", "is_made", "made_rig", "mark_made", "replaced_remarks", "unbind", "worn_with"]
+__all__ = [
+    "bind",
+    "hand_over",
+    "hang_in_place",
+    "is_made",
+    "made_rig",
+    "mark_made",
+    "replaced_remarks",
+    "unbind",
+    "worn_with",
+]
 
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
@@ -49,12 +60,42 @@ def made_rig(target: Side, source: bpy.types.Object) -> bpy.types.Object | None:
     return None
 
 
+def hang_in_place(armature: bpy.types.Object, target: Side, kept: Container[bpy.types.Object] | None = None) -> None:
+    """Let a new armature hang on what all of a side hangs on, such as the empty above an imported character.
+
+    So who moves that moves the armature with the side.  It stays where it is.
+
+    Parameters
+    ----------
+    armature : bpy.types.Object
+        The new armature, which hangs on nothing.
+    target : bpy.types.Object or Character
+        What it is to move.
+    kept : container of bpy.types.Object or None
+        Armatures that go on moving the target as well; in the place of all others comes the new one, see `unbind`.
+        None for all.
+    """
+    parts = parts_of(target)
+    above = [[one for one in _above(part) if one not in parts] for part in parts]
+    for other in above[0]:
+        if _is_replaced(other, armature, kept) or any(other not in others for others in above):
+            continue
+        if other.type == "ARMATURE":
+            return
+        stands = armature.matrix_world.copy()
+        armature.parent, armature.parent_type = other, "OBJECT"
+        armature.matrix_parent_inverse = other.matrix_world.inverted_safe()
+        armature.matrix_world = stands
+        return
+
+
 def bind(
     target: Side, armature: bpy.types.Object, source: Side, kept: Container[bpy.types.Object] | None = None
 ) -> list[str]:
     """Let an armature move all of a side with modifiers set as the source's, and be the parent if the source's is.
 
-    The target stays where it is.  Other modifiers and another parent stay.
+    The target stays where it is.  Other modifiers stay, and so does another parent, but for empties that stand still
+    and hold the armature as well.
 
     Parameters
     ----------
@@ -84,11 +125,10 @@ def bind(
                 others.setdefault(other.name, []).append(part.name)
         if not parented or part.parent in (armature, *parts_of(target)) or _is_replaced(part.parent, armature, kept):
             continue
-        if part.parent is not None:
+        if part.parent is not None and not _is_held_by(armature, part):
             parents.setdefault(part.parent.name, []).append(part.name)
             continue
-        part.parent = armature
-        part.matrix_parent_inverse = armature.matrix_world.inverted_safe()
+        _hang(part, armature)
     notes = []
     for rig, names in others.items():
         notes.append(
@@ -145,10 +185,7 @@ def unbind(target: Side, armature: bpy.types.Object, kept: Container[bpy.types.O
                 found.append(cast("bpy.types.Object", other))
         if _is_replaced(part.parent, armature, kept):
             found.append(cast("bpy.types.Object", part.parent))
-            stands = rest_matrix(part) or part.matrix_world.copy()
-            part.parent, part.parent_type = armature, "OBJECT"
-            part.matrix_parent_inverse = armature.matrix_world.inverted_safe()
-            part.matrix_basis = stands
+            _hang(part, armature)
     unique = list(dict.fromkeys(found))
     for other in unique:
         moved = _moved_by(other)
@@ -176,6 +213,41 @@ def replaced_remarks(target: Side, armatures: Iterable[bpy.types.Object]) -> lis
 def worn_with(armature: bpy.types.Object) -> list[str]:
     """Return the names of what was fitted to a body, and is moved by an armature."""
     return [one.name for one in _moved_by(armature) if FITTED_TO in cast("Any", one)]
+
+
+def _above(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return what an object hangs on as a whole, what that hangs on, and so on, up to what hangs on a part of one."""
+    found: list[bpy.types.Object] = []
+    while obj.parent is not None and (obj.parent_type == "OBJECT" or obj.parent.type == "ARMATURE"):
+        obj = obj.parent
+        found.append(obj)
+    return found
+
+
+def _is_held_by(armature: bpy.types.Object, part: bpy.types.Object) -> bool:
+    """Tell whether a part hangs on what an armature hangs on, with nothing between but empties that stand still."""
+    for other in _above(part):
+        if other == armature.parent:
+            return True
+        if other.type != "EMPTY" or other.animation_data is not None or len(other.constraints):
+            return False
+    return False
+
+
+def _hang(part: bpy.types.Object, armature: bpy.types.Object) -> None:
+    """Hang a part on an armature as a whole, where it stands while what it hung on is at rest.
+
+    Its own location, turn and scale stay, which could not say how it stands where it was sheared by what it hung on.
+    """
+    rest = rest_matrix(part)
+    if rest is not None:
+        place = rest @ part.matrix_basis.inverted_safe()
+    elif part.parent is not None:
+        place = part.parent.matrix_world @ part.matrix_parent_inverse
+    else:
+        place = Matrix.Identity(4)
+    part.parent, part.parent_type = armature, "OBJECT"
+    part.matrix_parent_inverse = armature.matrix_world.inverted_safe() @ place
 
 
 def _moved_by(armature: bpy.types.Object) -> list[bpy.types.Object]:

@@ -27,7 +27,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
-from ..scene.binding import bind, replaced_remarks, unbind
+from ..scene.binding import bind, hang_in_place, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
 from ..scene.character import parts_of, read_surface, vertex_ranges
 from ..scene.deform_layer import check_weights_writable
@@ -163,6 +163,7 @@ class MyRigTransfer(Transfer):
         done = [f'the rig "{armature.name}" with {counted(len(self._names), "bone")}']
         if self._weights is not None:
             done.append(self._write_weights(target))
+            hang_in_place(armature, target, ())
             notes += bind(target, armature, source, ())
             self._remarks += replaced_remarks(target, unbind(target, armature, ()))
         else:
