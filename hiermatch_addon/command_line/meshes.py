@@ -181,6 +181,9 @@ def _import(path: Path) -> list[bpy.types.Object]:
     except RuntimeError as error:
         raise ObjectError(f'"{path}" cannot be read: {said_by(error)}') from error
     added = [obj for obj in view_layer_of(bpy.context).objects if obj not in before]
+    poses = [obj.pose for obj in added if obj.type == "ARMATURE" and obj.pose is not None]
+    shapes = {bone.custom_shape for pose in poses for bone in pose.bones}
+    added = [obj for obj in added if obj not in shapes]
     return [obj for obj in added if obj.type == "ARMATURE" or (obj.type == "MESH" and len(mesh_of(obj).polygons))]
 
 

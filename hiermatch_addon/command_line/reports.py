@@ -13,8 +13,10 @@ import bpy
 
 from ...engine import HierMatchError
 from ..common.access import mesh_of
+from ..common.errors import ObjectError
 from ..common.file_writing import check_place, write_whole
 from ..scene.character import parts_of
+from ..storage.match_file import SUFFIXES
 from .command import ExitCode
 from .console import Console, interruptible
 
@@ -187,13 +189,21 @@ def run_reported(
         Where to write.
     work : callable
         Does it, and fills the report.
+
+    Raises
+    ------
+    ObjectError
+        If the report would be written over a file that is read.
     """
+    _check_kept([], [] if parsed.report in {None, "-"} else [Path(parsed.report)], inputs)
     report = Report(parsed.command, parsed.report_key, parsed.least_confidence)
     report.inputs = [file_state(path.absolute()) for path in dict.fromkeys(inputs)]
     code, error = ExitCode.DONE, ""
     try:
         with interruptible() as interruption:
-            for path in _outputs(parsed, inputs):
+            outputs, others = _outputs(parsed, inputs)
+            _check_kept(outputs, others, inputs)
+            for path in (*outputs, *others):
                 check_place(path)
             work(report)
         if parsed.strict and report.doubtful:
@@ -219,11 +229,40 @@ def run_reported(
     return code
 
 
-def _outputs(parsed: argparse.Namespace, inputs: Sequence[Path]) -> list[Path]:
-    """Return the files that a command is to write."""
-    named = [*getattr(parsed, "output", ()), *(getattr(parsed, name, None) for name in ("map", "write_pairs"))]
+def _check_kept(outputs: Sequence[Path], others: Sequence[Path], inputs: Sequence[Path]) -> None:
+    """Make sure that no file is written over that is read, unless what was read gets there again.
+
+    So it does in the .blend that is opened as a whole, and of the target in its own file, by the outputs, not by
+    the `others`.
+
+    Raises
+    ------
+    ObjectError
+        If one would be.
+    """
+    opened = next((read for read in inputs if read.suffix.lower() == ".blend"), None)
+    meshes = [read for read in inputs if read.suffix.lower() not in SUFFIXES]
+    for number, path in enumerate((*outputs, *others)):
+        over = [read for read in inputs if _is_same(path, read)]
+        again = opened in over or (over == meshes[-1:] and path.suffix.lower() != ".blend")
+        if over and not (again and number < len(outputs)):
+            raise ObjectError(f'"{path}" is read as well, and would be lost. Write to another file.')
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    """Tell whether two paths lead to one file."""
+    try:
+        return path.samefile(other)
+    except OSError:
+        return path.absolute() == other.absolute()
+
+
+def _outputs(parsed: argparse.Namespace, inputs: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Return the files that a command is to write: results, and others; one of its arguments may be what it reads."""
     report = None if parsed.report in {None, "-"} else Path(parsed.report)
-    return [path for path in (*named, report) if path is not None and path not in inputs]
+    named = [*(getattr(parsed, name, None) for name in ("map", "write_pairs")), report]
+    others = [path for path in named if path is not None and not any(path is read for read in inputs)]
+    return list(getattr(parsed, "output", ())), others
 
 
 def _write(where: str | None, plain: dict[str, Any], console: Console) -> None:

@@ -187,8 +187,10 @@ def _table_rows(text: str) -> list[dict[str, str]]:
             raise ValueError(f"line {reader.line_num} has something in a column that has no name")
         rows.append({name: cell for name, cell in zip(names, cells, strict=True) if name})
     for name in ("source", "target"):
-        if rows and name not in names:
-            raise ValueError(f'it has no column "{name}"')
+        if names and name not in names:
+            raise ValueError(
+                f'it has no column "{name}". Its first line has to name them, such as source,target,output'
+            )
     for name in filter(None, names):
         if names.count(name) > 1:
             raise ValueError(f'it has several columns "{name}"')

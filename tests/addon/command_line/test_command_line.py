@@ -197,6 +197,39 @@ def test_outputs_that_cannot_be_written_are_told_before_the_work(pair, tmp_path,
     assert not (theirs / "new").exists()
 
 
+@pytest.mark.parametrize(
+    ("arguments", "is_lost"),
+    [
+        ("Source.obj Target.obj --output=Source.obj", True),
+        ("Source.obj Target.obj --output=./Target.obj", False),
+        ("Source.obj Target.obj --report=Target.obj", True),
+        ("Target.obj Target.obj --output=Target.obj", True),
+        ("pair.blend Target.obj --output=pair.blend", False),
+        ("pair.blend other.blend --output=other.blend", True),
+        ("Source.obj pair.blend --output=pair.blend", False),
+        ("pair.blend pair.blend --report=pair.blend", True),
+    ],
+)
+def test_nothing_is_written_over_what_is_read(arguments, is_lost, tmp_path, capsys, monkeypatch):
+    def stop(*_arguments):
+        raise ObjectError("Far enough.")
+
+    for name in ("Source.obj", "Target.obj", "pair.blend", "other.blend"):
+        (tmp_path / name).write_text(name)
+    monkeypatch.setattr(match, "load_pair", stop)
+    monkeypatch.chdir(tmp_path)
+    report = "" if "report" in arguments else " --report=report.json"
+    assert main(f"match {arguments}{report}".split()) == 1
+    assert not report or report_of("report.json")["status"] == "failed"
+    Path("report.json").unlink(missing_ok=True)
+    said = capsys.readouterr().err
+    assert ("is read as well, and would be lost" in said) == is_lost
+    assert ("Far enough" in said) == (not is_lost)
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {
+        name: name for name in ("Source.obj", "Target.obj", "pair.blend", "other.blend")
+    }
+
+
 @pytest.mark.parametrize("name", ["out.blend", "out.obj", "map.npz"])
 def test_files_that_are_read_only_are_not_replaced(name, pair, tmp_path, capsys, monkeypatch):
     """As those are that a pipeline has published; who may replace all, as root may, is let be one who may not."""
@@ -371,6 +404,16 @@ def test_an_import_of_a_character_is_taken_as_a_whole(tmp_path):
     assert "holds a character of 2 meshes" in notes[0]
     (one,), _ = load_meshes([MeshArgument(tmp_path / "character.glb")], whole=False)
     assert one in bpy.context.view_layer.objects.values()
+
+
+def test_what_an_importer_shows_bones_by_is_no_mesh_of_the_file(tmp_path):
+    source, _ = add_rigged(resolution=4)
+    save(tmp_path / "one.glb", source)
+    (side,), notes = load_meshes([MeshArgument(tmp_path / "one.glb")])
+    assert side.name == "Source"
+    assert not notes
+    with pytest.raises(ObjectError, match=r'no mesh called "Head". It has "Source"\.$'):
+        load_meshes([MeshArgument(tmp_path / "one.glb", "Head")])
 
 
 def test_every_option_of_the_operators_is_there():

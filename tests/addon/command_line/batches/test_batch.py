@@ -303,6 +303,7 @@ def test_json_has_options_for_all(tmp_path):
     [
         ("source,target,pionts\na.obj,b.obj,3\n", "no options: pionts"),
         ("source,output\na.obj,b.obj\n", 'no column "target"'),
+        ("a.obj,b.obj,c.blend\n", 'no column "source". Its first line has to name them'),
         ("source,target\na.obj,b.obj,c.obj\n", "another number of columns"),
         ("source,target\na.obj\n", "another number of columns"),
         ("source,target\n", "lists no pairs"),
