@@ -122,7 +122,7 @@ class _Leg:
             self.match = MatchJob(context, source, target, _with_maps(options.match), writes=written)
             self.prefix = options.match.prefix
         self.mesh = read_surface(target, context.evaluated_depsgraph_get(), use_modifiers=False)
-        self.is_half = _is_half(target)
+        self.is_half, self.hung = _is_half(target), _hung(target)
         self.state = _state(target)
         self.transfers: list[Transfer] = []
         self.left_out: list[TransferReport] = []
@@ -172,6 +172,13 @@ def _with_maps(options: JobOptions) -> JobOptions:
 def _is_half(side: Side) -> bool:
     """Tell whether a Mirror modifier completes a part of a side: meshes are matched without it."""
     return any(modifier.type == "MIRROR" and modifier.show_viewport for p in parts_of(side) for modifier in p.modifiers)
+
+
+def _hung(side: Side) -> list[str]:
+    """Return the names of the parts of a side that hang on a single bone each, such as weapons, if others do not."""
+    parts = parts_of(side)
+    names = [part.name for part in parts if part.parent is not None and part.parent_type == "BONE"]
+    return names if len(names) < len(parts) else []
 
 
 def _state(side: Side) -> tuple[str, ...]:
@@ -233,7 +240,7 @@ class TransferJob(SteppedJob):
             check_pair(view_layer, source, target, writes=(False, writes))
         self._source, self._source_name, self._source_state = SideReference.of(source), source.name, _state(source)
         self._mesh: TriangleMesh = read_surface(source, depsgraph, use_modifiers=False)
-        self._is_half = _is_half(source)
+        self._is_half, self._hung = _is_half(source), _hung(source)
         every = whole(source)
         self._whole = self._mesh if every == source else read_surface(every, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []
@@ -380,7 +387,7 @@ class TransferJob(SteppedJob):
         if leg.quality is None:
             return
         names, meshes, halves = (self._source_name, leg.name), (leg.source, leg.mesh), (self._is_half, leg.is_half)
-        advice = advice_on(leg.quality, names, meshes, halves=halves)
+        advice = advice_on(leg.quality, names, meshes, halves=halves, hung=(self._hung, leg.hung))
         verdict = leg.verdict = Verdict.of(leg.quality, advice)
         if verdict.doubtful and not (self._accepted or self._options.asks):
             raise DoubtfulMatchError(

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from ...engine import DOUBTFUL, open_ends
+from ..common.phrases import listed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ...engine import MatchQuality, TriangleMesh
     from ..storage.stored_match import Quality
 
@@ -74,8 +77,12 @@ def advice_on(
     meshes: tuple[TriangleMesh, TriangleMesh],
     *,
     halves: tuple[bool, bool] = (False, False),
+    hung: tuple[Sequence[str], Sequence[str]] = ((), ()),
 ) -> str:
     """Say what to do if one of two matched meshes looks like a garment for the other, or like a part of it.
+
+    If the match is not to be trusted, objects that hang on bones come first: they are mostly weapons, shields or bags,
+    which the other has not.
 
     Parameters
     ----------
@@ -87,6 +94,8 @@ def advice_on(
         The two.
     halves : tuple of bool
         Whether a Mirror modifier completes them, which is not applied.
+    hung : tuple of sequence of str
+        What the objects of either are called that hang on a single bone each.
 
     Returns
     -------
@@ -99,6 +108,12 @@ def advice_on(
             f'"{half}" has a Mirror modifier, and was matched as the half that it is: if the match is wrong, apply the '
             "modifier, and match again."
         )
+    for own, other in ((0, 1), (1, 0)):
+        if hung[own] and quality.confidence < DOUBTFUL:
+            return (
+                f'What hangs on single bones of "{names[own]}": {listed(hung[own])}. Hide what "{names[other]}" has '
+                "not, such as weapons, and match again."
+            )
     shares = (quality.source_coverage, quality.coverage)
     for own, other in ((0, 1), (1, 0)):
         if shares[other] >= _MISSED:

@@ -312,6 +312,9 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」にはミラーモディファイアーがあり、半分のままマッチングされました。マッチングが正しくない場合は、モディファイアーを"
         "適用して、もう一度マッチングしてください。"
     ),
+    'What hangs on single bones of "{0}": {1}. Hide what "{2}" has not, such as weapons, and match again.': (
+        "「{0}」で一つのボーンに付いているもの：{1}。武器など「{2}」にないものを隠して、もう一度マッチングしてください。"
+    ),
     '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
         "「{0}」は「{1}」の一部のように見えます。マッチングが正しくない場合は、これにない部分を「除外」で指定して、もう一度マッチングしてください。"
     ),
@@ -1246,8 +1249,8 @@ MESSAGES: Final[dict[str, str]] = {
     'The action "{0}" moves no bone of "{1}". Choose one that does.': (
         'アクション"{0}"は"{1}"のボーンを動かしません。動かすものを選んでください。'
     ),
-    'No action that moves bones of "{0}" fits the pattern "{1}".': (
-        '"{0}"のボーンを動かすアクションで、パターン"{1}"に合うものがありません。'
+    'No action that moves bones of "{0}" fits the pattern "{1}". Its actions are {2}.': (
+        '"{0}"のボーンを動かすアクションで、パターン"{1}"に合うものがありません。あるアクションは{2}です。'
     ),
     'No bones of "{0}" and "{1}" are paired. Pair their bones first.': (
         '"{0}"と"{1}"のボーンはペアになっていません。先にペアにしてください。'
@@ -1259,7 +1262,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The file holds no pairs of bones. Choose one that was exported from HierMatch.": (
         "ファイルにボーンのペアがありません。HierMatchから書き出したものを選んでください。"
     ),
-    'There is no action called "{0}".': '"{0}"というアクションはありません。',
+    'There is no action called "{0}". Those of "{1}" are {2}.': (
+        '"{0}"というアクションはありません。"{1}"のアクションは{2}です。'
+    ),
     '"{0}" has no armature. Choose an armature, or a mesh with an Armature modifier.': (
         '"{0}"にアーマチュアがありません。アーマチュアか、アーマチュアモディファイアーを持つメッシュを選んでください。'
     ),
@@ -1686,6 +1691,11 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source.": (
         "どのメッシュがターゲットなのかが決まりません。パネルで選ぶか、ソースのほかに一つ以上選択してください。"
+    ),
+    "All kinds are switched off, so there is nothing to carry over. Switch on at least one: Rig, Weights, Shape Keys, "
+    "UV Maps or Attributes.": (
+        "すべての種類がオフなので、転送するものがありません。リグ、ウェイト、シェイプキー、UVマップ、属性のうち少なくとも一つを"
+        "オンにしてください。"
     ),
     "Finding faces": "面を探しています",
     "Carrying materials and normals": "マテリアルと法線を転送しています",

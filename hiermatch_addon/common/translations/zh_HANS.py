@@ -263,6 +263,9 @@ MESSAGES: Final[dict[str, str]] = {
     "and match again.": (
         "“{0}”带有镜像修改器，是按它现有的一半进行匹配的：如果匹配有误，请应用该修改器，然后重新匹配。"
     ),
+    'What hangs on single bones of "{0}": {1}. Hide what "{2}" has not, such as weapons, and match again.': (
+        "“{0}”挂在单根骨骼上的有：{1}。请隐藏“{2}”所没有的部分，例如武器，然后重新匹配。"
+    ),
     '"{0}" looks like a part of "{1}": if the match is wrong, name what it lacks under Leave Out, and match again.': (
         "“{0}”看起来像是“{1}”的一部分：如果匹配有误，请在“排除”中指定它所没有的部分，然后重新匹配。"
     ),
@@ -1039,7 +1042,9 @@ MESSAGES: Final[dict[str, str]] = {
     'The action "{0}" moves no bone of "{1}". Choose one that does.': (
         '动作 "{0}" 不移动 "{1}" 的任何骨骼。请选择会移动的动作。'
     ),
-    'No action that moves bones of "{0}" fits the pattern "{1}".': '没有移动 "{0}" 的骨骼的动作符合模式 "{1}"。',
+    'No action that moves bones of "{0}" fits the pattern "{1}". Its actions are {2}.': (
+        '没有移动 "{0}" 的骨骼的动作符合模式 "{1}"。它的动作有 {2}。'
+    ),
     'No bones of "{0}" and "{1}" are paired. Pair their bones first.': (
         '"{0}" 和 "{1}" 没有配对的骨骼。请先配对骨骼。'
     ),
@@ -1048,7 +1053,7 @@ MESSAGES: Final[dict[str, str]] = {
     "The file holds no pairs of bones. Choose one that was exported from HierMatch.": (
         "文件中没有骨骼配对。请选择由 HierMatch 导出的文件。"
     ),
-    'There is no action called "{0}".': '没有名为 "{0}" 的动作。',
+    'There is no action called "{0}". Those of "{1}" are {2}.': '没有名为 "{0}" 的动作。"{1}" 的动作有 {2}。',
     '"{0}" has no armature. Choose an armature, or a mesh with an Armature modifier.': (
         '"{0}" 没有骨架。请选择骨架，或带有骨架修改器的网格。'
     ),
@@ -1391,6 +1396,10 @@ MESSAGES: Final[dict[str, str]] = {
     'What the rig of "{0}" moves as well was left alone: {1}.': "与“{0}”由同一绑定驱动的部件未作更改：{1}。",
     "It is open which mesh is the Target. Pick it in the panel, or select one or more beside the Source.": (
         "无法确定哪个网格是目标。请在面板中选取，或在源之外再选择一个或多个。"
+    ),
+    "All kinds are switched off, so there is nothing to carry over. Switch on at least one: Rig, Weights, Shape Keys, "
+    "UV Maps or Attributes.": (
+        "所有种类都已关闭，因此没有可传递的内容。请至少打开一种：绑定、权重、形态键、UV 贴图或属性。"
     ),
     "Finding faces": "正在查找面",
     "Carrying materials and normals": "正在传递材质和法向",

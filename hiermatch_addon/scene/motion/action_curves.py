@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...common.errors import ObjectError
 from ..armatures import armature_of
 
 if TYPE_CHECKING:
@@ -23,7 +22,6 @@ __all__ = [
     "frame_range",
     "lent_action",
     "moves_bones",
-    "named_action",
     "object_curves",
     "played_action",
     "renamed_paths",
@@ -48,20 +46,6 @@ def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     """Return the action that an armature plays; None for none."""
     animation = armature.animation_data
     return None if animation is None else animation.action
-
-
-def named_action(name: str) -> bpy.types.Action:
-    """Return the action of that name.
-
-    Raises
-    ------
-    ObjectError
-        If there is none.
-    """
-    action = bpy.data.actions.get(name)
-    if action is None:
-        raise ObjectError(f'There is no action called "{name}".')
-    return action
 
 
 def actions_of(armature: bpy.types.Object) -> list[bpy.types.Action]:

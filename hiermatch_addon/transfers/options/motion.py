@@ -13,7 +13,7 @@ import bpy
 from ....engine import MotionSettings
 from ...common.errors import ObjectError
 from ...common.phrases import listed
-from ...scene.motion.action_curves import actions_of, moves_bones, named_action, played_action
+from ...scene.motion.action_curves import actions_of, moves_bones, played_action
 from ...scene.motion.nla_strips import strip_actions
 
 __all__ = ["MotionOptions", "MotionPlan", "motion_plan"]
@@ -145,7 +145,7 @@ def motion_plan(scene: bpy.types.Scene, options: MotionOptions, rig: bpy.types.O
         found = [action.name for action in actions_of(rig)]
         if found:
             raise ObjectError(f'"{rig.name}" plays no action. Name one of these, or choose all: {listed(found)}.')
-        raise ObjectError(f'"{rig.name}" has no action that moves its bones. Give it one, or name an action.')
+        raise ObjectError(_without_actions(rig))
     settings = MotionSettings(
         feet=options.keep_feet,
         hands=options.keep_hands,
@@ -176,13 +176,30 @@ def _named(text: str, rig: bpy.types.Object) -> list[str]:
     parts = [text] if text in bpy.data.actions else [part.strip() for part in text.split(";") if part.strip()]
     found: list[str] = []
     for part in parts:
-        if part not in bpy.data.actions and set("*?[") & set(part):
-            fitting = [action.name for action in actions_of(rig) if fnmatchcase(action.name, part)]
-            if not fitting:
-                raise ObjectError(f'No action that moves bones of "{rig.name}" fits the pattern "{part}".')
-            found += fitting
-        elif not moves_bones(named_action(part), rig):
+        if part not in bpy.data.actions:
+            found += _fitting(part, rig)
+        elif not moves_bones(bpy.data.actions[part], rig):
             raise ObjectError(f'The action "{part}" moves no bone of "{rig.name}". Choose one that does.')
         else:
             found.append(part)
     return list(dict.fromkeys(found))
+
+
+def _fitting(pattern: str, rig: bpy.types.Object) -> list[str]:
+    """Names of the actions of a rig that fit a pattern."""
+    own = [action.name for action in actions_of(rig)]
+    if not own:
+        raise ObjectError(_without_actions(rig))
+    if not set("*?[") & set(pattern):
+        raise ObjectError(f'There is no action called "{pattern}". Those of "{rig.name}" are {listed(own)}.')
+    fitting = [name for name in own if fnmatchcase(name, pattern)]
+    if not fitting:
+        raise ObjectError(
+            f'No action that moves bones of "{rig.name}" fits the pattern "{pattern}". Its actions are {listed(own)}.'
+        )
+    return fitting
+
+
+def _without_actions(rig: bpy.types.Object) -> str:
+    """Say that a rig has none."""
+    return f'"{rig.name}" has no action that moves its bones. Give it one, or name an action.'

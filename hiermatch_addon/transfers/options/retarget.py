@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import bpy
 
+from ...common.errors import ObjectError
 from ..attributes import AttributeTransfer
 from ..rest_like_source import RestLikeSource
 from ..rig import RigTransfer
@@ -82,6 +83,11 @@ def chosen_transfers(options: RetargetOptions, prefix: str) -> list[Transfer]:
     """Make a transfer for each kind that is switched on, in the order in which they are written.
 
     The weights come before the rig, so that the rig finds them when it is bound; another rest pose comes after all.
+
+    Raises
+    ------
+    ObjectError
+        If no kind is.
     """
     rig = RigTransfer(rig_settings(options))
     made: list[tuple[bool, Transfer]] = [
@@ -92,4 +98,10 @@ def chosen_transfers(options: RetargetOptions, prefix: str) -> list[Transfer]:
         (options.use_attributes, AttributeTransfer(attribute_settings(options))),
         (options.use_rig, RestLikeSource(rig_settings(options), rig)),
     ]
-    return [transfer for chosen, transfer in made if chosen]
+    found = [transfer for chosen, transfer in made if chosen]
+    if not found:
+        raise ObjectError(
+            "All kinds are switched off, so there is nothing to carry over. Switch on at least one: Rig, Weights, "
+            "Shape Keys, UV Maps or Attributes."
+        )
+    return found

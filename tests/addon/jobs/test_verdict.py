@@ -43,6 +43,15 @@ def test_a_half_under_a_mirror_modifier_is_said_to_be_one_unless_the_match_is_go
     assert not advice_on(WHOLE, ("Man", "Half"), (BALL, TUBE), halves=(False, True))
 
 
+@pytest.mark.parametrize("own", [0, 1])
+def test_what_hangs_on_bones_is_to_be_hidden_if_the_match_is_doubtful(own):
+    hung = (["Sword", "Shield"], []) if own == 0 else ([], ["Sword", "Shield"])
+    names = ("Knight", "Man") if own == 0 else ("Man", "Knight")
+    said = advice_on(replace(WHOLE, confidence=0.1, source_coverage=0.5), names, (BALL, BALL), hung=hung)
+    assert said.startswith('What hangs on single bones of "Knight": "Sword", "Shield". Hide what "Man" has not')
+    assert not advice_on(WHOLE, names, (BALL, BALL), hung=hung)
+
+
 def test_doubt_begins_below_the_limit():
     for confidence in (0.0, DOUBTFUL - 0.01, DOUBTFUL, 1.0):
         verdict = Verdict.of(replace(WHOLE, confidence=confidence), "Mind the gap.")

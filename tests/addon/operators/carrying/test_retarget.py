@@ -178,6 +178,15 @@ def test_nothing_to_carry_at_all_is_an_error():
     assert snapshot() == before
 
 
+def test_all_kinds_switched_off_are_an_error_and_nothing_is_matched():
+    source, target = add_rigged_pair()
+    before = snapshot()
+    off = dict.fromkeys(("use_rig", "use_weights", "use_shape_keys", "use_uvs", "use_attributes"), False)
+    with pytest.raises(RuntimeError, match="All kinds are switched off"):
+        bpy.ops.hiermatch.retarget(source=source.name, target=target.name, **off)
+    assert snapshot() == before
+
+
 def test_a_match_is_made_on_the_way_if_it_is_out_of_date(pair):
     source, target = pair
     target.data.vertices[0].co.x += 0.001

@@ -143,6 +143,16 @@ def test_parts_that_were_matched_are_enough(rigs, monkeypatch):
 
 
 @pytest.mark.usefixtures("rigs")
+def test_of_a_doubtful_match_it_is_said_what_hangs_on_bones_and_may_be_hidden(monkeypatch):
+    match_at_once(monkeypatch, confidence=0.1)
+    for rig in ("A", "B"):  # they are numbered alike
+        bpy.data.objects[f"{rig} Head"].parent_type = "BONE"
+        bpy.data.objects[f"{rig} Head"].parent_bone = bpy.data.objects[rig].data.bones[0].name
+    with pytest.raises(RuntimeError, match=r'What hangs on single bones of "A": "A Head"\. Hide what "B"'):
+        ops.pair_bones(source="A", target="B")
+
+
+@pytest.mark.usefixtures("rigs")
 def test_a_doubtful_match_pairs_nothing_unless_it_is_accepted(monkeypatch):
     match_at_once(monkeypatch, confidence=0.1)
     with pytest.raises(RuntimeError, match="is doubtful, and nothing was written"):

@@ -300,8 +300,11 @@ def test_actions_are_named_by_patterns():
         carry(source="A", target="B", action=text)
         made.append(sorted(set(bpy.data.actions.keys()) - before))
     assert made == [["Walk;Fast B"], ["Run B", "Walk B", "Walk;Fast B.001"], ["Run B.001"]]
-    with pytest.raises(RuntimeError, match='fits the pattern "Jump'):
+    there = '"Nod", "Run", "Walk" and 1 more'
+    with pytest.raises(RuntimeError, match=f'fits the pattern "Jump.". Its actions are {there}'):
         carry(source="A", target="B", action="Jump*")
+    with pytest.raises(RuntimeError, match=f'no action called "walk". Those of "A" are {there}'):
+        carry(source="A", target="B", action="Run;walk")
 
 
 def test_without_a_name_the_only_action_is_meant_and_what_others_play_is_theirs():
