@@ -9,7 +9,7 @@ import bpy
 from mathutils import Matrix
 
 from .armatures import armature_of
-from .motion.action_curves import assign_action, lent_action
+from .motion.action_curves import MADE_FOR, assign_action, lent_action
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -100,7 +100,8 @@ def keep_pose(
         bpy.data.actions.remove(old)  # another one of that name is the user's own
     action: Any = bpy.data.actions.new(name)
     action.use_fake_user = True
-    action[_MARKER], action[_KIND] = armature.name, kind
+    action[_MARKER] = action[MADE_FOR] = armature.name
+    action[_KIND] = kind
     pose = cast("bpy.types.Pose", armature.pose)
     with lent_action(armature) as animation:
         animation.action = action

@@ -12,6 +12,7 @@ import bpy
 from ..common.errors import ObjectError
 from ..scene.character import Character, parts_of, positions_of, topology_of
 from . import writing
+from .linked_matches import move_linked
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -268,7 +269,9 @@ def moved_by_us(side: Side) -> Iterator[None]:
     """Keep the matches of a side up to date while its vertices are moved without another meaning, as by a pose."""
     halves = [half for prefix in _prefixes(side) if (half := _half(side, prefix)) is not None]
     fresh = [half.prefix for half in halves if not half.staleness()]
+    before = positions_of(side)
     yield
+    move_linked(side, before)
     for prefix in fresh:
         for part in parts_of(side):
             writing.change_kept(part, prefix, positions=positions_of(side))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..common.access import mesh_of
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["forget_linked", "keep_linked", "kept_linked", "linked_prefixes"]
+__all__ = ["forget_linked", "keep_linked", "kept_linked", "linked_prefixes", "move_linked"]
 
 _PROPERTY = "hiermatch_linked"
 """Custom property of the mesh of a target's first part: for each prefix a match, as an NPZ file would hold it."""
@@ -52,6 +53,31 @@ def kept_linked(source: Side, target: Side, prefix: str = "") -> MatchFile | Non
         if (match.stored.topologies, match.stored.positions) == (topologies, positions) and match.maps is not None:
             return match
     return None
+
+
+def move_linked(target: Side, before: str) -> None:
+    """Keep those matches up to date that a target keeps alone, and that were so before its vertices were moved.
+
+    Parameters
+    ----------
+    target : bpy.types.Object or Character
+        The target.
+    before : str
+        What `positions_of` said of it then.
+    """
+    first = parts_of(target)[0]
+    kept = _packed(first)
+    for name, packed in kept.items():
+        try:
+            match = unpacked_match(packed)
+        except ObjectError:  # as in `kept_linked`
+            continue
+        if match.stored.positions[1] == before:
+            positions = match.stored.positions[0], positions_of(target)
+            kept[name] = packed_match(replace(match, stored=replace(match.stored, positions=positions)))
+    if kept:
+        mesh: Any = mesh_of(first)
+        mesh[_PROPERTY] = kept
 
 
 def linked_prefixes(obj: bpy.types.Object) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 __all__ = [
+    "MADE_FOR",
     "CurveMaker",
     "actions_of",
     "assign_action",
@@ -42,6 +43,10 @@ _AS_LARGE = 0.01
 """By what part a bone may be larger or smaller and still count as large as it is: importers round more."""
 
 
+MADE_FOR = "hiermatch_made_for"
+"""Custom property of the actions that are made here: the name of the armature object that they are for."""
+
+
 def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     """Return the action that an armature plays; None for none."""
     animation = armature.animation_data
@@ -51,10 +56,13 @@ def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
 def actions_of(armature: bpy.types.Object) -> list[bpy.types.Action]:
     """Return all actions of the file that move bones of an armature.
 
-    Where rigs have bones of the same names, what others play and it does not is theirs.
+    Where rigs have bones of the same names, what others play, or what was made for them, is theirs unless it plays it.
     """
-    others = {name for obj in bpy.data.objects if obj.type == "ARMATURE" and obj != armature for name in _playing(obj)}
-    theirs = others - set(_playing(armature))
+    others = [obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj != armature]
+    names = {obj.name for obj in others}
+    theirs = {name for obj in others for name in _playing(obj)}
+    theirs |= {action.name for action in bpy.data.actions if cast("Any", action).get(MADE_FOR) in names}
+    theirs -= set(_playing(armature))
     return [action for action in bpy.data.actions if action.name not in theirs and moves_bones(action, armature)]
 
 
@@ -208,6 +216,7 @@ class CurveMaker:
     def __init__(self, name: str, armature: bpy.types.Object, model: bpy.types.Action) -> None:
         made: Any = bpy.data.actions.new(name)
         made.use_fake_user = True
+        made[MADE_FOR] = armature.name
         self.action = made
         self._bag = None
         if hasattr(made, "slots"):

@@ -187,7 +187,8 @@ def _named(text: str, rig: bpy.types.Object) -> list[str]:
 
 def _fitting(pattern: str, rig: bpy.types.Object) -> list[str]:
     """Names of the actions of a rig that fit a pattern."""
-    own = [action.name for action in actions_of(rig)]
+    meant = pattern.strip("*?").lower()
+    own = sorted((action.name for action in actions_of(rig)), key=lambda name: meant not in name.lower())
     if not own:
         raise ObjectError(_without_actions(rig))
     if not set("*?[") & set(pattern):

@@ -257,6 +257,11 @@ def test_a_linked_source_is_carried_from_and_the_target_keeps_the_match(linked_s
     assert "spine" in target.vertex_groups
     assert not count
     assert kept_linked(bpy.data.objects["Source"], target).stored.answer.refined
+    # The rest pose of the source does not make it out of date either.
+    for _ in range(2):
+        assert bpy.ops.hiermatch.retarget(source="Source", target="Target", rest_pose_like_source="ON") == {"FINISHED"}
+    assert "a rest pose" in bpy.context.scene.hiermatch_retarget.report.done
+    assert not count
     target.data.vertices[0].co.x += 0.01
     assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
     assert count == [1]

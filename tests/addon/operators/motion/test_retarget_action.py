@@ -303,6 +303,7 @@ def test_actions_are_named_by_patterns():
     there = '"Nod", "Run", "Walk" and 1 more'
     with pytest.raises(RuntimeError, match=f'fits the pattern "Jump.". Its actions are {there}'):
         carry(source="A", target="B", action="Jump*")
+    there = '"Walk", "Walk;Fast", "Nod" and 1 more'  # first those that may be meant
     with pytest.raises(RuntimeError, match=f'no action called "walk". Those of "A" are {there}'):
         carry(source="A", target="B", action="Run;walk")
 
@@ -323,6 +324,25 @@ def test_without_a_name_the_only_action_is_meant_and_what_others_play_is_theirs(
     assert carry(source="A", target="B", actions="ALL") == {"FINISHED"}
     assert {"Wave B", "Nod B"} <= set(bpy.data.actions.keys())
     assert "Dance B" not in bpy.data.actions
+
+
+def test_what_was_carried_over_is_not_carried_again():
+    source, _ = add_person("A")
+    add_person("B")  # its bones have the same names
+    for name in ("Wave", "Walk", "Nod"):
+        add_action(source, name).use_fake_user = True
+    source.animation_data_clear()
+    for options in ({"actions": "ALL"}, {"actions": "ALL"}, {"action": "W*"}):
+        before = set(bpy.data.actions.keys())
+        assert carry(source="A", target="B", **options) == {"FINISHED"}
+        made = set(bpy.data.actions.keys()) - before
+        assert len(made) == (2 if "action" in options else 3), made
+    bpy.data.objects["B"].name = "Bea"  # what was made for it stays its own
+    for action in list(bpy.data.actions):
+        if not action.name.endswith(" B"):
+            bpy.data.actions.remove(action)
+    assert carry(source="Bea", target="A", actions="ALL") == {"FINISHED"}
+    assert {"Nod B A", "Walk B A", "Wave B A"} <= set(bpy.data.actions.keys())
 
 
 def test_a_pose_that_has_no_keys_yet_is_carried_from_a_rig_that_plays_an_action():
