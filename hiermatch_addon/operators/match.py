@@ -18,7 +18,7 @@ from ..properties.panel_state import picked, state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.summary import pick_named, remember
-from ..scene.pair import find_pair, left_out_note, name_of, selected_targets
+from ..scene.pair import find_pair, lacking_meshes, left_out_note, name_of, selected_targets
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -62,10 +62,10 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         """Allow it in Object Mode, when no other match is running and there are two meshes."""
         if not can_start(cls, context):
             return False
-        if sum(obj.type == "MESH" for obj in view_layer_of(context).objects) < 2:
-            cls.poll_message_set(translated("Two mesh objects are needed in this view layer"))
-            return False
-        return True
+        lacking = lacking_meshes(view_layer_of(context))
+        if lacking:
+            cls.poll_message_set(lacking)
+        return not lacking
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Show the options in the Adjust Last Operation panel."""

@@ -11,6 +11,7 @@ import numpy as np
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError, SharedMeshError
 from ..common.phrases import listed
+from ..common.translated_text import translated
 from .character import Character, armatures_above, joined, parts_of, side_of
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ __all__ = [
     "check_writable",
     "find_pair",
     "is_own",
+    "lacking_meshes",
     "left_out_note",
     "name_of",
     "named_object",
@@ -315,6 +317,18 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
     flat = [axis for axis, length in zip("XYZ", scale, strict=True) if not length > 0]
     if flat:
         raise ObjectError(f'"{obj.name}" has a scale of zero on {" and ".join(flat)}. Set its scale to 1 (Alt+S).')
+
+
+def lacking_meshes(view_layer: bpy.types.ViewLayer) -> str:
+    """Say that a view layer has not the two meshes that it takes to match; empty if it has."""
+    if sum(obj.type == "MESH" for obj in view_layer.objects) >= 2:
+        return ""
+    if any(obj.type == "EMPTY" and obj.instance_collection is not None for obj in view_layer.objects):
+        return translated(
+            "Two mesh objects are needed in this view layer. Make library overrides of what instances show, or make it "
+            "real"
+        )
+    return translated("Two mesh objects are needed in this view layer")
 
 
 def _check_type(obj: bpy.types.Object) -> None:

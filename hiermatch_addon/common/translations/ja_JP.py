@@ -1421,6 +1421,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "No file is named. Choose one.": "ファイルが指定されていません。選んでください。",
     "Two mesh objects are needed in this view layer": "このビューレイヤーに二つのメッシュオブジェクトが必要です",
+    "Two mesh objects are needed in this view layer. Make library overrides of what instances show, or make it real": (
+        "このビューレイヤーに二つのメッシュオブジェクトが必要です。インスタンスが示すものは、ライブラリオーバーライドにするか、実体化してください"
+    ),
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "クリックできるものがありません。二つの頂点を指定してhiermatch.add_landmarkを使ってください。"
     ),

@@ -1182,6 +1182,9 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "No file is named. Choose one.": "没有指定文件。请选择一个。",
     "Two mesh objects are needed in this view layer": "此视图层中需要两个网格物体",
+    "Two mesh objects are needed in this view layer. Make library overrides of what instances show, or make it real": (
+        "此视图层中需要两个网格物体。请为实例所显示的内容创建库重写，或使其独立"
+    ),
     "There is nothing to click on. Use hiermatch.add_landmark with two vertices.": (
         "没有可点击的对象。请用两个顶点调用 hiermatch.add_landmark。"
     ),

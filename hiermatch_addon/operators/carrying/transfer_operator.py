@@ -21,7 +21,7 @@ from ...properties.freshness import refresh
 from ...properties.panel_state import progress_of, state_of
 from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import pick_named, remember
-from ...scene.pair import name_of
+from ...scene.pair import lacking_meshes, name_of
 from ...transfers.retarget_properties import remember_transfer
 from ..pair_operator import pick_sides
 
@@ -113,10 +113,10 @@ class TransferOperator(JobOperator):
         operator = cast("type[bpy.types.Operator]", cls)
         if not can_start(operator, context):
             return False
-        if sum(obj.type == "MESH" for obj in view_layer_of(context).objects) < 2:
-            operator.poll_message_set(translated("Two mesh objects are needed in this view layer"))
-            return False
-        return True
+        lacking = lacking_meshes(view_layer_of(context))
+        if lacking:
+            operator.poll_message_set(lacking)
+        return not lacking
 
     def _start(self, context: bpy.types.Context) -> TransferJob | MotionJob:
         """Read all objects."""

@@ -288,6 +288,17 @@ def test_one_mesh_is_refused_by_the_button():
         match()
 
 
+def test_instances_of_collections_are_told_to_be_no_meshes():
+    add_blob("Alone")
+    instance = bpy.data.objects.new("Hero", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", bpy.data.collections.new("Hero")
+    bpy.context.scene.collection.objects.link(instance)
+    with pytest.raises(RuntimeError, match="Make library overrides of what instances show"):
+        match()
+    with pytest.raises(RuntimeError, match="Make library overrides of what instances show"):
+        bpy.ops.hiermatch.retarget()
+
+
 def test_one_undo_takes_it_back_and_redo_brings_it_again(pair):
     assert pair
     before = snapshot()
