@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ..common.access import view_layer_of
+from ..common.errors import ObjectError
+from ..common.phrases import listed
 from ..scene.character import armatures_above
 from ..transfers.my_rig import MyRigTransfer, check_has_body
 from ..transfers.options.my_rig import my_rig_settings
@@ -73,8 +75,21 @@ def _transfers(options: Any, _pair: tuple[Side, Side]) -> list[Transfer]:  # noq
 
 
 def _only_idle() -> str:
-    """Return the name of the only armature that moves nothing; empty if there is none, or more."""
+    """Return the name of the only armature that moves nothing.
+
+    Raises
+    ------
+    ObjectError
+        If there is none, or more.
+    """
     objects = view_layer_of(bpy.context).objects
     busy = {armature for obj in objects if obj.type != "ARMATURE" for armature in armatures_above(obj)}
     idle = [obj.name for obj in objects if obj.type == "ARMATURE" and obj not in busy]
-    return idle[0] if len(idle) == 1 else ""
+    if len(idle) > 1:
+        raise ObjectError(f"Several armatures move nothing: {listed(sorted(idle))}. Name one by --rig.")
+    if not idle:
+        raise ObjectError(
+            "There is no armature that moves nothing. The one to be fitted has to be in the file of the source; if it "
+            "moves something, name it by --rig."
+        )
+    return idle[0]

@@ -65,9 +65,14 @@ def test_what_cannot_be_done_is_told(folder, capsys):
         ((source, target), ["--rig=Nobody"], 1, 'no object called "Nobody"'),
         ((source, target), ["--rig=A"], 1, '"A" moves "A"'),
         ((f"{folder / 'A.blend'}:Standard", target), [], 1, "moves no mesh"),
-        ((target, source), [], 1, "Name one as the Rig"),
+        ((target, source), [], 1, "There is no armature that moves nothing"),
         ((source, target), ["--my-rig-limit=-1"], 2, "not between 0"),
     ):
         assert main(["my-rig", *files, plain, output, *options]) == code, said
         assert said in capsys.readouterr().err
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "A.blend"))
+    add_skeleton("Other", renamed(someone().rig))
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "A.blend"))
+    assert main(["my-rig", source, target, plain, output]) == 1
+    assert 'Several armatures move nothing: "Other", "Standard". Name one by --rig.' in capsys.readouterr().err
     assert not (folder / "out.blend").exists()
