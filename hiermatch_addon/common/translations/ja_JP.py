@@ -1240,8 +1240,15 @@ MESSAGES: Final[dict[str, str]] = {
         "どのボーンか不明です。ポーズモードで、それぞれのアーマチュアのボーンを一つアクティブにしてください。"
     ),
     "Carrying motion over": "モーションを移しています",
+    '"{0}" has no action that moves its bones, but there are some of {1}. Exchange Source and Target, or name an '
+    "action.": (
+        '"{0}"にはボーンを動かすアクションがありませんが、{1}にはあります。ソースとターゲットを入れ替えるか、アクション名を指定してください。'
+    ),
     '"{0}" has no action that moves its bones. Give it one, or name an action.': (
         '"{0}"にはボーンを動かすアクションがありません。割り当てるか、アクションを指定してください。'
+    ),
+    '"{0}" plays "{1}", which moves none of its bones. Name one of these, or choose all: {2}.': (
+        '"{0}"が再生している"{1}"はボーンを動かしません。次のいずれかを指定するか、すべてを選んでください：{2}。'
     ),
     '"{0}" plays no action. Name one of these, or choose all: {1}.': (
         '"{0}"はアクションを再生していません。次のいずれかを指定するか、すべてを選んでください：{1}。'

@@ -1033,8 +1033,13 @@ MESSAGES: Final[dict[str, str]] = {
         "不清楚指的是哪些骨骼。请在姿态模式下将每个骨架的一个骨骼设为活动。"
     ),
     "Carrying motion over": "正在传递运动",
+    '"{0}" has no action that moves its bones, but there are some of {1}. Exchange Source and Target, or name an '
+    "action.": ('"{0}" 没有移动其骨骼的动作，但 {1} 有。请交换源和目标，或指定一个动作。'),
     '"{0}" has no action that moves its bones. Give it one, or name an action.': (
         '"{0}" 没有移动其骨骼的动作。请为其指定一个，或给出动作名称。'
+    ),
+    '"{0}" plays "{1}", which moves none of its bones. Name one of these, or choose all: {2}.': (
+        '"{0}" 正在播放的 "{1}" 不移动其骨骼。请指定其中之一，或选择全部：{2}。'
     ),
     '"{0}" plays no action. Name one of these, or choose all: {1}.': (
         '"{0}" 没有播放任何动作。请指定其中之一，或选择全部：{1}。'

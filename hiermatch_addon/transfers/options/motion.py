@@ -15,6 +15,7 @@ from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...scene.motion.action_curves import actions_of, moves_bones, played_action
 from ...scene.motion.nla_strips import strip_actions
+from ...scene.posing.rest_mesh_io import plays_actions
 
 __all__ = ["MotionOptions", "MotionPlan", "motion_plan"]
 
@@ -143,6 +144,12 @@ def motion_plan(scene: bpy.types.Scene, options: MotionOptions, rig: bpy.types.O
         names = list(dict.fromkeys([*names, *(name for name in strip_actions(rig) if name in known)]))
     if not names:
         found = [action.name for action in actions_of(rig)]
+        played = played_action(rig)
+        if found and played is not None:
+            raise ObjectError(
+                f'"{rig.name}" plays "{played.name}", which moves none of its bones. Name one of these, or choose all: '
+                f"{listed(found)}."
+            )
         if found:
             raise ObjectError(f'"{rig.name}" plays no action. Name one of these, or choose all: {listed(found)}.')
         raise ObjectError(_without_actions(rig))
@@ -202,5 +209,12 @@ def _fitting(pattern: str, rig: bpy.types.Object) -> list[str]:
 
 
 def _without_actions(rig: bpy.types.Object) -> str:
-    """Say that a rig has none."""
+    """Say that a rig has none, and which others have: Source and Target are easily exchanged."""
+    others = [obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj != rig]
+    moving = [obj.name for obj in others if plays_actions(obj)]
+    if moving:
+        return (
+            f'"{rig.name}" has no action that moves its bones, but there are some of {listed(moving)}. Exchange Source '
+            "and Target, or name an action."
+        )
     return f'"{rig.name}" has no action that moves its bones. Give it one, or name an action.'

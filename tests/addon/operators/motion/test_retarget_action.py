@@ -326,6 +326,28 @@ def test_without_a_name_the_only_action_is_meant_and_what_others_play_is_theirs(
     assert "Dance B" not in bpy.data.actions
 
 
+def test_an_action_that_is_played_and_moves_no_bone_is_named():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    for name in ("Wave", "Walk"):
+        add_action(source, name).use_fake_user = True
+    source.animation_data.action = bpy.data.actions.new("Slide")
+    source.keyframe_insert("location", frame=1)
+    with pytest.raises(
+        RuntimeError, match=r'"A" plays "Slide", which moves none of its bones\. Name .* "Walk", "Wave"'
+    ):
+        carry(source="A", target="B")
+
+
+def test_exchanged_source_and_target_are_told():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    add_action(source)
+    for options in ({}, {"actions": "ALL"}, {"action": "W*"}):
+        with pytest.raises(RuntimeError, match=r'"B" has no action .*, but there are some of "A"\. Exchange Source'):
+            carry(source="B", target="A", **options)
+
+
 def test_what_was_carried_over_is_not_carried_again():
     source, _ = add_person("A")
     add_person("B")  # its bones have the same names
