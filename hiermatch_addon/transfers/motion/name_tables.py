@@ -37,7 +37,9 @@ def _table(
     return made
 
 
-_VRM_JOINTS: Final = {1: "Proximal", 2: "Intermediate", 3: "Distal"}
+_VRM_JOINTS: Final = ("Proximal", "Intermediate", "Distal")
+
+_VRM_THUMB: Final = ("Metacarpal", "Proximal", "Distal")
 
 
 def _vrm() -> dict[str, str]:
@@ -48,8 +50,7 @@ def _vrm() -> dict[str, str]:
     made = _table((trunk, limbs, fingers), ("{0}", "{side}{0}", "{side}{0}{1}"), "left right")
     for what, name in made.items():
         if what[-1:].isdigit():
-            thumb, number = "thumb" in what, int(what[-1])
-            made[what] = name[:-1] + ("Metacarpal" if thumb and number == 1 else _VRM_JOINTS[number - (thumb and 1)])
+            made[what] = name[:-1] + (_VRM_THUMB if "thumb" in what else _VRM_JOINTS)[int(what[-1]) - 1]
     return made
 
 

@@ -29,6 +29,20 @@ def bones(name="B"):
     return set(bpy.data.objects[name].data.bones.keys())
 
 
+def test_fingers_are_called_as_vrm_does():
+    names = NAME_TABLES["VRM"]
+    assert [names[f"left_thumb_{part}"] for part in (1, 2, 3)] == [
+        "leftThumbMetacarpal",
+        "leftThumbProximal",
+        "leftThumbDistal",
+    ]
+    assert [names[f"right_little_{part}"] for part in (1, 2, 3)] == [
+        "rightLittleProximal",
+        "rightLittleIntermediate",
+        "rightLittleDistal",
+    ]
+
+
 @pytest.mark.parametrize("standard", NAME_TABLES)
 def test_whatever_bones_are_called_joints_tell_what_they_are(standard):
     _, made = add_person("B", "renamed", rolls=0.4)
