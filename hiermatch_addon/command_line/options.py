@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import textwrap
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -24,6 +25,9 @@ _OBJECTS = frozenset({"rna_type", "source", "target", "targets", "object"})
 _LISTS = frozenset({"items"})
 """Collections of names: on the command line they are texts with commas between the names."""
 
+_LINE = 100
+"""Letters in a line of a description."""
+
 _YES, _NO = frozenset({"1", "true", "yes", "on"}), frozenset({"0", "false", "no", "off"})
 
 
@@ -31,6 +35,8 @@ class Parser(argparse.ArgumentParser):
     """A parser that raises errors instead of ending the process, and takes no shortened names."""
 
     def __init__(self, **arguments: Any) -> None:  # noqa: ANN401 - whatever argparse takes
+        if "description" in arguments:  # which, unlike the exit codes behind all, is no list
+            arguments["description"] = textwrap.fill(arguments["description"], _LINE)
         super().__init__(
             **{"allow_abbrev": False, "formatter_class": argparse.RawDescriptionHelpFormatter, **arguments}
         )
@@ -127,6 +133,8 @@ def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
     elif described.type == "ENUM":
         words = [item.identifier.lower() for item in described.enum_items]
         about |= {"type": _word(described, words), "metavar": f"{{{','.join(words)}}}"}
+        said = zip(words, (item.description for item in described.enum_items), strict=True)
+        text = " ".join([text, *(f"{word}: {meaning}." for word, meaning in said if meaning)])
         shown = described.default.lower()
     elif described.type == "COLLECTION":
         about |= {"type": _names, "metavar": "NAME,NAME,..."}
@@ -136,6 +144,7 @@ def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
         shown = f'"{described.default}"' if described.default else ""
     else:
         about |= {"type": _number(described), "metavar": "N" if described.type == "INT" else "X"}
+        text += " In radians." if described.subtype == "ANGLE" else ""
         shown = f"{described.default:g}"
     # argparse takes the sign for per cent as the beginning of a name.
     about["help"] = (f"{text} (default: {shown})" if shown else text).replace("%", "%%")

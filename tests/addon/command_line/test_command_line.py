@@ -431,6 +431,20 @@ def test_every_option_of_the_operators_is_there():
     assert given == {"solver": "GMDS", "dense": False, "diffusion_time": scene.diffusion_time}
 
 
+def test_help_says_what_choices_mean_and_in_what_angles_are(capsys):
+    assert main(["motion", "--help"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "At which frames the new action gets keys. auto: At the source's keys if these are few, else" in said
+    assert "By how much reduced keys may change a rotation. In radians. (default: 0.0035)" in said
+
+
+@pytest.mark.parametrize("command", ["match", "retarget", "motion", "my-rig", "wear", "symmetry", "batch"])
+def test_lines_of_help_are_not_too_long(command, capsys):
+    assert main([command, "--help"]) == 0
+    _, *lines = capsys.readouterr().out.splitlines()  # the first says how it is used
+    assert max(len(line) for line in lines) <= 120
+
+
 def test_table_values_become_arguments():
     assert options.to_arguments("match", "points", " 12 ") == ["--points=12"]
     assert options.to_arguments("match", "dense", "No") == ["--no-dense"]
