@@ -12,6 +12,7 @@ import numpy as np
 
 from ..common.access import view_layer_of
 from .armatures import armature_of
+from .rest_action import forget_poses
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -82,6 +83,7 @@ def _copied(context: bpy.types.Context, source: bpy.types.Object, name: str) -> 
     copy.name = data.name = name
     copy.parent = None
     copy.constraints.clear()
+    forget_poses(copy)
     _stop_animation(copy)
     _stop_animation(data)
     cast("bpy.types.Scene", context.scene).collection.objects.link(copy)

@@ -118,8 +118,11 @@ def bind(
     others: dict[str, list[str]] = {}
     parents: dict[str, list[str]] = {}
     for part in parts_of(target):
-        if not any(getattr(one, "object", None) == armature for one in part.modifiers):
+        own = [one for one in part.modifiers if one.type == "ARMATURE" and cast("Any", one).object == armature]
+        if not own:
             _add_modifier(part, armature, armature_modifier(model))
+        elif not any(one.show_viewport for one in own):  # switched off by hand since
+            own[0].show_viewport = own[0].show_render = True
         for other in moving_armatures(part)[:2]:
             if other != armature and (kept is None or other in kept):
                 others.setdefault(other.name, []).append(part.name)

@@ -17,13 +17,16 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["AS_IT_WAS", "keep_pose", "kept_pose", "pose_bases"]
+__all__ = ["AS_IT_WAS", "forget_poses", "keep_pose", "kept_pose", "pose_bases", "was_kept"]
 
 _MARKER = "hiermatch_rest"
 """Custom property of the actions that were made here: the name of the armature they were made for."""
 
 _KIND = "hiermatch_pose"
 """Custom property of theirs: which pose of the armature it is, empty for the rest pose of a posed target."""
+
+_KEPT = "hiermatch_kept"
+"""With a kind behind it custom property of armature objects for which such a pose was kept: the action."""
 
 AS_IT_WAS = "as it was"
 """Kind of the pose in which a target looks as it did before it was brought to another rest pose."""
@@ -64,12 +67,27 @@ def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.flo
 
 
 def kept_pose(armature: bpy.types.Object, kind: str = "") -> bpy.types.Action | None:
-    """Find the pose of a kind that was kept for an armature."""
+    """Find the pose of a kind that was kept for an armature, also if that was renamed since."""
+    kept = cast("Any", armature).get(_property(kind))
+    if kept is not None:
+        return kept
     for action in bpy.data.actions:
         found: Any = action
         if found.get(_MARKER) == armature.name and found.get(_KIND, "") == kind:
             return action
     return None
+
+
+def was_kept(armature: bpy.types.Object, kind: str = "") -> bool:
+    """Tell whether a pose of a kind was kept for an armature, also if the action is gone by now."""
+    return _property(kind) in cast("Any", armature) or kept_pose(armature, kind) is not None
+
+
+def forget_poses(armature: bpy.types.Object) -> None:
+    """Let an armature object that was copied have nothing to do with the poses of the other one."""
+    owner: Any = armature
+    for name in [name for name in owner.keys() if name.startswith(_KEPT)]:  # noqa: SIM118 - not a dict
+        del owner[name]
 
 
 def keep_pose(
@@ -102,6 +120,7 @@ def keep_pose(
     action.use_fake_user = True
     action[_MARKER] = action[MADE_FOR] = armature.name
     action[_KIND] = kind
+    cast("Any", armature)[_property(kind)] = action
     pose = cast("bpy.types.Pose", armature.pose)
     with lent_action(armature) as animation:
         animation.action = action
@@ -118,3 +137,8 @@ def keep_pose(
     if show and animation.action is None:
         assign_action(armature, action)
     return action
+
+
+def _property(kind: str) -> str:
+    """Return the custom property of an armature object that leads to the pose of a kind."""
+    return f"{_KEPT} {kind}".strip()

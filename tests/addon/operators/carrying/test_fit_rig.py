@@ -334,6 +334,19 @@ def test_a_second_run_updates_the_armature_of_the_first():
     assert len(bpy.data.armatures) == 3
 
 
+def test_a_second_run_switches_the_rig_on_again_in_the_place_of_the_own_one():
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    add_weights(source, target)
+    other = own_rig(target)
+    made, _ = fit(source, target)
+    for modifier in target.modifiers:  # as somebody does who wants the own rig back, for a while
+        modifier.show_viewport = modifier.show_render = modifier.object == other
+    fit(source, target)
+    assert [modifier.object for modifier in target.modifiers if modifier.show_viewport] == [made]
+    assert [modifier.object for modifier in target.modifiers if modifier.show_render] == [made]
+
+
 def test_one_step_back_undoes_it_all():
     source, _ = add_rigged()
     target, _ = add_target(source)

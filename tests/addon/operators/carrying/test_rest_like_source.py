@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from hiermatch.engine.runtime.progress import run
 from hiermatch.hiermatch_addon.common.errors import NothingToCarryError
+from hiermatch.hiermatch_addon.scene.armature_copy import copy_to
 from hiermatch.hiermatch_addon.scene.armatures import find_armature
-from hiermatch.hiermatch_addon.scene.rest_action import AS_IT_WAS, kept_pose
+from hiermatch.hiermatch_addon.scene.rest_action import AS_IT_WAS, kept_pose, was_kept
 from hiermatch.hiermatch_addon.transfers.options.rig import RigSettings
 from hiermatch.hiermatch_addon.transfers.rest_like_source import RestLikeSource
 from hiermatch.hiermatch_addon.transfers.rig import RigTransfer
@@ -155,6 +156,25 @@ def test_a_second_run_keeps_the_first_pose(pair):
     assert np.allclose(made.matrix_world.to_scale(), scale)
     play(made, kept_pose(made, AS_IT_WAS))
     np.testing.assert_allclose(shown(target), stood, atol=0.05 * np.ptp(stood, axis=0).max())
+
+
+@pytest.mark.parametrize("spoil", ["renamed", "without its action"])
+def test_a_second_run_knows_the_rig_again(pair, spoil):
+    source, target, _ = pair
+    made, _ = fit(source, target)
+    scale, actions = made.matrix_world.to_scale(), set(bpy.data.actions.keys())
+    if spoil == "renamed":
+        made.name = made.data.name = "Mine"
+    else:
+        bpy.data.actions.remove(kept_pose(made, AS_IT_WAS))
+    again, (_, report) = fit(source, target)
+    assert again == made
+    assert np.allclose(made.matrix_world.to_scale(), scale)  # it has grown with the body once
+    assert not report.remarks
+    assert set(bpy.data.actions.keys()) <= actions
+    copied = copy_to(bpy.context, made, "Other", target)
+    assert kept_pose(made, AS_IT_WAS) is None or spoil == "renamed"
+    assert not was_kept(copied, AS_IT_WAS)
 
 
 @pytest.mark.parametrize(("settings", "wanted"), [({}, False), ({"like_source": "ON"}, True)])
