@@ -125,14 +125,18 @@ def selected_meshes(context: bpy.types.Context, without: Side | None = None) -> 
 def active_side(context: bpy.types.Context, without: Side | None = None) -> Side | None:
     """Return what is active: with a rig, all that is selected of what hangs on the rig; of an armature alone, all.
 
-    None if nothing is active, or it is neither a mesh nor an armature, or it is part of the side `without`.
+    So it is with an empty and what hangs on that.  None if nothing is active, or it is nothing of these, or part of the
+    side `without`.
     """
     active = view_layer_of(context).objects.active
-    if (
-        active is None
-        or active.type not in ("MESH", "ARMATURE")
-        or (without is not None and active in parts_of(without))
-    ):
+    if active is None or (without is not None and active in parts_of(without)):
+        return None
+    if active.type == "EMPTY":
+        below = set(active.children_recursive)
+        parts = [obj for obj in selected_meshes(context, without) if obj in below]
+        found = joined(active.name, parts) if parts else side_of(active, view_layer_of(context))
+        return None if found == active else found
+    if active.type not in ("MESH", "ARMATURE"):
         return None
     rig = armatures_above(active)
     parts = [obj for obj in selected_meshes(context, without) if not rig.isdisjoint(armatures_above(obj))]
@@ -162,6 +166,7 @@ def selected_targets(context: bpy.types.Context, source: Side) -> tuple[list[Sid
     for obj in view_layer_of(context).objects.selected:
         if obj.type == "ARMATURE" and obj not in rig and not any(obj in armatures_above(mesh) for mesh in meshes):
             targets.append(side_of(obj, view_layer_of(context)))
+    targets += _held_by_empties(context, {*own, *rig, *meshes})
     same = parts or [part for part in own if len(own) > 1 and part.select_get()]
     if same and not targets:
         raise ObjectError(
@@ -169,6 +174,16 @@ def selected_targets(context: bpy.types.Context, source: Side) -> tuple[list[Sid
             "another character, or pick the part as the Target in the panel if it is meant."
         )
     return targets, parts
+
+
+def _held_by_empties(context: bpy.types.Context, apart: set[bpy.types.Object]) -> list[Side]:
+    """Return what hangs on selected empties, unless something of that is selected itself, or one of those `apart`."""
+    layer = view_layer_of(context)
+    selected = {obj for obj in layer.objects.selected if obj.type in ("MESH", "ARMATURE")}
+    below = {obj: set(obj.children_recursive) for obj in layer.objects.selected if obj.type == "EMPTY"}
+    below = {obj: held for obj, held in below.items() if held.isdisjoint(selected) and held.isdisjoint(apart)}
+    outer = [obj for obj in below if not any(obj in held for held in below.values())]
+    return [side for obj in outer if (side := side_of(obj, layer)) != obj]
 
 
 def _grouped(

@@ -53,6 +53,21 @@ class TestFind:
         select(source, target, empty, active=source)
         assert find_pair(bpy.context) == pair
 
+    @pytest.mark.parametrize("active", ["Source", "Target"])
+    def test_a_selected_empty_means_what_hangs_on_it(self, pair, active):
+        empties = {}
+        for part in pair:
+            group, root = (bpy.data.objects.new(f"{part.name} {what}", None) for what in ("Group", "Root"))
+            for obj in (group, root):
+                bpy.context.collection.objects.link(obj)
+            part.parent, group.parent = group, root
+            empties[part.name] = [root, group]
+        bpy.context.view_layer.update()
+        select(*empties["Source"], *empties["Target"], active=empties[active][0])
+        assert find_pair(bpy.context) == (pair if active == "Source" else pair[::-1])
+        select(*empties["Source"], *pair, *empties["Target"], active=empties[active][0])  # as after an import
+        assert find_pair(bpy.context) == (pair if active == "Source" else pair[::-1])
+
     def test_one_picked_and_the_other_selected(self, pair):
         source, target = pair
         select(target, active=target)
