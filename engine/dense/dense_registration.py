@@ -165,7 +165,7 @@ def registered_pair_steps(
     else:
         steered = yield from within(steered_hypotheses_steps(x, y, starts, landmarks, search=search), 0.1, 0.4)
         x, hypotheses, mirrored = steered.x, steered.hypotheses, steered.mirrored
-    source, target = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
+    source, target = (DeformableSurface(each.mesh, each.laplace, each.surface.cut_border(each.mesh)) for each in (x, y))
     yield from within(source.prepare_steps(), 0.4, 0.41)
     yield from within(target.prepare_steps(), 0.41, 0.42)
     ties = ties_back = None

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, least_likeness
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, least_likeness
 from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools
@@ -27,10 +27,12 @@ from .partial_match import (
     agreed_part_steps,
     is_as_alike,
     is_better_part,
+    is_clear,
+    known_piece_matched_steps,
     part_credibility,
     part_matched_steps,
     piece_matched_steps,
-    shows_all_of_part,
+    piece_with_partner,
 )
 from .result import MatchResult
 from .shape_matching import MatchTask, matched_steps
@@ -152,13 +154,16 @@ def _check_types(surfaces: tuple[object, object], settings: object) -> None:
         raise SettingsError("The settings are a dictionary. Make settings of it first: MatchSettings(**settings).")
 
 
-def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float) -> Steps[MatchResult]:
-    """Match surfaces as they are, which takes that part of the work, and again if that leads nowhere."""
+def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float, *, is_sure: bool = False) -> Steps[MatchResult]:
+    """Match surfaces as they are, which takes that part of the work, and again if that leads nowhere.
+
+    `is_sure` says that what the task begins with is as good as certain.
+    """
     result, first, second = yield from within(matched_with_pieces_steps(x, y, task), 0.0, end)
     standing = yield from within(standing_match_steps(result, x, y, task), end, end)
     if standing is not None:
         return standing
-    return (yield from within(part_matched_steps(result, first, second, task), end, 1.0))
+    return (yield from within(part_matched_steps(result, first, second, task, is_sure=is_sure), end, 1.0))
 
 
 def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
@@ -169,7 +174,8 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
         if all(cut):
             return overlap.result
         return (yield from within(_part_steps(overlap, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))
-    if overlap is not None and overlap.credibility >= _SURE:
+    is_sure = overlap is not None and overlap.credibility >= _SURE
+    if overlap is not None and is_sure:
         task = replace(task, begun=overlap.result.source_to_target)
     try:
         if all(cut):
@@ -177,7 +183,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
             task = task if overlap is None else replace(task, least=least_likeness(_worth(overlap)))
             result, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _OVERLAP, 1.0)
         else:
-            result = yield from within(_whole_steps(x, y, task, _FIRST_AFTER), _OVERLAP, 1.0)
+            result = yield from within(_whole_steps(x, y, task, _FIRST_AFTER, is_sure=is_sure), _OVERLAP, 1.0)
     except MatchError:
         if overlap is None:
             raise
@@ -196,29 +202,26 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     shared: a body whose faces are missing here and there is no part.
     """
     known, is_sure = overlap.result, overlap.credibility >= _SURE
-    whole, shown = (x, known.dense.source_to_target) if of_source else (y, known.dense.target_to_source)
-    piece = shown.has_partner[whole.vertices]
-    least = CREDIBLE if is_sure else ALL_ALIKE
-    begun = replace(task, begun=known.source_to_target)
-    steps = piece_matched_steps(known, x, y, begun, piece, of_source=of_source, least=least)
-    result = yield from within(steps, 0.0, _BEGUN)
+    steps = known_piece_matched_steps(known, x, y, task, of_source=of_source)
+    closer = yield from within(steps, 0.0, _BEGUN)
+    result = closer if is_sure or is_as_alike(closer, ALL_ALIKE) else known
 
-    def is_clear() -> bool:
-        """Say whether all of the part is so much like a piece that nothing else is worth trying."""
-        enough = MUCH_ALIKE if is_sure else ALL_ALIKE
-        return result is not known and shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
+    def clear() -> bool:
+        """Say whether no other piece is worth trying."""
+        return is_clear(result, known, of_source=of_source, is_sure=is_sure)
 
-    if not is_clear():
-        agreed = agreed_part_steps(result, x, y, task, of_source=of_source)
+    if not clear():
+        agreed = agreed_part_steps(result, closer, x, y, task, of_source=of_source)
         result, agrees = yield from within(agreed, _BEGUN, _AGREED)
         is_sure = is_sure or agrees
-    if not is_clear():
+    if not clear():
+        piece = piece_with_partner(known, x, y, of_source=of_source)
         steps = piece_matched_steps(result, x, y, task, piece, of_source=of_source)
         result = yield from within(steps, _AGREED, _CLOSER)
-    if is_clear() and min(result.dense.quality.coverage, result.dense.quality.source_coverage) < _SMALL_PART:
+    if clear() and min(result.dense.quality.coverage, result.dense.quality.source_coverage) < _SMALL_PART:
         return result
     # All of both wins if that is more credible, so it is given up as soon as it cannot be.
-    found = result.source_to_target if is_clear() else None
+    found = result.source_to_target if clear() else None
     task = replace(task, begun=found, least=part_credibility(result, of_source=of_source))
     try:
         other, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _CLOSER, 1.0)

@@ -32,18 +32,27 @@ _WHOLE = 0.985
 _MISSED = 15.0
 """How much likeness all of a part without a partner would outweigh."""
 
+_LACKING = 0.04
+"""Part of a piece that was found otherwise that a known match may leave without a partner, and still be taken for as
+good: what a piece lacks makes a match worse, and what it has more does not.  Chosen by `partial_pairs`."""
+
 _MOST = 2
 """Pieces of the surfaces that the match is done with at most, to choose between them."""
 
 _ROUNDS = 2
 """How often: a piece that turns out too small grows."""
 
-_FOUND = 0.45
-"""Part of the work after which these pieces are known."""
+_BEGUN, _FOUND = 0.15, 0.45
+"""Parts of the work after which the piece is matched that is known already, and other pieces are known."""
 
 
-def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
+def part_matched_steps(
+    result: MatchResult, x: Shape, y: Shape, task: MatchTask, *, is_sure: bool = False
+) -> Steps[MatchResult]:
     """Match anew with only that of one surface which the other shows, if something seems to be missing.
+
+    If all of the part has a partner by what is known, what that covers is tried first.  That is enough if it is clear,
+    or if a search that does not need what is known leads to the same.
 
     Parameters
     ----------
@@ -53,6 +62,8 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
         The source and the target.
     task : MatchTask
         What is wanted.
+    is_sure : bool
+        Whether it is known otherwise that this is the right map, so that less likeness is enough.
 
     Returns
     -------
@@ -69,28 +80,40 @@ def part_matched_steps(result: MatchResult, x: Shape, y: Shape, task: MatchTask)
     # What was cut off may have been closed; then nothing says which of them is the part.
     ways = [(x, y, maps)] if parts[1] or not any(parts) else []
     ways += [(y, x, maps[::-1])] if parts[0] or not any(parts) else []
+    closer: dict[bool, MatchResult] = {}
+    for of_source in [whole is x for whole, *_ in ways]:
+        # With landmarks nothing says how much alike a piece is.
+        if task.landmarks is None and shows_all_of_part(result, of_source=of_source):
+            steps = known_piece_matched_steps(result, x, y, task, of_source=of_source)
+            closer[of_source] = yield from within(steps, 0.0, _BEGUN)
+            if is_clear(closer[of_source], result, of_source=of_source, is_sure=is_sure):
+                return closer[of_source]
     # Of a closed body, some piece is always more like a ball than all of it.
     least = CREDIBLE if any(parts) else MUCH_ALIKE
     found = []
     for number, (whole, part, known) in enumerate(ways):
         needed = _needed(result, least, of_source=whole is x)
-        steps = covered_parts_steps(whole, part, known, needed)
-        pieces = yield from within(steps, *part_of(number, len(ways), end=_FOUND), "Looking for missing parts")
+        searching = covered_parts_steps(whole, part, known, needed)
+        pieces = yield from within(searching, *part_of(number, len(ways), _BEGUN, _FOUND), "Looking for missing parts")
         found += [(piece, whole is x) for piece in pieces]
     found.sort(key=lambda pair: pair[0].score)
     task.clock.lap("missing parts")
+    if found:
+        piece, of_source = found[0]
+        if of_source in closer and _is_shown(piece, closer[of_source], result, (x, y), of_source=of_source):
+            return closer[of_source]
     return (yield from within(_best_piece_steps(result, x, y, task, found[:_MOST], least=least), _FOUND, 1.0))
 
 
 def agreed_part_steps(
-    known: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool
+    known: MatchResult, closer: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool
 ) -> Steps[tuple[MatchResult, bool]]:
     """Match with what of one surface the other shows, by a search that does not need what is known of that already.
 
     Parameters
     ----------
-    known : MatchResult
-        A match with a piece of one surface.
+    known, closer : MatchResult
+        A match with a piece of one surface, and what came of that as a start, see `known_piece_matched_steps`.
     x, y : Shape
         The source and the target.
     task : MatchTask
@@ -101,9 +124,9 @@ def agreed_part_steps(
     Returns
     -------
     result : MatchResult
-        The most credible match, the given one among them.
+        The most credible match, the known one among them.
     agrees : bool
-        Whether the search leads to where the given one does: then that was followed, and nothing else.
+        Whether the search leads to where that does: then it was followed, and nothing else.
     """
     dense = known.dense
     maps = dense.source_to_target, dense.target_to_source
@@ -112,9 +135,21 @@ def agreed_part_steps(
     pieces = yield from within(searching, 0.0, _FOUND, "Looking for missing parts")
     task.clock.lap("missing parts")
     agrees = bool(pieces) and not pieces[0].is_new
+    if agrees and _is_shown(pieces[0], closer, known, (x, y), of_source=of_source):
+        return closer, True
     task = replace(task, begun=known.source_to_target) if agrees else task
     found = [(piece, of_source) for piece in pieces[: 1 if agrees else _MOST]]
     return (yield from within(_best_piece_steps(known, x, y, task, found, least=CREDIBLE), _FOUND, 1.0)), agrees
+
+
+def _is_shown(
+    piece: CoveredPart, closer: MatchResult, known: MatchResult, shapes: tuple[Shape, Shape], *, of_source: bool
+) -> bool:
+    """Say whether what was made of a known match is clear, as a search leads there as well, and shows all it found."""
+    if piece.is_new or not is_clear(closer, known, of_source=of_source, is_sure=True):
+        return False
+    areas = (shapes[0] if of_source else shapes[1]).mesh.vertex_areas * piece.covered
+    return float(areas @ ~piece_with_partner(closer, *shapes, of_source=of_source)) <= _LACKING * float(areas.sum())
 
 
 def _best_piece_steps(
@@ -127,6 +162,23 @@ def _best_piece_steps(
         if is_as_alike(result, ALL_ALIKE):
             break
     return result
+
+
+def known_piece_matched_steps(
+    known: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool
+) -> Steps[MatchResult]:
+    """Match with only that of one surface which has a partner by a known match, beginning with that match.
+
+    See `piece_matched_steps`.
+    """
+    piece, begun = piece_with_partner(known, x, y, of_source=of_source), replace(task, begun=known.source_to_target)
+    return (yield from piece_matched_steps(known, x, y, begun, piece, of_source=of_source))
+
+
+def piece_with_partner(known: MatchResult, x: Shape, y: Shape, *, of_source: bool) -> Bools:
+    """Tell which vertices (n,) of the source, or else of the target, have a partner by a match."""
+    whole, shown = (x, known.dense.source_to_target) if of_source else (y, known.dense.target_to_source)
+    return shown.has_partner[whole.vertices]
 
 
 def piece_matched_steps(
@@ -238,6 +290,15 @@ def shows_all_of_part(result: MatchResult, *, of_source: bool) -> bool:
     """Say whether all of the part has a partner: all of the target, if the source is cut down, and the other way."""
     quality = result.dense.quality
     return (quality.coverage if of_source else quality.source_coverage) >= _COVERED
+
+
+def is_clear(result: MatchResult, known: MatchResult, *, of_source: bool, is_sure: bool) -> bool:
+    """Say whether a match is new, and all of the part so much like the piece that nothing else is worth trying.
+
+    Less likeness is enough if something else says as well that the piece is the right one.
+    """
+    enough = MUCH_ALIKE if is_sure else ALL_ALIKE
+    return result is not known and shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
 
 
 def is_as_alike(result: MatchResult, enough: float) -> bool:

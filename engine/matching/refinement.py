@@ -96,7 +96,7 @@ def refine_map_steps(
     x, y = finer_shapes(x, y)
     yield from within(x.spectrum_steps(EIGENPAIRS), 0.1, 0.15)
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.15, 0.2)
-    moving, fixed = DeformableSurface(x.mesh, x.laplace), DeformableSurface(y.mesh, y.laplace)
+    moving, fixed = (DeformableSurface(each.mesh, each.laplace, each.surface.cut_border(each.mesh)) for each in (x, y))
     places = fixed.in_unit_size(x.surface.proxy.on_finer(places))
     functions = x.unit_functions(_DETAILED)
     # Without the noise of the map, which the surface would keep as folds.

@@ -14,7 +14,7 @@ from ..geometry.laplacian import LaplaceBeltrami
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import TINY, Floats, marked
+from ..runtime.arrays import TINY, Bools, Floats, marked
 from ..runtime.progress import Progress, Steps
 from .elastic import ElasticSurface
 from .normal_equations import NormalEquations
@@ -37,6 +37,8 @@ class DeformableSurface:
         The surface; every vertex has a triangle.
     laplace : LaplaceBeltrami
         Its operator.
+    cut : (n,) array of bool, optional
+        At which vertices it ends only because it was cut out of a surface that goes on there.
 
     Attributes
     ----------
@@ -55,9 +57,9 @@ class DeformableSurface:
     is_sent_once = True
     """See `parallel_map.shared_steps`."""
 
-    def __init__(self, mesh: TriangleMesh, laplace: LaplaceBeltrami) -> None:
+    def __init__(self, mesh: TriangleMesh, laplace: LaplaceBeltrami, cut: Bools | None = None) -> None:
         self.mesh = mesh
-        self._laplace = laplace
+        self._laplace, self._cut = laplace, cut
         self._centre = np.average(mesh.vertices, axis=0, weights=mesh.vertex_areas)
         self._scale = float(np.sqrt(mesh.area))
         self.vertices = (mesh.vertices - self._centre) / self._scale
@@ -79,6 +81,11 @@ class DeformableSurface:
     def border(self) -> Floats:
         """One for the vertices at which the surface ends, zero for all others, (n,)."""
         return marked(self.mesh.boundary_edges, len(self.vertices)).astype(np.float64)
+
+    @cached_property
+    def rim(self) -> Floats:
+        """The same without where it was cut, (n,)."""
+        return self.border if self._cut is None else self.border * ~self._cut
 
     @property
     def ends(self) -> bool:

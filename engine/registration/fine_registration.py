@@ -54,7 +54,8 @@ class FinerSurface:
     @cached_property
     def deformable(self) -> DeformableSurface:
         """The surface to register."""
-        return DeformableSurface(self.proxy.mesh, laplace_beltrami(self.proxy.mesh))
+        mesh = self.proxy.mesh
+        return DeformableSurface(mesh, laplace_beltrami(mesh), self.prepared.cut_border(mesh))
 
 
 def finer_surfaces_steps(x: PreparedSurface, y: PreparedSurface) -> Steps[tuple[FinerSurface, FinerSurface]]:

@@ -470,12 +470,16 @@ def _solved(
 def _beyond(surface: DeformableSurface, matches: FoundPoints, other: DeformableSurface) -> Bools:
     """Tell which vertices (n,) of a surface are matched to where the other ends, but not because they end themselves.
 
-    What they would be matched to is missing: they are not to be drawn to what is left.
+    What they would be matched to is missing: they are not to be drawn to what is left.  Where either was cut, it ends
+    somewhere.
     """
     if not other.border.any():
         return np.zeros(len(surface.vertices), bool)
-    ends = (other.border[other.triangles[matches.triangles]] * matches.barycentric).sum(axis=1)
-    return (ends > _ENDS) & (surface.border == 0)
+    ends, rim = (
+        (where[other.triangles[matches.triangles]] * matches.barycentric).sum(axis=1) > _ENDS
+        for where in (other.border, other.rim)
+    )
+    return ends & ~(rim & (surface.rim > 0))
 
 
 def _agreement(first: Floats, second: Floats) -> Floats:

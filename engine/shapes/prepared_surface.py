@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.reflection import reflected_mesh, reflected_points, reflected_positions
@@ -14,10 +15,14 @@ from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.clean_surface import CleanSurface
 from ..repair.cleaning import clean
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints, marked
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, within
 from .proxy import MATCHED, Proxy, proxy_steps
+
+_BESIDE = 1.5
+"""How far what was left out is from where it was cut off, at most, in spacings of the vertices: they are beside each
+other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +96,15 @@ class PreparedSurface:
                 beside = np.isin(first, added) & (self.cleaned.main.original_vertices[second] >= 0)
                 own[first[beside]] = self.cleaned.main.original_vertices[second[beside]]
         return own[self.proxy.vertices]
+
+    def cut_border(self, mesh: TriangleMesh) -> Bools:
+        """Tell where a mesh that stands for the main part ends because something was left out there, (k,)."""
+        border = marked(mesh.boundary_edges, mesh.vertex_count)
+        left_out = np.delete(self.original.triangles, self.kept_triangles, axis=0)
+        if not len(left_out):
+            return np.zeros_like(border)
+        beside = cKDTree(self.original.vertices[np.unique(left_out)]).query(mesh.vertices)[0]
+        return border & (beside < _BESIDE * np.sqrt(mesh.area / mesh.vertex_count))
 
     def on_original(self, points: SurfacePoints) -> SurfacePoints:
         """Place points of the surface that is matched on the original mesh."""

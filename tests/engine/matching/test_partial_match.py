@@ -17,6 +17,7 @@ from engine import (
     match,
     match_steps,
 )
+from engine.matching import partial_match
 from engine.matching.covered_parts import CoveredPart
 from engine.matching.partial_match import agreed_part_steps, part_matched_steps
 from engine.matching.refinement import refine_map
@@ -151,8 +152,38 @@ def test_with_a_piece_that_is_of_no_use_the_first_match_stays(useless, whole, ha
         yield
 
     monkeypatch.setattr("engine.matching.partial_match.covered_parts_steps", found_steps)
+    monkeypatch.setattr("engine.matching.partial_match.shows_all_of_part", lambda *_, **__: False)
     assert run(part_matched_steps(first, x, y, task)) is first
     assert asked
+
+
+@pytest.mark.parametrize("what", ["clear", "found again", "found elsewhere", "lacks something"])
+def test_what_a_known_map_covers_is_enough_if_it_is_clear_or_found_again(what, result, whole, half, monkeypatch):
+    known, x, y = result.dense, Shape(whole[0]), Shape(half[0])
+    quality = replace(known.quality, likeness=1.0)
+    first = result.with_dense(DenseMatch(known.source_to_target, known.target_to_source, quality))
+    asked, tried = [], []
+
+    def found_steps(*_):
+        shown = whole[1][:, 0] > (-0.4 if what == "lacks something" else 0.1)
+        asked.append(CoveredPart(shown, -100.0, is_new=what == "found elsewhere"))
+        return asked
+        yield
+
+    def piece_matched_steps(*given, **named):
+        tried.append(given)
+        return steps(*given, **named)
+
+    steps = partial_match.piece_matched_steps
+    monkeypatch.setattr(partial_match, "covered_parts_steps", found_steps)
+    monkeypatch.setattr(partial_match, "piece_matched_steps", piece_matched_steps)
+    monkeypatch.setattr(partial_match, "ALL_ALIKE", -1000.0 if what == "clear" else 1000.0)
+    monkeypatch.setattr(partial_match, "MUCH_ALIKE", -1000.0)
+    found = run(part_matched_steps(first, x, y, MatchTask(QUICK, None)))
+    assert found is not first
+    assert np.mean(errors(found.target_to_source, half[1], whole[1])) < 0.02
+    assert bool(asked) == (what != "clear")
+    assert len(tried) == (2 if what in ("found elsewhere", "lacks something") else 1)
 
 
 @pytest.mark.parametrize("is_right", [True, False])
@@ -164,7 +195,7 @@ def test_another_search_agrees_with_a_right_map_alone_and_finds_one_either_way(i
     # As of an overlap: how much alike they are is not known.
     quality = replace(known.quality, likeness=None, confidence=0.1)
     given = result.with_dense(DenseMatch(there, back, quality))
-    steps = agreed_part_steps(given, *shapes, MatchTask(QUICK, None), of_source=True)
+    steps = agreed_part_steps(given, given, *shapes, MatchTask(QUICK, None), of_source=True)
     found, agrees = run(steps)
     assert agrees == is_right
     assert np.mean(errors(found.target_to_source, half[1], whole[1])) < 0.02

@@ -29,9 +29,9 @@ from tests.bodies import relative_of_creature
 from tests.shapes import compacted, creature, icosphere, permuted, rotation
 
 
-def deformable(vertices, triangles):
+def deformable(vertices, triangles, cut=None):
     mesh = TriangleMesh(vertices, triangles)
-    return DeformableSurface(mesh, laplace_beltrami(mesh))
+    return DeformableSurface(mesh, laplace_beltrami(mesh), cut)
 
 
 def at(points, surface, values):
@@ -298,6 +298,24 @@ def test_what_the_target_lacks_keeps_its_shape():
     assert away[tail].max() < 0.05
     back = run(register_steps(target, source, 1.03 * source.in_unit_size(cut.vertices), (FINE, CLOSE, LAST)))
     assert np.linalg.norm(back.positions - source.in_unit_size(cut.vertices), axis=1).max() < 0.02
+
+
+@pytest.mark.parametrize("which", ["source", "target"])
+def test_where_a_surface_was_cut_it_is_not_drawn_to_where_the_other_ends(which):
+    """What was cut out too large is not squeezed onto the part that it stands for."""
+    vertices, triangles, _ = creature(0.4, 11)
+    part, piece = (compacted(vertices, triangles[vertices[triangles, 0].min(axis=1) > x]) for x in (0.05, -0.2))
+    cut = np.zeros(len(piece[0]), bool)
+    cut[np.unique(TriangleMesh(*piece).boundary_edges)] = True
+    errors = []
+    for where in (None, cut):
+        surfaces = deformable(*piece, where), deformable(*part)
+        source, target = surfaces if which == "source" else surfaces[::-1]
+        here = source.mesh.vertices
+        truth = target.in_unit_size(here)
+        found = run(register_steps(source, target, truth, (FINE, CLOSE, LAST)))
+        errors.append(np.linalg.norm(found.positions - truth, axis=1)[here[:, 0] > 0.1].mean())
+    assert errors[1] < 0.7 * errors[0]
 
 
 def test_rotations_are_averaged_over_more_between_unlike_bodies(bodies, near_truth, functions):

@@ -105,6 +105,21 @@ def test_excluded_vertices_take_no_part(body):
         surface.mesh_vertices(np.flatnonzero(excluded)[:1])
 
 
+@pytest.mark.parametrize("is_dense", [False, True])
+def test_where_something_was_left_out_the_surface_was_cut_and_not_where_it_ends(body, dense, is_dense):
+    whole = dense.original if is_dense else body
+    tail, nose = whole.vertices[:, 2] < -0.6, whole.vertices[:, 2] > np.quantile(whole.vertices[:, 2], 0.95)
+    open_mesh = TriangleMesh(*compacted(whole.vertices, whole.triangles[~nose[whole.triangles].any(axis=1)]))
+    assert not prepared(open_mesh).cut_border(prepared(open_mesh).mesh).any()
+    surface = prepared(open_mesh, excluded=open_mesh.vertices[:, 2] < -0.6, proxy_vertices=600 if is_dense else 5000)
+    cut = surface.cut_border(surface.mesh)
+    assert tail.any()
+    border = np.unique(surface.mesh.boundary_edges)
+    expected = border[surface.mesh.vertices[border, 2] < 0]
+    assert 0 < len(expected) < len(border)
+    np.testing.assert_array_equal(np.flatnonzero(cut), expected)
+
+
 def test_points_return_exactly_from_a_mesh_with_a_part_left_out(body):
     surface = prepared(body, excluded=body.vertices[:, 2] < -0.6)
     points = random_points(surface.mesh)
