@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import share_of, with_piece_only
-from ..dense.credibility import ALL_ALIKE, CREDIBLE, MUCH_ALIKE, has_failed, is_less_alike
+from ..dense.credibility import ALL_ALIKE, CREDIBLE, EVEN, MUCH_ALIKE, has_failed, is_less_alike
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, part_of, within
@@ -40,7 +40,11 @@ _MOST = 2
 """Pieces of the surfaces that the match is done with at most, to choose between them."""
 
 _ROUNDS = 2
-"""How often: a piece that turns out too small grows."""
+"""How often: a piece that turns out too small grows, and one that turns out too large shrinks."""
+
+_TOO_LARGE = 0.1
+"""Part of a piece without a partner from which on it is too large: it is seen too small beside the part, and too little
+like it.  Chosen by `partial_pairs`."""
 
 _BEGUN, _FOUND = 0.15, 0.45
 """Parts of the work after which the piece is matched that is known already, and other pieces are known."""
@@ -209,14 +213,15 @@ def piece_matched_steps(
     for again in range(_ROUNDS):
         way = _Way(x, y, of_source, replace(task, least=_needed(result, least, of_source=of_source)))
         other = yield from within(way.matched_steps(piece), *part_of(again, _ROUNDS))
-        if other is None or not is_better_part(other, result, least, of_source=of_source):
+        if other is None or is_less_alike(other.dense.quality.likeness, EVEN):
             break
-        # Its notes would speak of openings where a piece was cut out.
-        result = replace(other, notes=result.notes)
-        more = way.continued(other, piece)
-        if more is None:
+        if is_better_part(other, result, least, of_source=of_source):
+            # Its notes would speak of openings where a piece was cut out.
+            result = replace(other, notes=result.notes)
+        better = way.better_piece(other, piece)
+        if better is None:
             break
-        piece = piece | more
+        piece = better
     return result
 
 
@@ -244,15 +249,22 @@ class _Way:
             return None
         return result.with_dense(with_piece_only(result.dense, covered, share, of_source=self.of_source))
 
-    def continued(self, result: MatchResult, piece: Bools) -> Bools | None:
-        """Tell where a surface goes on beyond a piece (n,), by what lacks a partner there; None if nothing does."""
+    def better_piece(self, result: MatchResult, piece: Bools) -> Bools | None:
+        """Tell what of a surface would be a better piece than one (n,), by what has no partner; None if that is right.
+
+        It is without that if that is much, and goes on where the part hangs over.
+        """
         whole, part = (self.x, self.y) if self.of_source else (self.y, self.x)
+        shown = piece_with_partner(result, self.x, self.y, of_source=self.of_source)
+        areas = whole.mesh.vertex_areas
+        is_too_large = float(areas @ (piece & ~shown)) > _TOO_LARGE * float(areas @ piece)
+        kept = shown if is_too_large else piece
         if shows_all_of_part(result, of_source=self.of_source):
-            return None
+            return kept if is_too_large else None
         back = result.dense.target_to_source if self.of_source else result.dense.source_to_target
         alone = back.confidence[part.vertices] == 0
-        unit = np.sqrt(float(whole.mesh.vertex_areas @ piece) / part.mesh.area)
-        return continued(whole, part, back.positions[part.vertices], alone, unit)
+        unit = np.sqrt(float(areas @ piece) / part.mesh.area)
+        return kept | continued(whole, part, back.positions[part.vertices], alone, unit)
 
 
 def _misses(covered: Bools, landmarks: ArrayLike | None, column: int) -> bool:

@@ -19,7 +19,7 @@ from engine import (
 )
 from engine.matching import partial_match
 from engine.matching.covered_parts import CoveredPart
-from engine.matching.partial_match import agreed_part_steps, part_matched_steps
+from engine.matching.partial_match import agreed_part_steps, part_matched_steps, piece_matched_steps
 from engine.matching.refinement import refine_map
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
@@ -184,6 +184,27 @@ def test_what_a_known_map_covers_is_enough_if_it_is_clear_or_found_again(what, r
     assert np.mean(errors(found.target_to_source, half[1], whole[1])) < 0.02
     assert bool(asked) == (what != "clear")
     assert len(tried) == (2 if what in ("found elsewhere", "lacks something") else 1)
+
+
+@pytest.mark.parametrize("start", [-0.4, 0.4], ids=["too large", "too small"])
+def test_a_piece_that_is_too_large_shrinks_and_one_that_is_too_small_grows(start, result, whole, half, monkeypatch):
+    areas, steps = [], partial_match.matched_steps
+
+    def tried_steps(x, y, task):
+        areas.append(x.mesh.area / whole[0].area)
+        return steps(x, y, task)
+
+    monkeypatch.setattr(partial_match, "matched_steps", tried_steps)
+    quality = replace(result.dense.quality, likeness=1.0)
+    known = result.with_dense(DenseMatch(result.source_to_target, result.target_to_source, quality))
+    shapes, piece = (Shape(whole[0]), Shape(half[0])), whole[1][:, 0] > start
+    found = run(piece_matched_steps(known, *shapes, MatchTask(QUICK, None), piece, of_source=True))
+    true = whole[0].vertex_areas @ (whole[1][:, 0] > 0.05) / whole[0].area
+    assert len(areas) == 2
+    assert (areas[1] > areas[0]) == (start > 0.05)
+    assert abs(areas[1] - true) < abs(areas[0] - true)
+    assert found is not known
+    assert np.mean(errors(found.target_to_source, half[1], whole[1])) < (0.04 if start > 0.05 else 0.02)
 
 
 @pytest.mark.parametrize("is_right", [True, False])
