@@ -81,8 +81,15 @@ def test_a_target_that_is_sheared_by_what_it_hangs_on_stays_where_it_is():
     source, _ = add_rigged()
     target, _ = add_target(source)
     target.rotation_euler = (0.3, 0.5, 0.5)
-    hang(target, add_empty())
-    fitted(source, target)
+    root = add_empty()
+    hang(target, root)
+    root.scale = (1, 1, 3)
+    bpy.context.view_layer.update()
+    assert not target.matrix_world.is_orthogonal_axis_vectors
+    place = own(target)
+    made, _ = fitted(source, target)
+    assert made.parent == root
+    assert np.abs(own(target) - place).max() < 1e-4
 
 
 def test_a_target_that_is_sheared_by_its_own_rig_stays_where_it_is():
@@ -94,7 +101,11 @@ def test_a_target_that_is_sheared_by_its_own_rig_stays_where_it_is():
     other.scale = (1, 2, 1)
     target.parent = other
     bpy.context.view_layer.update()
-    fitted(source, target)
+    assert not target.matrix_world.is_orthogonal_axis_vectors
+    place = own(target)
+    made, _ = fitted(source, target)
+    assert made != other
+    assert np.abs(own(target) - place).max() < 1e-4
 
 
 @pytest.mark.parametrize("animated", [False, True])
