@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["SteeredRig", "found_again", "is_steered", "steered_steps"]
 
 _AT_ONCE = 8
-"""Groups of controls tried, or frames posed, before Blender gets on with its own work: a fifth of a second for
+"""Groups of controls tried, or poses looked at, before Blender gets on with its own work: a fifth of a second for
 Rigify's human.  A third of that is the copy of the rig that each lot needs."""
 
 _AWAY = np.radians(10.0)
@@ -62,14 +62,17 @@ class SteeredRig:
         """Find out how the controls have to stand in each pose."""
         names = [bone.name for bone in armature_of(found_again(link)).bones]
         chosen = [names.index(name) for name in self.controls.turning]
-        parts = []
-        for start in range(0, len(found.motion), _AT_ONCE):
+        parts, start, count = [], 0, _AT_ONCE
+        while start < len(found.motion):
             yield Progress(start / len(found.motion), "Posing controls")
-            part = slice(start, start + _AT_ONCE)
+            part = slice(start, start + count)
             turns, heads = found.motion.turns[part][:, chosen], found.motion.heads[part][:, chosen]
-            parts.append(posed_controls(found_again(link), self.controls, turns, heads))
+            bases, away, seen = posed_controls(found_again(link), self.controls, turns, heads)
+            parts.append((bases, away))
+            # As many next as should need so many looks.
+            start, count = start + count, _AT_ONCE * len(seen) // int(seen.sum())
         self._bases = np.concatenate([bases for bases, _ in parts])
-        missed = np.concatenate([each for _, each in parts]).mean(axis=0)
+        missed = np.concatenate([away for _, away in parts]).mean(axis=0)
         self._missed = dict(zip(self.controls.turning, missed.tolist(), strict=True))
 
     def channels(self, armature: bpy.types.Object, plain: list[BoneChannels]) -> list[BoneChannels]:

@@ -17,9 +17,15 @@ TURNED = Controls(TURNING)
 @pytest.mark.parametrize("alone", [(), ("c1",), ("c1", "c2", "c5")])
 def test_controls_stand_so_that_all_bones_turn_as_wanted(alone):
     rig = chains(*alone)
-    turns = Rotation.random(5 * 6, random_state=3).as_matrix().reshape(5, 6, 3, 3)
-    bases, missed = posed_controls(rig, TURNED, turns, np.zeros((5, 6, 3)))
+    turns = random_turns(5)
+    bases, missed, seen = posed_controls(rig, TURNED, turns, np.zeros((5, 6, 3)))
     assert missed.max() < 0.001
+    assert seen.tolist() == [True, False, False, False, True]
+    check(rig, bases, turns)
+
+
+def check(rig, bases, turns):
+    """Assert that the bones turn as wanted with these transforms of the controls."""
     rest = np.array([rig.data.bones[name].matrix_local.to_3x3() for name in DEFORMING])
     for pose, wanted in zip(bases, turns, strict=True):
         for name, basis in zip(TURNED.turning.values(), pose, strict=True):
@@ -42,20 +48,63 @@ def updates():
     bpy.app.handlers.depsgraph_update_post.remove(handler)
 
 
-def test_controls_that_carry_each_other_are_posed_in_one_go(updates):
-    rig = chains()
+def random_turns(count):
+    return Rotation.random(count * 6, random_state=3).as_matrix().reshape(count, 6, 3, 3)
+
+
+@pytest.mark.parametrize("alone", [(), ("c1",)])
+def test_of_a_long_motion_few_poses_are_looked_at(updates, alone):
+    rig = chains(*alone)
     updates.clear()
-    turns = Rotation.random(4 * 6, random_state=3).as_matrix().reshape(4, 6, 3, 3)
-    posed_controls(rig, TURNED, turns, np.zeros((4, 6, 3)))
-    assert 4 <= len(updates) <= 4 + 2  # one for each pose, and to begin and to end
+    bases, missed, seen = posed_controls(rig, TURNED, random_turns(41), np.zeros((41, 6, 3)))
+    assert np.flatnonzero(seen).tolist() == [0, 8, 16, 24, 32, 40]
+    assert len(updates) <= 6 + 3  # to begin and to end, and once more to learn what carries a limb
+    assert missed.max() < 0.001
+    check(rig, bases, random_turns(41))
+
+
+def half_carried(rig, influence):
+    """Let a bone that carries "c2" turn only so far as "c0" does, and for the rest with "c1" that it hangs on."""
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    bones = rig.data.edit_bones
+    between = bones.new("between")
+    between.head, between.tail, between.parent = bones["c2"].head, bones["c2"].tail, bones["c1"]
+    bones["c2"].parent = between
+    bpy.ops.object.mode_set(mode="OBJECT")
+    follows = rig.pose.bones["between"].constraints.new("COPY_ROTATION")
+    follows.target, follows.subtarget, follows.influence = rig, "c0", influence
+    return follows
+
+
+@pytest.mark.parametrize("influence", [0.3, 0.5, 1.0])
+def test_what_goes_part_of_the_way_with_another_control_is_known_after_one_pose(influence):
+    rig = chains()
+    half_carried(rig, influence)
+    bases, missed, seen = posed_controls(rig, TURNED, random_turns(17), np.zeros((17, 6, 3)))
+    assert seen.sum() == 3
+    assert missed.max() < 0.001
+    check(rig, bases, random_turns(17))
+
+
+def test_where_controls_are_held_otherwise_each_pose_is_looked_at():
+    rig = chains()
+    half_carried(rig, 0.0)
+    limit = rig.pose.bones["between"].constraints.new("LIMIT_ROTATION")
+    limit.use_limit_x, limit.min_x, limit.max_x, limit.owner_space = True, 1.4, 1.8, "POSE"
+    turns = np.tile(np.eye(3), (25, 6, 1, 1))
+    turns[9:] = random_turns(16)
+    bases, missed, seen = posed_controls(rig, TURNED, turns, np.zeros((25, 6, 3)))
+    assert missed.max() < 0.001
+    check(rig, bases, turns)
+    assert np.flatnonzero(~seen).tolist() == [1, 2, 3, 4, 5, 6, 7]  # at rest
 
 
 def test_the_scene_that_is_shown_is_not_evaluated(updates):
     rig = chains()
     updates.clear()
     objects = set(bpy.data.objects)
-    turns = Rotation.random(2 * 6, random_state=3).as_matrix().reshape(2, 6, 3, 3)
-    posed_controls(rig, TURNED, turns, np.zeros((2, 6, 3)))
+    posed_controls(rig, TURNED, random_turns(2), np.zeros((2, 6, 3)))
     assert bpy.context.scene.name not in updates
     assert bpy.data.scenes.keys() == ["Scene"]
     assert set(bpy.data.objects) == objects
