@@ -21,6 +21,7 @@ from ..rig.fitted_rig import FittedRig
 from ..rig.joint_placement import place_joints, standing
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import carried, row_shares, row_sums
+from .limb_order import in_order
 from .mirrored_bones import evened_rotations, mirrored_bones
 from .segments import Segments
 from .tree_alignment import aligned
@@ -52,11 +53,6 @@ _FIXED = 10.0
 _STRAY_DIRECTION = np.radians(35.0)
 """A bone whose direction by the joints is further from that by the map keeps the latter: its joint means another
 place."""
-
-_STRAY_IF_DOUBTFUL = np.radians(60.0)
-"""The same angle where a map is doubtful, so that joints tell more of directions than it does: with it, limbs of the
-Mesh2Motion woman who walks as the knight does point elsewhere by 15 instead of 30 degrees, see ``python -m
-tests.benchmarks.maker_rigs``."""
 
 _TRUNK_NEAR_AXES = np.radians(20.0)
 """Bodies whose rotation against each other is no further from one that takes axes to axes are turned by just that."""
@@ -116,8 +112,9 @@ def pair_bones(
 
     Of two bones three things are compared: what they move together with all bones that hang on them, what they move by
     themselves, and where their joints are.  Chains are then aligned as chains, from either side, so that three bones
-    may stand for five.  Bones beside them that move what their parent moves, such as twist bones, and bones that move
-    nothing, stay alone.  Names are not known here.
+    may stand for five; where the map is doubtful, limbs by the order and lengths of their bones.  Bones beside them
+    that move what their parent moves, such as twist bones, and bones that move nothing, stay alone.  Names are not
+    known here.
 
     Parameters
     ----------
@@ -173,15 +170,27 @@ def pair_bones(
     given = {(int(a), int(b)) for a, b in fixed}
     chosen = _without_misplaced(chosen, within_target, given, target)
     upright = _upright(rig, source, frames)
+    doubtful = bool(np.average(rig.target_to_source.confidence, weights=target.vertex_areas) < DOUBTFUL)
+    if doubtful:
+        ends = _ending(trees[0], source, rig.weights, upright), _ending(skeleton, target, weights, np.eye(3))
+        moving = rig.weights.sum(axis=0) > 0, (weights.sum(axis=0) > 0) & ~np.isin(np.arange(len(skeleton)), alone)
+        beside = tuple((other >= 0) & (other != np.arange(len(other))) for other in mirrors)
+        chosen = in_order(chosen, found.scores, ends, moving, beside, given=given)
     sources, targets = chosen.T
-    worth = found.scores[targets, sources]
+    worth = found.scores[targets, sources].clip(min=0)
     worth[[pair in given for pair in zip(sources.tolist(), targets.tolist(), strict=True)]] = 1.0
     # Where tails point is left to whoever made the rig: bones that move something turn as their surface does.
     seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
     evened = evened_rotations(seen[sources], (sources, targets), trees, mirrors, upright)
-    confidence = np.average(rig.target_to_source.confidence, weights=target.vertex_areas)
-    rotations = _swung(evened, (sources, targets), trees, doubtful=bool(confidence < DOUBTFUL))
+    rotations = _swung(evened, (sources, targets), trees, doubtful=doubtful)
     return BonePairing(sources, targets, worth, rotations, placed.heads[sources], upright)
+
+
+def _ending(tree: Skeleton, mesh: TriangleMesh, weights: csr_array, turn: Floats) -> Skeleton:
+    """Turn bones, and let each end where what it moves does, with all that hangs on it: twice as far as its middle."""
+    moved = csr_array((weights @ csr_array(tree.hanging.T, dtype=float)).T.multiply(mesh.vertex_areas))
+    middles = (moved @ mesh.vertices) / np.maximum(row_sums(moved), TINY)[:, None]
+    return Skeleton(tree.parents, tree.heads @ turn.T, (2 * middles - tree.heads) @ turn.T)
 
 
 def nearest_bones(mesh: TriangleMesh, skeleton: Skeleton) -> csr_array:
@@ -378,12 +387,12 @@ def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Sk
     """Swing rotations (k, 3, 3) of the pairs: about the bones as the surface is turned, along them as the joints lie.
 
     Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.  If
-    the map is doubtful, so do joints that are further from it, and those at which a limb begins that is of several
+    the map is doubtful, so do joints that are however far from it, and those at which a limb begins that is of several
     bones in one of the rigs.
     """
     turned = rotations.copy()
     parts = Segments.of(*ends, *trees)
-    stray = _STRAY_IF_DOUBTFUL if doubtful else _STRAY_DIRECTION
+    stray = np.pi if doubtful else _STRAY_DIRECTION
     for part in np.flatnonzero(parts.single):
         below = parts.below(part)
         if len(below) != 1 or not (doubtful or parts.single[below[0]]):
@@ -394,6 +403,6 @@ def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Sk
             for tree, bones in zip(trees, (parts.sources, parts.targets), strict=True)
         ]
         start, goal = unit_vectors(np.stack([turned[row] @ ways[0], ways[1]]))
-        if start @ goal > np.cos(stray):
+        if start @ goal >= np.cos(stray):
             turned[row] = least_turns(start[None], goal[None])[0] @ turned[row]
     return nearest_rotations(turned) if len(turned) else turned

@@ -72,6 +72,24 @@ def test_where_a_map_is_doubtful_joints_tell_where_limbs_point(someone, confiden
     assert angle < 5 if follows else angle > 40
 
 
+@pytest.mark.parametrize(("confidence", "right"), [(1.0, False), (0.1, True)])
+def test_where_a_map_is_doubtful_limbs_are_paired_in_order(someone, confidence, right):
+    # As if the map took the lower leg to the foot, as that of a large head on short legs with large feet does.
+    tree, names = someone.rig.skeleton, someone.rig.names
+    same = SurfaceMap.identity(someone.mesh)
+    same = replace(same, confidence=np.full(len(same), confidence))
+    fitted = fit_rig(someone.mesh, someone.mesh, same, same, weights=someone.rig.weights, skeleton=tree, refine=False)
+    shifted = {
+        f"{one}.{side}": f"{other}.{side}" for one, other in (("shin", "foot"), ("foot", "toe")) for side in "LR"
+    }
+    shifted |= {f"toe.{side}": f"shin.{side}" for side in "LR"}
+    order = [names.index(shifted.get(name, name)) for name in names]
+    pairing = pair_bones(fitted, someone.mesh, someone.mesh, tree, someone.rig.weights[:, order])
+    pairs = {(names[a], names[b]) for a, b in zip(pairing.sources, pairing.targets, strict=True)}
+    for side in "LR":
+        assert ({(f"shin.{side}", f"shin.{side}"), (f"foot.{side}", f"foot.{side}")} <= pairs) == right
+
+
 def test_a_body_that_faces_elsewhere_is_turned_as_a_whole(someone, paired):
     turn = rotation([0, 0, 1], np.pi / 2)
     rig = renamed(someone.rig)

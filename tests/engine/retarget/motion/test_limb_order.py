@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bones of limbs paired by their order and lengths, whatever the surface says of their places."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import Skeleton
+from engine.retarget.motion.limb_order import in_order
+
+LEG = {"thigh": (0, 0, -0.4), "calf": (0, 0.07, -0.43), "foot": (0, -0.16, -0.08), "ball": (0, -0.1, 0.0)}
+SHORT_LEG = {"upper": (0, 0, -0.23), "lower": (0, 0.03, -0.14), "foot": (0, -0.12, -0.12), "toes": (0, -0.2, 0.0)}
+ARM = {"clavicle": (0.15, 0.13, 0.02), "upper": (0.3, 0, 0), "lower": (0.28, 0, 0), "hand": (0.2, 0, 0)}
+SHORT_ARM = {"upper": (0.24, 0, 0), "lower": (0.26, 0, 0), "wrist": (0.08, 0, 0), "hand": (0.17, 0, 0)}
+
+
+def hung(*limbs):
+    """A skeleton of a trunk and limbs that hang on it, each beginning a little farther on."""
+    parents, heads, tails = [-1], [(0, 0, 0)], [(0, 0, 0.5)]
+    for number, steps in enumerate(limbs):
+        above, place = 0, np.array([0.1 + number, 0, 0])
+        for step in steps:
+            parents.append(above)
+            heads.append(place)
+            tails.append(place + np.array(step))
+            above, place = len(parents) - 1, tails[-1]
+    return Skeleton(np.array(parents), np.array(heads, float), np.array(tails, float))
+
+
+def partners(one, other, pairs=((1, 1),), *, size=1.0, turn=None, given=frozenset()):
+    """Names of the bones of two limbs that are paired, if the surface says only so much."""
+    trees = (
+        hung(one.values(), [(0, 0, 1)] * 2),
+        hung([size * np.array(step) for step in other.values()], [(0, 0, 1)] * 2),
+    )
+    if turn is not None:
+        steps = [turn @ np.array(step) for step in other.values()]
+        trees = trees[0], hung(steps, [(0, 0, 1)] * 2)
+    counts = [len(tree) for tree in trees]
+    scores = np.full(counts[::-1], -np.inf)
+    for source, target in pairs:
+        scores[target, source] = 0.5
+    moving = tuple(np.ones(count, bool) for count in counts)
+    limbs = tuple(np.arange(count) > 0 for count in counts)
+    found = in_order(np.array(pairs), scores, trees, moving, limbs, given=given)
+    names = [["trunk", *each] for each in (one, other)]
+    return {(names[0][a], names[1][b]) for a, b in found.tolist()}
+
+
+STRAIGHT = {("upper", "thigh"), ("lower", "calf"), ("foot", "foot"), ("toes", "ball")}
+
+
+@pytest.mark.parametrize("pairs", [((1, 1),), ((1, 1), (4, 3)), ((3, 2), (2, 1))])
+def test_a_short_leg_with_a_large_foot_is_paired_joint_by_joint(pairs):
+    assert partners(SHORT_LEG, LEG, pairs) == STRAIGHT
+
+
+@pytest.mark.parametrize("size", [0.01, 7.0])
+def test_sizes_do_not_matter(size):
+    assert partners(SHORT_LEG, LEG, size=size) == STRAIGHT
+
+
+def test_nor_does_the_pose_of_the_limb_as_a_whole():
+    bent = np.array([[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]])
+    assert partners(SHORT_LEG, LEG, turn=bent) == STRAIGHT
+
+
+def test_a_collar_bone_stays_alone_and_a_wrist_shares_a_partner():
+    known = ((1, 2), (2, 3))
+    found = partners(SHORT_ARM, ARM, known)
+    assert found - {("wrist", "lower"), ("wrist", "hand")} == {(name, name) for name in ("upper", "lower", "hand")}
+    assert "wrist" in {source for source, _ in found}
+    swapped = tuple((target, source) for source, target in known)
+    assert partners(ARM, SHORT_ARM, swapped) == {(other, one) for one, other in found}
+
+
+def test_limbs_without_a_pair_and_those_with_given_ones_stay_as_they_are():
+    assert partners(SHORT_LEG, LEG, ((0, 0),)) == {("trunk", "trunk")}
+    assert partners(SHORT_LEG, LEG, ((1, 1), (4, 3)), given={(4, 3)}) == {("upper", "thigh"), ("toes", "foot")}
