@@ -95,7 +95,8 @@ def improve_matching(problem: MatchingProblem, assignment: Ints, exclusions: Seq
     """
     current = np.array(assignment, dtype=np.int64)
     rows = np.arange(len(current))
-    tolerance = 1e-12 * abs(problem.cost(current))
+    cost = problem.cost(current)
+    tolerance = 1e-12 * abs(cost)
     while True:
         moves, swaps = _move_and_swap_gains(problem, current)
         for exclusion in exclusions:
@@ -106,12 +107,17 @@ def improve_matching(problem: MatchingProblem, assignment: Ints, exclusions: Seq
             swaps[spare + after + after.T < 0] = -np.inf
         if max(moves.max(), swaps.max()) <= tolerance:
             return current
+        changed = current.copy()
         if moves.max() >= swaps.max():
             i, a = np.unravel_index(moves.argmax(), moves.shape)
-            current[i] = a
+            changed[i] = a
         else:
             i, k = np.unravel_index(swaps.argmax(), swaps.shape)
-            current[[i, k]] = current[[k, i]]
+            changed[[i, k]] = current[[k, i]]
+        # Where all but one candidate are far off, a gain may be no more than rounding, there and back for ever.
+        if not problem.cost(changed) < cost:
+            return current
+        current, cost = changed, problem.cost(changed)
 
 
 def _move_and_swap_gains(problem: MatchingProblem, current: Ints) -> tuple[Floats, Floats]:

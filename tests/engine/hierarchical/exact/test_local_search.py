@@ -52,6 +52,16 @@ def test_the_result_keeps_to_the_exclusions_and_is_best_among_its_neighbours_tha
     assert min(allowed, default=np.inf) >= problem.cost(result) * (1 - 1e-9)
 
 
+@pytest.mark.parametrize("n", [4, 8])
+def test_points_that_are_alike_but_for_rounding_are_not_exchanged_for_ever(n):
+    # Each is as far from all others, so exchanging two changes nothing; but what that costs is lost in rounding.
+    away = 1.0 - np.eye(n)
+    random = np.random.default_rng(n).integers(-3, 4, (n, n)) * np.finfo(float).eps
+    problem = MatchingProblem(np.zeros((n, n)), away + np.triu(random, 1) + np.triu(random, 1).T, away)
+    start = np.arange(n)
+    assert problem.cost(improve_matching(problem, start)) <= problem.cost(start)
+
+
 def test_the_start_is_not_changed():
     problem = random_problem(0, 5, 7)
     start = np.arange(5)
