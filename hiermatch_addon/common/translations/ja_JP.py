@@ -1211,6 +1211,9 @@ MESSAGES: Final[dict[str, str]] = {
         'ペアがなく、レストポーズでもないボーンが、付いているものをすべて回転させています: "{1}"の{0}。意図したもので'
         "なければ、そのポーズをクリアしてください(ポーズ > トランスフォームをクリア)。"
     ),
+    '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
+        "「{0}」は移された後に編集されていました。編集されたものは「{1}」として残してあります。"
+    ),
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0}はオブジェクト"{1}"のサイズも変えます。それは移されませんでした。'
     ),

@@ -1011,6 +1011,9 @@ MESSAGES: Final[dict[str, str]] = {
         '没有配对且不在静置姿态的骨骼会带动挂在其上的一切旋转："{1}" 的 {0}。如非有意，请清除其姿态'
         "（姿态 > 清空变换）。"
     ),
+    '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
+        "“{0}”在传递之后被编辑过。编辑过的版本保留为“{1}”。"
+    ),
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0} 还会改变物体 "{1}" 的大小。这部分被略去。'
     ),

@@ -20,6 +20,7 @@ __all__ = [
     "actions_of",
     "assign_action",
     "bone_curves",
+    "every_curve",
     "frame_range",
     "lent_action",
     "moves_bones",
@@ -101,6 +102,15 @@ def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterato
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
+
+
+def every_curve(action: bpy.types.Action) -> Iterator[Any]:
+    """Go through all curves of an action, of whatever slot."""
+    if not hasattr(action, "slots"):
+        yield from cast("Any", action).fcurves
+        return
+    for slot in cast("Any", action).slots:
+        yield from _curves(action, slot)
 
 
 def moves_bones(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
@@ -205,24 +215,28 @@ class CurveMaker:
 
     Parameters
     ----------
-    name : str
-        Name of the action.
+    before : bpy.types.Action or str
+        One that is made anew in its place, so that whatever plays it plays the new one; or the name of another one.
     armature : bpy.types.Object
         Whom it is for.
     model : bpy.types.Action
         Whose frame range and cycle it takes over.
     """
 
-    def __init__(self, name: str, armature: bpy.types.Object, model: bpy.types.Action) -> None:
-        made: Any = bpy.data.actions.new(name)
+    def __init__(self, before: bpy.types.Action | str, armature: bpy.types.Object, model: bpy.types.Action) -> None:
+        made: Any = bpy.data.actions.new(before) if isinstance(before, str) else before
         made.use_fake_user = True
         made[MADE_FOR] = armature.name
         self.action = made
         self._bag = None
         if hasattr(made, "slots"):
-            slot = made.slots.new("OBJECT", armature.name)
+            slot = slot_for(made, armature) or made.slots.new("OBJECT", armature.name)
+            for layer in list(made.layers):
+                made.layers.remove(layer)
             strip = made.layers.new("Layer").strips.new(type="KEYFRAME")
             self._bag = strip.channelbag(slot, ensure=True)
+        else:
+            _clear(made)
         for option in ("use_frame_range", "frame_start", "frame_end", "use_cyclic"):
             setattr(made, option, getattr(model, option))
 
@@ -234,6 +248,13 @@ class CurveMaker:
         curve = self._bag.fcurves.new(path, index=index)
         curve.group = self._bag.groups.get(bone) or self._bag.groups.new(bone)
         return curve
+
+
+def _clear(action: Any) -> None:  # noqa: ANN401 - before Blender 4.4
+    """Remove the curves of an action and their groups."""
+    for parts in (action.fcurves, action.groups):
+        for part in list(parts):
+            parts.remove(part)
 
 
 def _curves(action: bpy.types.Action, slot: Any) -> Iterator[Any]:  # noqa: ANN401 - new in Blender 4.4

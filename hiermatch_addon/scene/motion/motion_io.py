@@ -21,6 +21,7 @@ from .action_curves import (
     played_action,
     slot_for,
 )
+from .carried_action_io import carried_before, mark_carried, put_aside, was_carried, was_edited
 from .own_scene import own_scene
 from .rigs import own_skeleton, rest_matrices
 
@@ -113,9 +114,6 @@ class BoneKeys:
 
 OBJECT = ""
 """What stands among names of bones for the object itself, which carries them all."""
-
-_MARKER = "hiermatch_carried"
-"""Custom property of actions that were made from those of other rigs."""
 
 _TURNED = 0.02
 """By what angle a bone is no longer at rest: about one degree."""
@@ -265,21 +263,22 @@ def _motion_of(armature: bpy.types.Object, posed: NDArray[np.float64]) -> Motion
 
 
 def write_action(
-    name: str, armature: bpy.types.Object, model: bpy.types.Action, keys: Sequence[BoneKeys], *, assign: bool
-) -> bpy.types.Action:
-    """Make an action of keys, named and ranged like another one.
+    armature: bpy.types.Object, model: bpy.types.Action, keys: Sequence[BoneKeys], *, assign: bool
+) -> tuple[bpy.types.Action, str]:
+    """Make an action of keys, named after an armature and ranged like another one.
+
+    What was made from that one before is made anew in its place: strips, too, play the new one. If it was edited since
+    it is kept beside it with all that plays it.
 
     If it takes the place of an action that was carried over before, what only that one moved goes back to rest: it
     would stand for good where that one left it. Where an action was made by hand, nobody knows whether that is wanted.
 
     Parameters
     ----------
-    name : str
-        Its name.
     armature : bpy.types.Object
         Whom it is for.
     model : bpy.types.Action
-        Whose frame range it takes over.
+        From which it is carried over, and whose frame range it takes over.
     keys : sequence of BoneKeys
         The keys.
     assign : bool
@@ -287,27 +286,38 @@ def write_action(
 
     Returns
     -------
-    bpy.types.Action
+    action : bpy.types.Action
         The action.
+    aside : str
+        What the one that was made before is called now, if it was edited and is kept; else empty.
     """
-    maker = CurveMaker(name, armature, model)
+    played, before, aside = _left_by(armature), carried_before(armature, model), ""
+    if before is not None and was_edited(before):
+        aside = put_aside(before)
+    maker = CurveMaker(before if before is not None and not aside else f"{model.name} {armature.name}", armature, model)
     for channel in keys:
         for index in range(channel.values.shape[1]):
             _write_curve(maker.curve(channel.bone, channel.channel, index), channel, index)
-    maker.action[_MARKER] = True
+    mark_carried(maker.action, model)
+    if assign or played_action(armature) == maker.action:
+        _put_to_rest(armature, played - {(each.bone, each.channel) for each in keys})
     if assign:
-        _leave_action(armature, {(each.bone, each.channel) for each in keys})
         assign_action(armature, maker.action)
-    return maker.action
+    return maker.action, aside
 
 
-def _leave_action(armature: bpy.types.Object, moved: set[tuple[str, str]]) -> None:
-    """Put channels of bones to rest that the action played now moves, if it was carried over, and the next does not."""
+def _left_by(armature: bpy.types.Object) -> set[tuple[str, str]]:
+    """Return the channels of bones that the action played now moves, if it was carried over."""
     before = played_action(armature)
-    if before is None or _MARKER not in cast("Any", before):
-        return
+    if before is None or not was_carried(before):
+        return set()
+    return {(bone, channel) for bone, channel, _ in bone_curves(before, armature)}
+
+
+def _put_to_rest(armature: bpy.types.Object, left: set[tuple[str, str]]) -> None:
+    """Put channels of bones to rest."""
     bones: Any = cast("bpy.types.Pose", armature.pose).bones
-    for bone, channel in {(bone, channel) for bone, channel, _ in bone_curves(before, armature)} - moved:
+    for bone, channel in left:
         setattr(bones[bone], channel, bones[bone].bl_rna.properties[channel].default_array)
 
 

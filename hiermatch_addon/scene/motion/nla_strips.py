@@ -62,6 +62,8 @@ def add_tracks(rig: bpy.types.Object, actions: Iterable[bpy.types.Action]) -> No
 def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mapping[str, bpy.types.Action]) -> None:
     """Copy the tracks of an object with those strips whose actions have a counterpart.
 
+    A track with the same actions at the same frames is there already, from a former time, and stays as it is.
+
     Parameters
     ----------
     source, target : bpy.types.Object
@@ -73,9 +75,14 @@ def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mappin
     if animation is None:
         return
     theirs: Any = target.animation_data or target.animation_data_create()
+    there = [[(strip.frame_start, strip.action) for strip in track.strips] for track in theirs.nla_tracks]
     for track in animation.nla_tracks:
         strips = [strip for strip in track.strips if strip.action is not None and strip.action.name in made]
         if not strips:
+            continue
+        wanted = [(strip.frame_start, made[strip.action.name]) for strip in strips]  # type: ignore[union-attr]
+        if wanted in there:
+            there.remove(wanted)
             continue
         copy = theirs.nla_tracks.new()
         copy.name = track.name

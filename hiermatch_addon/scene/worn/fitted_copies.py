@@ -15,6 +15,7 @@ import numpy as np
 
 from ..character import FITTED_TO, armatures_above, parts_of, positions_of, topology_of
 from ..deform_layer import read_weights
+from ..plain_settings import written_settings
 from ..shape_key_io import key_positions, keys_of
 
 if TYPE_CHECKING:
@@ -52,12 +53,6 @@ _AS_FITTED: Final = "hiermatch_as_fitted"
 
 _PLACE: Final = "hiermatch_fitted_place"
 """Custom property of a fitted copy: where it stood when it was fitted, as the numbers of a matrix; see `_place`."""
-
-_SHOWN: Final = ("show_", "is_", "open_", "use_pin_to_last", "name", "type")
-"""What the names of those members of a modifier begin with that say nothing of what it does."""
-
-_PLAIN: Final = frozenset({"BOOLEAN", "INT", "FLOAT", "STRING", "ENUM"})
-"""Types of members that hold a value, and nothing that has members itself."""
 
 
 def fitted_name(item: str, body: str) -> str:
@@ -195,22 +190,9 @@ def _place(copy: bpy.types.Object, body: Side) -> NDArray[np.float64]:
 
 def _settings(copy: bpy.types.Object, modifier: bpy.types.Modifier) -> str:
     """Write what is set on a modifier, but for what drivers set."""
-    animation, path = copy.animation_data, f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].'
+    animation, start = copy.animation_data, f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].'
     driven = {curve.data_path for curve in animation.drivers} if animation else set()
-    names = [
-        prop.identifier
-        for prop in modifier.bl_rna.properties
-        if prop.type in _PLAIN and not prop.is_readonly and not prop.identifier.startswith(_SHOWN)
-    ]
-    values = {name: getattr(modifier, name) for name in names if path + name not in driven}
-    return repr({name: _plain(value) for name, value in values.items()})
-
-
-def _plain(value: Any) -> Any:  # noqa: ANN401 - whatever a modifier holds
-    """Write a value so that what is equal looks alike."""
-    if isinstance(value, set):
-        return sorted(value)
-    return value if isinstance(value, str) or not hasattr(value, "__len__") else list(value)
+    return written_settings(modifier, {path.removeprefix(start) for path in driven if path.startswith(start)})
 
 
 def _state(copy: bpy.types.Object) -> str:

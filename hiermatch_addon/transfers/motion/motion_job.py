@@ -162,7 +162,8 @@ class MotionJob(SteppedJob):
         done = []
         for rig in rigs:
             before = next(paired) if rig.session_uid in self._pairs else None
-            made = {action.name: self._write(rig, action, alone=len(actions) == 1) for action in actions}
+            notes: list[str] = []
+            made = {action.name: self._write(rig, action, notes, alone=len(actions) == 1) for action in actions}
             steered = self._steered.get(rig.name)
             if not actions:
                 _set_pose(rig, self._poses[rig.name], steered)
@@ -173,7 +174,7 @@ class MotionJob(SteppedJob):
                 moved = [name for name in moved if name in steered.controls.lost]
             remarks = () if steered is None else steered.finished(rig)
             played = not actions or (self._plan.assign and len(actions) == 1)
-            notes = _notes(source, rig, actions, moved, played=played and steered is None)
+            notes += _notes(source, rig, actions, moved, played=played and steered is None)
             if fixed := self._fixed.get(rig.name):
                 notes.append(
                     "Bones that are connected do not move away from what they hang on, as those of the source do: "
@@ -194,10 +195,17 @@ class MotionJob(SteppedJob):
                 done.append(replace(before, target=rig.name, reports=reports, seconds=seconds))
         return done
 
-    def _write(self, rig: bpy.types.Object, action: bpy.types.Action, *, alone: bool) -> bpy.types.Action:
-        """Write a target's action."""
+    def _write(
+        self, rig: bpy.types.Object, action: bpy.types.Action, notes: list[str], *, alone: bool
+    ) -> bpy.types.Action:
+        """Write a target's action, and note what is kept of one that was made before."""
         keys, assign = self._found[rig.name, action.name], self._plan.assign and alone
-        return write_action(f"{action.name} {rig.name}", rig, action, keys, assign=assign)
+        made, aside = write_action(rig, action, keys, assign=assign)
+        if aside:
+            notes.append(
+                f'"{made.name}" was edited since it had been carried over. The edited one is kept as "{aside}".'
+            )
+        return made
 
     def _rigs(self) -> list[bpy.types.Object]:
         return [found_again(link) for link in (self._source, *self._targets)]
