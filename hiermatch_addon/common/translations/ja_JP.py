@@ -1211,6 +1211,10 @@ MESSAGES: Final[dict[str, str]] = {
         'ペアがなく、レストポーズでもないボーンが、付いているものをすべて回転させています: "{1}"の{0}。意図したもので'
         "なければ、そのポーズをクリアしてください(ポーズ > トランスフォームをクリア)。"
     ),
+    'Auto Keying set no keys: "{0}" plays an action of another file. Make it local, or let it play another one.': (
+        '自動キー挿入はキーを打ちませんでした: "{0}"が別のファイルのアクションを再生しているためです。ローカル化'
+        "するか、別のアクションを再生させてください。"
+    ),
     '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
         "「{0}」は移された後に編集されていました。編集されたものは「{1}」として残してあります。"
     ),

@@ -1011,6 +1011,9 @@ MESSAGES: Final[dict[str, str]] = {
         '没有配对且不在静置姿态的骨骼会带动挂在其上的一切旋转："{1}" 的 {0}。如非有意，请清除其姿态'
         "（姿态 > 清空变换）。"
     ),
+    'Auto Keying set no keys: "{0}" plays an action of another file. Make it local, or let it play another one.': (
+        '自动插帧没有插入关键帧："{0}" 播放的动作属于另一个文件。请将其本地化，或让它播放另一个动作。'
+    ),
     '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
         "“{0}”在传递之后被编辑过。编辑过的版本保留为“{1}”。"
     ),

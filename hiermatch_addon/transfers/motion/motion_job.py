@@ -21,6 +21,7 @@ from ...properties.bone_pairs import lost_bones, pairing_of, rows_of
 from ...scene.armatures import armature_of
 from ...scene.character import SideReference
 from ...scene.motion.action_curves import scaled_bones
+from ...scene.motion.auto_keying import key_automatically
 from ...scene.motion.control_rigs import driven_bones
 from ...scene.motion.motion_io import (
     current_motion,
@@ -166,7 +167,7 @@ class MotionJob(SteppedJob):
             made = {action.name: self._write(rig, action, notes, alone=len(actions) == 1) for action in actions}
             steered = self._steered.get(rig.name)
             if not actions:
-                _set_pose(rig, self._poses[rig.name], steered)
+                notes += _set_pose(cast("bpy.types.Scene", context.scene), rig, self._poses[rig.name], steered)
             if self._plan.strips:
                 copy_strips(source, rig, made)
             moved = [row.target for row in rows_of(cast("bpy.types.Scene", context.scene), source, rig) if row.source]
@@ -358,8 +359,10 @@ def _check_channels(rig: bpy.types.Object, pairing: BonePairing) -> None:
         )
 
 
-def _set_pose(rig: bpy.types.Object, found: TransferredMotion, steered: SteeredRig | None) -> None:
-    """Pose an armature as computed: bones with partners, or what turns them, only."""
+def _set_pose(
+    scene: bpy.types.Scene, rig: bpy.types.Object, found: TransferredMotion, steered: SteeredRig | None
+) -> list[str]:
+    """Pose an armature as computed: bones with partners, or what turns them, only. Say what is to be known."""
     bones = cast("bpy.types.Pose", rig.pose).bones
     inherits = np.array([bone.use_inherit_rotation for bone in armature_of(rig).bones], bool)
     local = local_transforms(found.motion, rest_matrices(rig)[:, :3, :3], inherits)
@@ -370,7 +373,18 @@ def _set_pose(rig: bpy.types.Object, found: TransferredMotion, steered: SteeredR
             basis[:3, :3] = local.rotations[0, number]
             basis[:3, 3] = local.locations[0, number] if found.placed[number] else bone.location
             bases[bone.name] = basis
-    set_pose(rig, bases if steered is None else steered.bases(bases))
+    placed = [bone.name for number, bone in enumerate(bones) if found.moved[number] and found.placed[number]]
+    if steered is not None:
+        bases = steered.bases(bases)
+        placed = [*(name for name in placed if name in bases), *steered.placed]
+    set_pose(rig, bases)
+    notes = []
+    if not key_automatically(scene, rig, bases, dict.fromkeys(placed)):
+        notes.append(
+            f'Auto Keying set no keys: "{rig.name}" plays an action of another file. Make it local, or let it play '
+            "another one."
+        )
+    return notes
 
 
 def _notes(

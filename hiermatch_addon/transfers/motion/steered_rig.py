@@ -96,6 +96,11 @@ class SteeredRig:
         found = {control: bases[0] for control, bases in self._by_control().values()}
         return {name: basis for name, basis in plain.items() if name in self.controls.lost} | found
 
+    @property
+    def placed(self) -> list[str]:
+        """The controls that are moved, not only turned."""
+        return [control for name, (control, _) in self._by_control().items() if name in self.controls.placed]
+
     def finished(self, armature: bpy.types.Object) -> tuple[str, ...]:
         """Set the switches that the controls need, and say so, and what does not follow."""
         said = []

@@ -99,7 +99,8 @@ def test_what_follows_already_needs_no_switch():
 def test_a_pose_goes_to_the_controls():
     source, _ = add_person("A")
     target, _ = add_person("B")
-    add_controls(target)
+    numbers = add_controls(target)
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
     source.pose.bones["thigh.L"].rotation_quaternion = (0.9, 0.4, 0.1, 0.1)
     source.pose.bones["forearm.R"].rotation_quaternion = (0.9, 0.1, 0.1, 0.4)
     bpy.context.view_layer.update()
@@ -107,6 +108,8 @@ def test_a_pose_goes_to_the_controls():
     bpy.context.view_layer.update()
     missed = np.linalg.norm(posed_vertices(target) - posed_vertices(source), axis=1)
     assert missed.mean() < 0.01 * np.ptp(someone().mesh.vertices[:, 2])
+    assert numbers["thigh.L"] in (found := keyed(target.animation_data.action))
+    assert found <= set(numbers.values())
 
 
 def test_bones_whose_controls_are_locked_are_named():
