@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...engine import (
+    DOUBTFUL,
     MatchSettings,
     Progress,
     SettingsError,
@@ -32,6 +33,7 @@ from ..storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, W
 from ..storage.vertex_maps import StoredMaps, add_maps
 from .prepared_shapes import known_shapes
 from .stepped_job import SteppedJob
+from .verdict import advice_on, hung_on_bones, is_half
 
 if TYPE_CHECKING:
     import bpy
@@ -235,6 +237,9 @@ class MatchJob(SteppedJob):
             excluded_vertices(source, options.exclude_source),
             excluded_vertices(target, options.exclude_target),
         )
+        plain = not options.use_modifiers
+        self._halves = (plain and is_half(source), plain and is_half(target))
+        self._hung = (hung_on_bones(source), hung_on_bones(target))
         self._known = known_shapes(shape_memory(context))
         self._found: _Found | None = None
         self._prepared: _Prepared | None = None
@@ -357,6 +362,7 @@ class MatchJob(SteppedJob):
         if options.alternative > found.chosen:
             missing, count = options.alternative, len(result.alternatives)
             notes.append(f"There is no alternative {missing}, only {count}: the direct answer was written.")
+        notes += self._advice(found, names)
         return StoredMatch(
             names=names,
             topologies=self._topologies,
@@ -374,6 +380,14 @@ class MatchJob(SteppedJob):
             chosen=found.chosen,
             notes=tuple(notes),
         )
+
+    def _advice(self, found: _Found, names: tuple[str, str]) -> list[str]:
+        """Say what the meshes look like, and what to do then, if the match is not to be trusted."""
+        quality = found.answer.quality
+        if quality is None or quality.confidence >= DOUBTFUL:
+            return []
+        advice = advice_on(quality, names, self._meshes, halves=self._halves, hung=self._hung)
+        return [advice] if advice else []
 
     def _objects(self, view_layer: bpy.types.ViewLayer) -> list[Side]:
         """Look the objects up again and make sure that they are still what was read."""

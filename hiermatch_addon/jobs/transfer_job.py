@@ -12,7 +12,7 @@ from ..common.access import view_layer_of
 from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError, SharedMeshError
 from ..properties.preferences import shape_memory
 from ..scene.armatures import armature_of, find_armature, read_rig
-from ..scene.character import SideReference, parts_of, positions_of, read_surface, topology_of, whole
+from ..scene.character import SideReference, positions_of, read_surface, topology_of, whole
 from ..scene.pair import check_pair, check_side, is_own
 from ..storage.halves import find_common
 from ..storage.linked_matches import keep_linked, kept_linked
@@ -22,7 +22,7 @@ from .match_job import MatchJob
 from .prepared_shapes import known_shapes
 from .stepped_job import SteppedJob
 from .transfer import Passage, TransferReport
-from .verdict import Verdict, advice_on
+from .verdict import Verdict, advice_on, hung_on_bones, is_half
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -122,7 +122,7 @@ class _Leg:
             self.match = MatchJob(context, source, target, _with_maps(options.match), writes=written)
             self.prefix = options.match.prefix
         self.mesh = read_surface(target, context.evaluated_depsgraph_get(), use_modifiers=False)
-        self.is_half, self.hung = _is_half(target), _hung(target)
+        self.is_half, self.hung = is_half(target), hung_on_bones(target)
         self.state = _state(target)
         self.transfers: list[Transfer] = []
         self.left_out: list[TransferReport] = []
@@ -167,18 +167,6 @@ def carry_fresh_match(source: Side, target: Side, prefix: str) -> bool:
 def _with_maps(options: JobOptions) -> JobOptions:
     """Return the options of a match that things can be carried across: dense, and of the meshes' own vertices."""
     return replace(options, use_modifiers=False, settings=replace(options.settings, dense=True))
-
-
-def _is_half(side: Side) -> bool:
-    """Tell whether a Mirror modifier completes a part of a side: meshes are matched without it."""
-    return any(modifier.type == "MIRROR" and modifier.show_viewport for p in parts_of(side) for modifier in p.modifiers)
-
-
-def _hung(side: Side) -> list[str]:
-    """Return the names of the parts of a side that hang on a single bone each, such as weapons, if others do not."""
-    parts = parts_of(side)
-    names = [part.name for part in parts if part.parent is not None and part.parent_type == "BONE"]
-    return names if len(names) < len(parts) else []
 
 
 def _state(side: Side) -> tuple[str, ...]:
@@ -240,7 +228,7 @@ class TransferJob(SteppedJob):
             check_pair(view_layer, source, target, writes=(False, writes))
         self._source, self._source_name, self._source_state = SideReference.of(source), source.name, _state(source)
         self._mesh: TriangleMesh = read_surface(source, depsgraph, use_modifiers=False)
-        self._is_half, self._hung = _is_half(source), _hung(source)
+        self._is_half, self._hung = is_half(source), hung_on_bones(source)
         every = whole(source)
         self._whole = self._mesh if every == source else read_surface(every, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Final
 
 from ...engine import DOUBTFUL, open_ends
 from ..common.phrases import listed
+from ..scene.character import parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...engine import MatchQuality, TriangleMesh
+    from ..scene.character import Side
     from ..storage.stored_match import Quality
 
-__all__ = ["ANSWERS", "GOOD", "Verdict", "advice_on", "asymmetry_note"]
+__all__ = ["ANSWERS", "GOOD", "Verdict", "advice_on", "asymmetry_note", "hung_on_bones", "is_half"]
 
 GOOD: Final = 0.7
 """Confidence from which on a match is called good."""
@@ -131,6 +133,18 @@ def advice_on(
                 "under Leave Out, and match again."
             )
     return ""
+
+
+def is_half(side: Side) -> bool:
+    """Tell whether a Mirror modifier completes a part of a side: meshes are matched without it."""
+    return any(modifier.type == "MIRROR" and modifier.show_viewport for p in parts_of(side) for modifier in p.modifiers)
+
+
+def hung_on_bones(side: Side) -> list[str]:
+    """Return the names of the parts of a side that hang on a single bone each, such as weapons, if others do not."""
+    parts = parts_of(side)
+    names = [part.name for part in parts if part.parent is not None and part.parent_type == "BONE"]
+    return names if len(names) < len(parts) else []
 
 
 def asymmetry_note(name: str, quality: Quality | MatchQuality) -> str:

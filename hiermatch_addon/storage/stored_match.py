@@ -357,5 +357,6 @@ class StoredMatch:
 
 
 def _exchanged(note: str) -> str:
-    """Call the source in a note the target, and the target the source."""
-    return re.sub(r"\b(source|target)\b", lambda found: "target" if found[0] == "source" else "source", note)
+    """Call the source in a note the target, and the target the source, but not in names."""
+    others = {"source": "target", "target": "source"}
+    return re.sub(r'"[^"]*"|\b(?:source|target)\b', lambda found: others.get(found[0], found[0]), note)

@@ -166,3 +166,8 @@ def test_what_is_told_of_a_swapped_match_is_told_of_the_same_mesh():
     assert seen.sentence == said((1.0, 0.5)) != quality.sentence
     assert seen.confidence == quality.confidence
     assert notes == (holes.format("target"), "Nothing of any mesh.")
+
+
+def test_names_in_notes_stay_as_they_are():
+    notes = ('Hide what "my source mesh" has not, as the source has.',)
+    assert stored(notes=notes, swapped=True).told[1] == ('Hide what "my source mesh" has not, as the target has.',)

@@ -150,6 +150,13 @@ def test_of_a_doubtful_match_it_is_said_what_hangs_on_bones_and_may_be_hidden(mo
         bpy.data.objects[f"{rig} Head"].parent_bone = bpy.data.objects[rig].data.bones[0].name
     with pytest.raises(RuntimeError, match=r'What hangs on single bones of "A": "A Head"\. Hide what "B"'):
         ops.pair_bones(source="A", target="B")
+    # So it is by Match alone.
+    ops.match(source="A", target="B")
+    said = 'What hangs on single bones of "A": "A Head". Hide what "B" has not, such as weapons, and match again.'
+    assert bpy.context.scene.hiermatch.summary.notes == said
+    match_at_once(monkeypatch)
+    ops.match(source="A", target="B")
+    assert not bpy.context.scene.hiermatch.summary.notes
 
 
 @pytest.mark.usefixtures("rigs")
