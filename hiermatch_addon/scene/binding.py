@@ -10,6 +10,7 @@ from mathutils import Matrix
 
 from ..common.phrases import listed
 from .armatures import armature_modifier, armature_of, find_armature, moving_armatures
+from .bone_constraints import displaced_bones
 from .character import FITTED_TO, parts_of, take_place
 from .mesh_io import rest_matrix
 
@@ -23,6 +24,7 @@ __all__ = [
     "hand_over",
     "hang_in_place",
     "is_made",
+    "lost_poses",
     "made_rig",
     "mark_made",
     "replaced_remarks",
@@ -211,6 +213,16 @@ def replaced_remarks(target: Side, armatures: Iterable[bpy.types.Object]) -> lis
         if worn:
             said.append(f'What it wears is still moved by "{other.name}": {listed(worn)}. Fit it again by Wear.')
     return said
+
+
+def lost_poses(target: Side, armatures: Iterable[bpy.types.Object]) -> list[str]:
+    """Return what to say of poses in which armatures had a side that `unbind` has taken from them."""
+    return [
+        f'"{other.name}" had "{target.name}" posed. That pose was left out: the rest pose of its own armature counts. '
+        "To keep the pose instead, undo, apply that Armature modifier, and fit the rig again."
+        for other in armatures
+        if displaced_bones(other)
+    ]
 
 
 def worn_with(armature: bpy.types.Object) -> list[str]:

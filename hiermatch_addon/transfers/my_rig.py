@@ -27,7 +27,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
-from ..scene.binding import bind, hang_in_place, replaced_remarks, unbind
+from ..scene.binding import bind, hang_in_place, lost_poses, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
 from ..scene.character import parts_of, read_surface, vertex_ranges
 from ..scene.deform_layer import check_weights_writable
@@ -165,7 +165,9 @@ class MyRigTransfer(Transfer):
             done.append(self._write_weights(target))
             hang_in_place(armature, target, ())
             notes += bind(target, armature, source, ())
-            self._remarks += replaced_remarks(target, unbind(target, armature, ()))
+            replaced = unbind(target, armature, ())
+            notes += lost_poses(target, replaced)
+            self._remarks += replaced_remarks(target, replaced)
         else:
             self._remarks.append(
                 f'"{armature.name}" moves nothing yet. Generate its control rig, or bind "{target.name}" to it.'

@@ -15,7 +15,7 @@ from ..common.phrases import counted, listed
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
-from ..scene.binding import bind, hang_in_place, made_rig, mark_made, replaced_remarks, unbind
+from ..scene.binding import bind, hang_in_place, lost_poses, made_rig, mark_made, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_bones
 from ..scene.character import parts_of
 from ..scene.key_drivers import counterparts
@@ -147,6 +147,7 @@ class RigTransfer(Transfer):
                 hang_in_place(armature, target, beside)
             self._notes += bind(target, armature, source, beside)
             replaced = [] if beside is None else unbind(target, armature, beside)
+            self._notes += lost_poses(target, replaced)
         view_layer_of(context).update()
         displaced = displaced_bones(armature) if made is None else []
         if displaced:

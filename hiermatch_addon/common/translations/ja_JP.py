@@ -709,6 +709,12 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
         "「{0}」は自身のアーマチュア「{1}」ではもう動きません。そのアーマチュアモディファイアーはオフになっています。"
     ),
+    '"{0}" had "{1}" posed. That pose was left out: the rest pose of its own armature counts. To keep the pose '
+    "instead, undo, apply that Armature modifier, and fit the rig again.": (
+        '"{0}"は"{1}"にポーズを付けていましたが、そのポーズは移されず、自身のアーマチュアのレストポーズが使われま'
+        "した。ポーズを残すには、元に戻してそのアーマチュアモディファイアーを適用し、もう一度リグを合わせてくださ"
+        "い。"
+    ),
     'What it wears is still moved by "{0}": {1}. Fit it again by Wear.': (
         '着ているものはまだ"{0}"で動きます: {1}。「着せる」でもう一度合わせてください。'
     ),

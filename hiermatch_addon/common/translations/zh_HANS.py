@@ -594,6 +594,11 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is no longer moved by its own armature "{1}", whose Armature modifiers are switched off.': (
         "“{0}”不再受自身的骨架“{1}”驱动，其骨架修改器已关闭。"
     ),
+    '"{0}" had "{1}" posed. That pose was left out: the rest pose of its own armature counts. To keep the pose '
+    "instead, undo, apply that Armature modifier, and fit the rig again.": (
+        '"{0}" 使 "{1}" 摆出了姿态。该姿态被略去，以其自身骨架的静置姿态为准。若要保留该姿态，请撤销，应用该骨架'
+        "修改器，然后重新适配绑定。"
+    ),
     'What it wears is still moved by "{0}": {1}. Fit it again by Wear.': (
         '它所穿的仍由 "{0}" 带动：{1}。请用“穿戴”重新适配。'
     ),

@@ -401,7 +401,8 @@ def test_the_new_rig_takes_the_place_of_the_target_s_own():
     assert moving_armatures(target) == [made]
     assert target.parent == made
     np.testing.assert_allclose(shown(target), place, atol=1e-4)  # its own rig's pose moves it no more
-    assert not report.notes
+    (note,) = report.notes
+    assert note.startswith('"Other Rig" had "Target" posed. That pose was left out')
     assert any("no longer moved" in remark and "Other Rig" in remark for remark in report.remarks)
     assert not other.visible_get()
     assert meant_armature(bpy.context, "Other Rig") == made  # what is picked in the panel still means the target
