@@ -1516,6 +1516,13 @@ MESSAGES: Final[dict[str, str]] = {
     'What was painted on "{0}" in {1} changes nothing: paint it on "{2}".': (
         "「{0}」の{1}に描かれたものは効果がありません。「{2}」に描いてください。"
     ),
+    '"{0}" is an armature, and items are meshes. Name those that it moves: {1}.': (
+        '"{0}"はアーマチュアですが、アイテムはメッシュです。それが動かすメッシュの名前を挙げてください: {1}。'
+    ),
+    '"{0}" is an armature, and items are meshes. It moves none but a body: name others, or take it out.': (
+        '"{0}"はアーマチュアですが、アイテムはメッシュです。体のほかには何も動かしていません: ほかのものを指定す'
+        "るか、外してください。"
+    ),
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (
         '"{0}"のドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'

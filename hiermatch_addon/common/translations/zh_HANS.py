@@ -1254,6 +1254,12 @@ MESSAGES: Final[dict[str, str]] = {
     'What was painted on "{0}" in {1} changes nothing: paint it on "{2}".': (
         "在“{0}”的{1}中所绘制的内容不起作用：请绘制到“{2}”上。"
     ),
+    '"{0}" is an armature, and items are meshes. Name those that it moves: {1}.': (
+        '"{0}" 是骨架，而物品是网格。请指定它所带动的网格：{1}。'
+    ),
+    '"{0}" is an armature, and items are meshes. It moves none but a body: name others, or take it out.': (
+        '"{0}" 是骨架，而物品是网格。除身体外它不带动任何网格：请指定其他网格，或将其去掉。'
+    ),
     'Drivers of "{0}" still read from {1}: "{2}" has not what they need. Carry its shape keys or bones over by '
     "Retarget, and fit it again.": (
         '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'

@@ -14,6 +14,7 @@ from scipy.sparse import csr_array, vstack
 from ....engine import continues_body, ends_at_joint, hanging_triangles
 from ...common.access import mesh_of, view_layer_of
 from ...common.errors import ObjectError
+from ...common.phrases import listed
 from ..armatures import find_armature, held_by, moving_armatures, read_rig
 from ..character import Character, joined, joined_mesh, parts_of, vertex_ranges
 from ..key_drivers import counterparts, point_drivers
@@ -36,7 +37,7 @@ from .fitted_copies import (
 from .garment_shape_io import mirror_axes
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Container, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -181,12 +182,23 @@ def check_item(
         raise ObjectError(
             f'"{item.name}" is the body itself, picked as the {role}. Take it out of the items, or pick another body.'
         )
+    if item.type == "ARMATURE":
+        raise ObjectError(_no_armature(item, {*parts_of(source), *parts_of(target)}))
     if item.type in ("CURVE", "CURVES", "SURFACE", "FONT", "META"):
         raise ObjectError(
             f'"{item.name}" is not a mesh but of type {item.type.title()}. Convert a copy of it '
             "(Object > Convert > Mesh), and fit that."
         )
     check_object(view_layer_of(context), item, writable=writable)
+
+
+def _no_armature(item: bpy.types.Object, bodies: Container[bpy.types.Object]) -> str:
+    """Say that an armature is no item, and which meshes are meant, unless they are a body's."""
+    meshes = (obj for obj in bpy.data.objects if obj.type == "MESH" and obj not in bodies)
+    moved = [obj.name for obj in meshes if item in (obj.parent, *moving_armatures(obj))]
+    if moved:
+        return f'"{item.name}" is an armature, and items are meshes. Name those that it moves: {listed(moved)}.'
+    return f'"{item.name}" is an armature, and items are meshes. It moves none but a body: name others, or take it out.'
 
 
 def dressed_at_rest(item: bpy.types.Object, source: Side) -> bool:

@@ -545,6 +545,8 @@ def onto_the_other(shirt):
         (["Shirt"], move_away, "is far from"),
         (["Shirt"], onto_the_other, "Swap Source and Target"),
         (["Hair"], None, "Convert"),
+        (["Shirt Rig"], None, r'"Shirt Rig" is an armature, .* Name those that it moves: "Shirt"\.'),
+        (["Source Rig"], None, '"Source Rig" is an armature, .* moves none but a body'),
         (["Nothing"], None, "no object called"),
         ([], None, "No clothes"),
     ],
@@ -552,6 +554,11 @@ def onto_the_other(shirt):
 def test_what_cannot_be_worn_changes_nothing(dressed_pair, items, change, message):
     shirt = dressed_pair[2]
     bpy.context.scene.collection.objects.link(bpy.data.objects.new("Hair", bpy.data.curves.new("Hair", "CURVE")))
+    for obj in (shirt, dressed_pair[0]):
+        if any("Rig" in name for name in items):
+            rig = bpy.data.objects.new(f"{obj.name} Rig", bpy.data.armatures.new("Rig"))
+            bpy.context.scene.collection.objects.link(rig)
+            obj.modifiers.new("Armature", "ARMATURE").object = rig
     if change is not None:
         change(shirt)
         bpy.context.view_layer.update()
