@@ -1224,6 +1224,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
         "「{0}」は移された後に編集されていました。編集されたものは「{1}」として残してあります。"
     ),
+    'Actions that move only the object "{0}", and none of its bones, were left out: {1}.': (
+        'オブジェクト"{0}"だけを動かし、ボーンを動かさないアクションは移されませんでした: {1}。'
+    ),
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0}はオブジェクト"{1}"のサイズも変えます。それは移されませんでした。'
     ),

@@ -1022,6 +1022,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
         "“{0}”在传递之后被编辑过。编辑过的版本保留为“{1}”。"
     ),
+    'Actions that move only the object "{0}", and none of its bones, were left out: {1}.': (
+        '只移动物体 "{0}" 而不移动其骨骼的动作被略去：{1}。'
+    ),
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0} 还会改变物体 "{1}" 的大小。这部分被略去。'
     ),

@@ -24,8 +24,10 @@ __all__ = [
     "frame_range",
     "lent_action",
     "moves_bones",
+    "moves_object_only",
     "object_curves",
     "played_action",
+    "playing",
     "renamed_paths",
     "scaled_bones",
     "slot_for",
@@ -61,14 +63,14 @@ def actions_of(armature: bpy.types.Object) -> list[bpy.types.Action]:
     """
     others = [obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj != armature]
     names = {obj.name for obj in others}
-    theirs = {name for obj in others for name in _playing(obj)}
+    theirs = {name for obj in others for name in playing(obj)}
     theirs |= {action.name for action in bpy.data.actions if cast("Any", action).get(MADE_FOR) in names}
-    theirs -= set(_playing(armature))
+    theirs -= set(playing(armature))
     return [action for action in bpy.data.actions if action.name not in theirs and moves_bones(action, armature)]
 
 
-def _playing(armature: bpy.types.Object) -> list[str]:
-    """Names of the actions that an armature plays, or has on a track of the NLA editor."""
+def playing(armature: bpy.types.Object) -> list[str]:
+    """Return the names of the actions that an armature plays, or has on a track of the NLA editor."""
     animation = armature.animation_data
     if animation is None:
         return []
@@ -116,6 +118,11 @@ def every_curve(action: bpy.types.Action) -> Iterator[Any]:
 def moves_bones(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
     """Tell whether an action moves or turns bones of an armature."""
     return any(channel != "scale" for _, channel, _ in bone_curves(action, armature))
+
+
+def moves_object_only(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
+    """Tell whether an action moves an armature as a whole, and none of its bones."""
+    return next(object_curves(action, armature), None) is not None and not moves_bones(action, armature)
 
 
 def scaled_bones(action: bpy.types.Action, armature: bpy.types.Object) -> list[str]:

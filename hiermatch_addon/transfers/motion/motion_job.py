@@ -176,17 +176,7 @@ class MotionJob(SteppedJob):
             remarks = () if steered is None else steered.finished(rig)
             played = not actions or (self._plan.assign and len(actions) == 1)
             notes += _notes(source, rig, actions, moved, played=played and steered is None)
-            if fixed := self._fixed.get(rig.name):
-                notes.append(
-                    "Bones that are connected do not move away from what they hang on, as those of the source do: "
-                    f'{listed(fixed)} of "{rig.name}". To carry that as well disconnect them (Armature > Parent > '
-                    "Disconnect Bone in Edit Mode)."
-                )
-            if lost := lost_bones(cast("bpy.types.Scene", context.scene), source, rig):
-                notes.append(
-                    f"Pairs of bones that are gone, or called otherwise by now, were left out: {listed(lost)}. Pair "
-                    "the bones again."
-                )
+            notes += self._left_out(cast("bpy.types.Scene", context.scene), source, rig)
             report = TransferReport(_said(made), tuple(notes), remarks)
             seconds = time.perf_counter() - self._begun
             if before is None:
@@ -195,6 +185,27 @@ class MotionJob(SteppedJob):
                 reports = (*before.reports, report)
                 done.append(replace(before, target=rig.name, reports=reports, seconds=seconds))
         return done
+
+    def _left_out(self, scene: bpy.types.Scene, source: bpy.types.Object, rig: bpy.types.Object) -> list[str]:
+        """Say what was not carried to a target."""
+        notes = []
+        if self._plan.left_out:
+            notes.append(
+                f'Actions that move only the object "{source.name}", and none of its bones, were left out: '
+                f"{listed(self._plan.left_out)}."
+            )
+        if fixed := self._fixed.get(rig.name):
+            notes.append(
+                "Bones that are connected do not move away from what they hang on, as those of the source do: "
+                f'{listed(fixed)} of "{rig.name}". To carry that as well disconnect them (Armature > Parent > '
+                "Disconnect Bone in Edit Mode)."
+            )
+        if lost := lost_bones(scene, source, rig):
+            notes.append(
+                f"Pairs of bones that are gone, or called otherwise by now, were left out: {listed(lost)}. Pair "
+                "the bones again."
+            )
+        return notes
 
     def _write(
         self, rig: bpy.types.Object, action: bpy.types.Action, notes: list[str], *, alone: bool

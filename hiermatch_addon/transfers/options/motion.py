@@ -13,7 +13,7 @@ import bpy
 from ....engine import MotionSettings
 from ...common.errors import ObjectError
 from ...common.phrases import listed
-from ...scene.motion.action_curves import actions_of, moves_bones, played_action
+from ...scene.motion.action_curves import actions_of, moves_bones, moves_object_only, played_action, playing
 from ...scene.motion.nla_strips import strip_actions
 from ...scene.posing.rest_mesh_io import plays_actions
 
@@ -40,6 +40,8 @@ class MotionPlan:
         Whether a target plays its new action, if there is one only.
     strips : bool
         Whether NLA strips of these actions are copied.
+    left_out : tuple of str
+        Names of actions that are meant as well, and move no bones but the object alone.
     """
 
     actions: tuple[str, ...]
@@ -48,6 +50,7 @@ class MotionPlan:
     tolerance: float = 0.0035
     assign: bool = True
     strips: bool = False
+    left_out: tuple[str, ...] = ()
 
 
 class MotionOptions:
@@ -161,8 +164,21 @@ def motion_plan(scene: bpy.types.Scene, options: MotionOptions, rig: bpy.types.O
         rate=scene.render.fps / scene.render.fps_base,
     )
     return MotionPlan(
-        tuple(names), settings, options.keying, options.tolerance, assign=options.assign, strips=options.strips
+        tuple(names),
+        settings,
+        options.keying,
+        options.tolerance,
+        assign=options.assign,
+        strips=options.strips,
+        left_out=_left_out(options, rig),
     )
+
+
+def _left_out(options: MotionOptions, rig: bpy.types.Object) -> tuple[str, ...]:
+    """Names of the actions of a rig that the options mean, and that move the object alone."""
+    every = not options.action and options.actions == "ALL"
+    meant = [*(playing(rig) if every else ()), *(strip_actions(rig) if options.strips else ())]
+    return tuple(name for name in dict.fromkeys(meant) if moves_object_only(bpy.data.actions[name], rig))
 
 
 def _wanted(options: MotionOptions, rig: bpy.types.Object) -> list[str]:

@@ -429,6 +429,31 @@ def test_an_action_that_is_played_and_moves_no_bone_is_named():
         carry(source="A", target="B")
 
 
+def test_actions_that_move_only_the_object_are_named_if_they_are_meant():
+    source, _ = add_person("A")
+    add_person("B", "renamed")
+    wave = add_action(source, "Wave")
+    source.animation_data_clear()
+    source.keyframe_insert("location", frame=1)
+    source.location.x = 2
+    source.keyframe_insert("location", frame=11)
+    slide, animation = source.animation_data.action, source.animation_data
+    slide.name = "Slide"
+    animation.action = None
+    report = bpy.context.scene.hiermatch_retarget.report
+    for options in ({"actions": "ALL"}, {"action": "Wave", "strips": True}):
+        carry(source="A", target="B", **options)
+        assert "Slide" not in report.notes
+    animation.nla_tracks.new().strips.new("Slide", 1, slide)
+    animation.nla_tracks.new().strips.new("Wave", 1, wave)
+    said = 'Actions that move only the object "A", and none of its bones, were left out: "Slide".'
+    for options in ({"actions": "ALL"}, {"action": "Wave", "strips": True}):
+        carry(source="A", target="B", **options)
+        assert said in report.notes
+    carry(source="A", target="B", action="Wave")
+    assert "Slide" not in report.notes
+
+
 def test_exchanged_source_and_target_are_told():
     source, _ = add_person("A")
     add_person("B", "renamed")
