@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import argparse
+import csv
+import io
 import math
 import textwrap
 from types import SimpleNamespace
@@ -15,15 +17,15 @@ import numpy as np
 from .command import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
-__all__ = ["Parser", "add_options", "chosen_options", "given_options", "option_names", "to_arguments"]
+__all__ = ["Parser", "add_options", "chosen_options", "given_options", "option_names", "quoted_names", "to_arguments"]
 
 _OBJECTS = frozenset({"rna_type", "source", "target", "targets", "object"})
 """Properties that name objects: on the command line they are arguments."""
 
 _LISTS = frozenset({"items"})
-"""Collections of names: on the command line they are texts with commas between the names."""
+"""Collections of names: on the command line they are texts with commas between the names; see `quoted_names`."""
 
 _LINE = 100
 """Letters in a line of a description."""
@@ -75,7 +77,8 @@ def add_options(
 
 def given_options(operator: str, parsed: argparse.Namespace) -> dict[str, Any]:
     """Return those of an operator's options that were given."""
-    return {name: vars(parsed)[name] for name in option_names(operator) if name in vars(parsed)}
+    given = {name: vars(parsed)[name] for name in option_names(operator) if name in vars(parsed)}
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
 
 
 def chosen_options(operator: str, given: Mapping[str, Any]) -> Any:  # noqa: ANN401 - stands for the operator
@@ -137,7 +140,8 @@ def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
         text = " ".join([text, *(f"{word}: {meaning}." for word, meaning in said if meaning)])
         shown = described.default.lower()
     elif described.type == "COLLECTION":
-        about |= {"type": _names, "metavar": "NAME,NAME,..."}
+        about |= {"type": _names, "action": "extend", "metavar": "NAME,NAME,..."}
+        text += " Names with commas stand in double quotes; may be given several times."
         shown = ""
     elif described.type == "STRING":
         about |= {"type": _text(described.length_max), "metavar": "TEXT"}
@@ -172,8 +176,21 @@ def _text(longest: int) -> Callable[[str], str]:
     return parse
 
 
+def quoted_names(names: Iterable[str]) -> str:
+    """Write names as the text of an option: with commas between them, and in quotes where one has commas itself."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="").writerow(names)
+    return text.getvalue()
+
+
 def _names(text: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    try:
+        cells = [cell for row in csv.reader([text], skipinitialspace=True, strict=True) for cell in row]
+    except csv.Error:
+        raise argparse.ArgumentTypeError(
+            f'the quotes in {text} do not stand around whole names, such as in "Shirt, red",Hat'
+        ) from None
+    return tuple(dict.fromkeys(name.strip() for name in cells if name.strip()))
 
 
 def _number(described: Any) -> Callable[[str], float]:  # noqa: ANN401 - a property

@@ -111,18 +111,54 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
 
 def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namespace, console: Console) -> None:
     """Run all pairs that have no report yet, or one that is not to count."""
-    tasks: dict[str, tuple[Pair, list[dict[str, Any]]]] = {}
-    waiting, known = [], 0
+    tasks = _tasks(pairs, ledger, parsed, console)
+    before, ended = len(pairs) - len(tasks), 0
+    events = run_tasks([task for task, _, _ in tasks.values()], parsed.jobs, parsed.timeout)
+    try:
+        for event in events:
+            if isinstance(event, Ended):
+                ended += 1
+                _, pair, inputs = tasks[event.task.name]
+                if event.lacking:
+                    _leave(pair, tasks[event.lacking][1], ledger, console)
+                else:
+                    _close(pair, inputs, event, ledger, console)
+            elif console.is_terminal:  # elsewhere the lines about what has ended are enough
+                names = ", ".join(tasks[name][1].name for name in event)
+                console.progress((before + ended) / len(pairs), f"{before + ended} of {len(pairs)}, at {names}")
+    finally:
+        events.close()  # type: ignore[attr-defined]  # a generator; ends the children
+
+
+def _tasks(
+    pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namespace, console: Console
+) -> dict[str, tuple[Task, Pair, list[dict[str, Any]]]]:
+    """Make the tasks of all pairs that are to be run: by name the task, the pair and the state of its files.
+
+    One that reads what another is to write is run after that one, even if it was done before, and not at all if that
+    one has failed.
+    """
+    tasks: dict[str, tuple[Task, Pair, list[dict[str, Any]]]] = {}
+    writers: dict[str, str] = {}
+    failed: dict[str, Pair] = {}
+    known = 0
     for pair in pairs:
-        report = ledger.report_of(pair)
-        if report is not None and (report["status"] == "done" or not parsed.retry_failed):
+        after = frozenset(writers[path] for path in pair.read if path in writers)
+        report = None if after else ledger.report_of(pair)
+        if report is not None and (report["status"] == "done" or not (parsed.retry_failed or "lacking" in report)):
             known += 1
+            failed |= dict.fromkeys(pair.written if report["status"] != "done" else (), pair)
+            continue
+        if other := next((failed[path] for path in pair.read if path in failed), None):
+            _leave(pair, other, ledger, console)
+            failed |= dict.fromkeys(pair.written, pair)
             continue
         try:
             arguments, inputs = _checked_arguments(pair, parsed.check)
         except UsageError as error:
             ledger.fail(pair, [], None, f"{error}.")
             console.error(f"{pair.name}: {error}.")
+            failed |= dict.fromkeys(pair.written, pair)
             continue
         told = [f"--report={ledger.report_path(pair)}", f"--report-key={pair.key}"]
         if pair.command != "match" and "accept_doubtful" not in dict(pair.options):
@@ -130,29 +166,27 @@ def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namesp
         if parsed.least_confidence is not None:
             told.append(f"--least-confidence={parsed.least_confidence}")
         ledger.report_path(pair).unlink(missing_ok=True)  # else that of a former run would stand for a crashed one
-        task = Task(pair.stem, [*arguments, *told], ledger.log_path(pair))
-        tasks[task.name] = (pair, inputs)
-        waiting.append(task)
-    before, ended = len(pairs) - len(waiting), 0
+        tasks[pair.stem] = Task(pair.stem, [*arguments, *told], ledger.log_path(pair), after), pair, inputs
+        writers |= dict.fromkeys(pair.written, pair.stem)
     if known:
         console.say(f"{known} of {len(pairs)} pairs are known already.")
-    events = run_tasks(waiting, parsed.jobs, parsed.timeout)
-    try:
-        for event in events:
-            if isinstance(event, Ended):
-                ended += 1
-                pair, inputs = tasks[event.task.name]
-                _close(pair, inputs, event, ledger, console)
-            elif console.is_terminal:  # elsewhere the lines about what has ended are enough
-                names = ", ".join(tasks[name][0].name for name in event)
-                console.progress((before + ended) / len(pairs), f"{before + ended} of {len(pairs)}, at {names}")
-    finally:
-        events.close()  # type: ignore[attr-defined]  # a generator; ends the children
+    return tasks
+
+
+def _leave(pair: Pair, other: Pair, ledger: Ledger, console: Console) -> None:
+    """Say that a pair was not begun, because another one, whose file it reads, came to nothing."""
+    if ledger.report_of(other) is None:
+        return  # that one is still to be done, and so is this one
+    error = f'It was not begun: it reads what "{other.name}" writes, and that failed.'
+    ledger.fail(pair, [], None, error, lacking=other.name)
+    console.error(f"{pair.name}: failed. {error}")
 
 
 def _checked_arguments(pair: Pair, check: Callable[[list[str]], object]) -> tuple[list[str], list[dict[str, Any]]]:
     """Return the arguments of a child, of which it is sure that they are some, and the state of its files."""
     arguments = pair.arguments()
+    if pair.command != "match" and not pair.written:  # what is left of a match is its report
+        raise UsageError("output is empty, so nothing would be left of the work. Name the file to write")
     try:
         check(arguments)
         paths = [mesh_argument(text).path for text in (pair.source, pair.target)]

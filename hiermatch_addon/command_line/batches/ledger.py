@@ -81,8 +81,10 @@ class Ledger:
         written = report.get("written", []) if report["status"] == "done" else []
         return report if all(Path(path).is_file() for path in written) else None
 
-    def fail(self, pair: Pair, inputs: list[dict[str, Any]], ended: Ended | None, error: str) -> None:
-        """Write the report that a child did not write itself."""
+    def fail(
+        self, pair: Pair, inputs: list[dict[str, Any]], ended: Ended | None, error: str, *, lacking: str = ""
+    ) -> None:
+        """Write the report that a child did not write itself, also of one that was not begun for lack of another."""
         status = "failed" if ended is None else "timeout" if ended.timeout else "crashed"
         report = {
             "format": FORMAT,
@@ -100,7 +102,7 @@ class Ledger:
             "carried": [],
             "notes": [],
             "written": [],
-        }
+        } | ({"lacking": lacking} if lacking else {})
         write_whole(self.report_path(pair), (json.dumps(report, indent=1, ensure_ascii=False) + "\n").encode())
 
     def write_summary(self, rows: Sequence[dict[str, Any]], name: str) -> Path:

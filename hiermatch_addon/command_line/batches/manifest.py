@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from ...common.errors import ObjectError
 from ..command import UsageError
 from ..meshes import mesh_argument
-from ..options import option_names, to_arguments
+from ..options import option_names, quoted_names, to_arguments
 from ..retarget import NOT_OF_THE_MATCH
 
 if TYPE_CHECKING:
@@ -36,6 +36,9 @@ COMMANDS = {
 
 _FIXED = ("name", "command", "source", "target", "output", "map")
 """Columns that are no options."""
+
+_LISTED = {"items": quoted_names, "output": "|".join}
+"""Columns with several names or files: how a list of them in a .json is written in a table."""
 
 
 @dataclass(frozen=True)
@@ -159,8 +162,22 @@ def read_manifest(path: Path, defaults: Mapping[str, str], command: str) -> list
 
 
 def take_shard(pairs: Sequence[Pair], shard: tuple[int, int]) -> list[Pair]:
-    """Return every n-th pair, from the i-th on; all shards together are all pairs, each once."""
+    """Return every n-th pair, from the i-th on; all shards together are all pairs, each once.
+
+    Raises
+    ------
+    ObjectError
+        If a pair of any shard reads what one of another writes: shards do not wait for each other.
+    """
     first, step = shard
+    writers = {path: pair.number for pair in pairs for path in pair.written}
+    for pair in pairs:
+        for path in pair.read:
+            if path in writers and (pair.number - writers[path]) % step:
+                raise ObjectError(
+                    f'Row {pair.number} of the manifest reads "{path}", which row {writers[path]} writes, and shards '
+                    "do not wait for each other. Put such rows into a manifest of their own, and run it without shards."
+                )
     return list(pairs[first - 1 :: step])
 
 
@@ -205,13 +222,15 @@ def _json_rows(text: str) -> tuple[list[dict[str, str]], dict[str, str]]:
     if not isinstance(pairs, list) or not all(isinstance(pair, dict) for pair in [*pairs, common]):
         raise ValueError('it must be a list of objects, or an object with such a list called "pairs"')
     rows = [
-        {name.replace("-", "_"): _text(value) for name, value in row.items() if value is not None}
+        {name.replace("-", "_"): _text(name, value) for name, value in row.items() if value is not None}
         for row in (*pairs, common)
     ]
     return rows[:-1], rows[-1]
 
 
-def _text(value: Any) -> str:  # noqa: ANN401 - whatever JSON holds
+def _text(name: str, value: Any) -> str:  # noqa: ANN401 - whatever JSON holds
+    if name in _LISTED and isinstance(value, list) and all(isinstance(one, str) for one in value):
+        return _LISTED[name](value)
     if isinstance(value, dict | list):
         raise ValueError(f"{value} is neither a text nor a number")  # noqa: TRY004 - told like all that is wrong in a file
     return str(value).strip()

@@ -39,11 +39,14 @@ class Task:
         What follows ``blender --command hiermatch``.
     log : Path
         Where all that it prints goes.
+    after : frozenset of str
+        The names of the tasks that must have ended well before.
     """
 
     name: str
     arguments: Sequence[str]
     log: Path
+    after: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -60,12 +63,15 @@ class Ended:
         How long it ran.
     timeout : bool
         Whether it was ended because its time was over.
+    lacking : str
+        If it never began, the name of a task that had to end well before, and did not.
     """
 
     task: Task
     code: int
     seconds: float
     timeout: bool
+    lacking: str = ""
 
 
 @dataclass
@@ -76,7 +82,7 @@ class _Child:
 
 
 def run_tasks(tasks: Sequence[Task], jobs: int, timeout: float | None) -> Iterator[Ended | list[str]]:
-    """Run all tasks, a number of them at a time.
+    """Run all tasks, a number of them at a time, and none before those that it comes after.
 
     Whoever stops asking ends the children that still run.
 
@@ -94,11 +100,18 @@ def run_tasks(tasks: Sequence[Task], jobs: int, timeout: float | None) -> Iterat
     Ended or list of str
         Each child that has ended; and, some times a second, the names of what is running.
     """
-    waiting, running = list(tasks), list[_Child]()
+    waiting, running, failed = list(tasks), list[_Child](), set[str]()
     try:
         while waiting or running:
-            while waiting and len(running) < jobs:
-                running.append(_start(waiting.pop(0), jobs))
+            for task in [task for task in waiting if task.after & failed]:
+                waiting.remove(task)
+                failed.add(task.name)
+                yield Ended(task, 1, 0.0, timeout=False, lacking=min(task.after & failed))
+            open_names = {task.name for task in (*waiting, *(child.task for child in running))}
+            ready = [task for task in waiting if not task.after & open_names]
+            for task in ready[: jobs - len(running)]:
+                waiting.remove(task)
+                running.append(_start(task, jobs))
             for child in list(running):
                 seconds = time.perf_counter() - child.begin
                 code = child.process.poll()
@@ -107,6 +120,7 @@ def run_tasks(tasks: Sequence[Task], jobs: int, timeout: float | None) -> Iterat
                     code = _end(child)
                 if code is not None:
                     running.remove(child)
+                    failed |= {child.task.name} if code else set()
                     yield Ended(child.task, code, seconds, late)
             if running:
                 yield [child.task.name for child in running]

@@ -40,6 +40,10 @@ def test_items_are_left_out_of_a_source_of_several_objects(dense_pair, tmp_path,
     assert "No clothes" in capsys.readouterr().err
     assert main(["wear", *arguments, "--items=Shirt, Scarf"]) == 1
     assert 'no object called "Scarf"' in capsys.readouterr().err
+    assert main(["wear", *arguments, '--items=Shirt, "Scarf, red']) == 2
+    assert "do not stand around whole names" in capsys.readouterr().err
+    assert main(["wear", *arguments, "--items=Shirt", '--items="Scarf, red",Shirt']) == 1
+    assert 'no object called "Scarf, red"' in capsys.readouterr().err
     assert main(["wear", *arguments, "--items=Shirt"]) == 0
     fitted = bpy.data.objects["Shirt on Target"]
     assert fitted["hiermatch_body"] == "Target"

@@ -47,6 +47,7 @@ report = {"format": "hiermatch-report", "key": given["report-key"], "status": "f
           "match": {"distortion": 0.25, "quality": {"confidence": 0.75, "sentence": "Fine."}},
           "written": [] if bad else [given["output"]]}
 pathlib.Path(given["report"]).write_text(json.dumps(report))
+sys.exit(1 if bad else 0)
 """
 """Does what a child does, without Blender: what, says the name of the source."""
 
@@ -375,6 +376,83 @@ def test_a_pair_without_a_boolean_is_told(stand_in):
     with pytest.raises(UsageError, match="must be true or false"):
         pair.arguments()
     assert summary_rows(Ledger(stand_in.folder / "nothing"), [pair])[0]["status"] == "pending"
+
+
+FOLLOWING = (
+    "source,target,output\nb.obj,target.obj,out/b.obj\n{}\nout/a.obj,target.obj,out/c.obj\nd.obj,target.obj,out/d.obj"
+)
+"""Of its four rows the third reads what the second writes; the others stand alone."""
+
+
+def follow(stand_in, second="a.obj,target.obj,out/a.obj"):
+    if not stand_in.manifest.exists():
+        stand_in.write(["a", "b", "bad", "crash", "d"])
+    stand_in.manifest.write_text(FOLLOWING.format(second))
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_a_row_that_reads_what_another_writes_waits_for_it(stand_in, jobs):
+    follow(stand_in)
+    code, tried = stand_in.run(f"--jobs={jobs}")
+    assert (code, sorted(tried)) == (0, ["a", "a", "b", "d"])  # the third reads out/a.obj
+    first = stand_in.folder / "out" / "a.obj"
+    assert stand_in.run(f"--jobs={jobs}") == (0, [])
+    (stand_in.folder / "a.obj").write_text("something else")
+    assert stand_in.run(f"--jobs={jobs}") == (0, ["a", "a"])
+    assert first.read_text() == "output"
+
+
+@pytest.mark.parametrize("second", ["bad.obj,target.obj,out/a.obj", "crash.obj,target.obj,out/a.obj"])
+def test_a_row_that_reads_what_came_to_nothing_is_not_begun(stand_in, capsys, second):
+    follow(stand_in)
+    stand_in.run()
+    follow(stand_in, second)
+    assert "a" not in stand_in.run("--jobs=3")[1]  # though the file of the former run is there
+    assert stand_in.summary["c"]["status"] == "failed"
+    assert stand_in.summary["c"]["error"] == 'It was not begun: it reads what "a" writes, and that failed.'
+    assert 'c: failed. It was not begun: it reads what "a" writes' in capsys.readouterr().err
+    follow(stand_in)
+    assert stand_in.run() == (0, ["a"])
+
+
+def test_nor_is_one_that_reads_what_a_row_with_a_wrong_value_would_write(stand_in):
+    follow(stand_in, "a.txt,target.obj,out/a.obj")
+    assert stand_in.run() == (4, ["b", "d"])
+    assert "It was not begun" in stand_in.summary["c"]["error"]
+    assert stand_in.run() == (4, [])
+    follow(stand_in)
+    assert stand_in.run() == (0, ["a", "a"])
+
+
+def test_rows_that_wait_for_each_other_are_no_shards(stand_in, capsys):
+    follow(stand_in)
+    assert stand_in.run("--shard=1/2") == (1, [])
+    assert "which row 2 writes, and shards do not wait for each other" in capsys.readouterr().err
+
+
+def test_rows_that_leave_nothing_are_told_before_the_work(stand_in, capsys):
+    stand_in.write(["a", "b"])
+    stand_in.manifest.write_text(
+        "source,target,output,command\na.obj,target.obj,,retarget\nb.obj,target.obj,c.obj,wear"
+    )
+    assert stand_in.run() == (4, ["b"])
+    assert "a-target: output is empty, so nothing would be left of the work. Name the file to write." in (
+        capsys.readouterr().err
+    )
+
+
+def test_names_with_commas(tmp_path):
+    wanted = ["Shirt, red", "Hat", 'Two "Shoes"']
+    path = tmp_path / "pairs.json"
+    pair = {"source": "a.blend:A", "target": "b.blend:B", "output": ["o.blend", "o.glb"], "command": "wear"}
+    path.write_text(json.dumps([pair | {"items": wanted}]))
+    (read,) = read_manifest(path, {}, "match")
+    assert [Path(output).name for output in read.outputs] == ["o.blend", "o.glb"]
+    assert make_parser().parse_args(read.arguments()).items == wanted
+    pair["weight_mix"] = [1]
+    path.write_text(json.dumps([pair]))
+    with pytest.raises(ObjectError, match="is neither a text nor a number"):
+        read_manifest(path, {}, "match")
 
 
 @pytest.mark.slow
