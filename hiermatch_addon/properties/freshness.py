@@ -34,14 +34,21 @@ _PLAYING_DELAY = 1.0
 
 
 def refresh(scene: bpy.types.Scene) -> None:
-    """Find out whether the match that a scene's panel shows is out of date, and what its lists are to show."""
+    """Find out whether the match that a scene's panel shows is out of date, and what its lists are to show.
+
+    If one of its meshes was renamed, the panel calls it by its new name.
+    """
     summary = summary_of(scene)
-    stale = ""
+    shown, stale = (summary.stale, summary.source, summary.target), ""
     if summary.key:
         for role, name in _sides(summary):
-            stale = stale or _staleness(find_carriers(scene.objects, summary.key, summary.prefix, role), name)
+            carriers = find_carriers(scene.objects, summary.key, summary.prefix, role)
+            stale = stale or _staleness(carriers, name)
+            if len(carriers) == 1 and carriers[0].obj.name != name:
+                setattr(summary, "source" if summary.source == name else "target", carriers[0].obj.name)
     if summary.stale != stale:
         summary.stale = stale
+    if shown != (summary.stale, summary.source, summary.target):
         # Blender draws again what an operator changed, but not what a timer did.
         redraw_sidebars(cast("bpy.types.WindowManager", bpy.context.window_manager))
     sync_lists(scene)
@@ -86,7 +93,7 @@ def _handlers() -> tuple[tuple[list[Any], Any], ...]:
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Look soon if a mesh with a match was edited or mirrored, or objects came or went.
+    """Look soon if a mesh with a match was edited, mirrored or renamed, or objects came or went.
 
     Posing, moving and selecting objects edits no mesh and no collection, and turns no object over.
     """
@@ -95,8 +102,11 @@ def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         return
     for update in depsgraph.updates:
         changed = update.id
-        edited = update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed)
-        if edited or (update.is_updated_transform and isinstance(changed, bpy.types.Object) and _turned_over(changed)):
+        if isinstance(changed, bpy.types.Object):
+            noticed = _renamed(changed) or (update.is_updated_transform and _turned_over(changed))
+        else:
+            noticed = update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed)
+        if noticed:
             _look_soon()
             return
 
@@ -104,6 +114,16 @@ def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 def _is_ours(mesh: bpy.types.Mesh) -> bool:
     """Return whether a mesh carries a match or landmarks."""
     return is_marked(mesh) or has_landmarks(mesh)
+
+
+def _renamed(obj: bpy.types.Object) -> bool:
+    """Return whether an object with a match may be one that a panel still calls by a name that nothing has any more."""
+    if obj.type != "MESH" or not is_marked(mesh_of(obj)):
+        return False
+    summaries = [summary for scene in bpy.data.scenes if (summary := summary_of(scene)).key and not summary.stale]
+    names = {name for summary in summaries for _, name in _sides(summary)}
+    parts = {part for name in names for part in name.split(" + ")}  # of a side of several objects
+    return obj.name not in names and any(p not in bpy.data.objects and p not in bpy.data.collections for p in parts)
 
 
 def _turned_over(obj: bpy.types.Object) -> bool:

@@ -50,13 +50,15 @@ def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -
         return side if parts_of(side)[0].type == "MESH" else None
     if not summary.key:
         return None
-    name = (summary.source, summary.target)[number]
-    obj = scene.objects.get(name)
-    if obj is not None and obj.type == "MESH":
-        return obj
-    role = ("source", "target")[number != summary.swapped]
+    name, role = (summary.source, summary.target)[number], ("source", "target")[number != summary.swapped]
+    called = scene.objects.get(name)
+    if called is not None and find_carriers([called], summary.key, summary.prefix, role):
+        return called
     found = find_carriers(scene.objects, summary.key, summary.prefix, role)
-    return next((half.obj for half in found if half.obj.name == name), None)
+    named = next((half.obj for half in found if half.obj.name == name), None)
+    if named is None and len(found) == 1:  # it was renamed since
+        return found[0].obj
+    return called if named is None and called is not None and called.type == "MESH" else named
 
 
 def common_match(scene: bpy.types.Scene, pair: tuple[Side, Side] | None = None) -> tuple[Half, Half] | None:

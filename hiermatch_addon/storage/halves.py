@@ -150,14 +150,17 @@ def find_keyed(view_layer: bpy.types.ViewLayer, key: str, prefix: str, role: str
     """
     carriers = find_carriers(view_layer.objects, key, prefix, role)
     if not carriers:
-        if name in view_layer.objects:
+        called = view_layer.objects.get(name)
+        other = "target" if role == "source" else "source"
+        others = [half.obj for half in find_carriers(view_layer.objects, key, prefix, other)]
+        if called is not None and others != [called]:  # the other one may have the name by now
             raise ObjectError(
                 f'"{name}" does not carry this match any more, because it was cleared or matched anew. '
                 "Match the two again."
             )
         raise ObjectError(
-            f'The {role} of this match, "{name}", was deleted or is not in the view layer "{view_layer.name}". '
-            "Bring it back, or match again."
+            f'The {role} of this match, "{name}", was deleted, or renamed and cleared, or is not in the view layer '
+            f'"{view_layer.name}". Bring it back, or match again.'
         )
     named = [half for half in carriers if half.obj.name == name] if len(carriers) > 1 else carriers
     if not named:

@@ -2136,9 +2136,10 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" carries several matches. Name the Prefix of one of them: {1}.': (
         "「{0}」には複数のマッチングがあります。いずれかの接頭辞を指定してください：{1}。"
     ),
-    'The {0} of this match, "{1}", was deleted or is not in the view layer "{2}". Bring it back, or match again.': (
-        "このマッチングの{0}「{1}」は削除されたか、ビューレイヤー「{2}」にありません。戻すか、もう一度マッチ"
-        "ングしてください。"
+    'The {0} of this match, "{1}", was deleted, or renamed and cleared, or is not in the view layer "{2}". '
+    "Bring it back, or match again.": (
+        "このマッチングの{0}「{1}」は削除されたか、名前を変えてからクリアされたか、ビューレイヤー「{2}」に"
+        "ありません。戻すか、もう一度マッチングしてください。"
     ),
     "Several objects are copies of the {0} of this match: {1}. Match the two again.": (
         "このマッチングの{0}のコピーが複数あります：{1}。二つをもう一度マッチングしてください。"

@@ -1768,8 +1768,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" carries several matches. Name the Prefix of one of them: {1}.': (
         "“{0}”有多个匹配。请指定其中一个的前缀：{1}。"
     ),
-    'The {0} of this match, "{1}", was deleted or is not in the view layer "{2}". Bring it back, or match again.': (
-        "此匹配的{0}“{1}”已被删除或不在视图层“{2}”中。请将其恢复，或重新匹配。"
+    'The {0} of this match, "{1}", was deleted, or renamed and cleared, or is not in the view layer "{2}". '
+    "Bring it back, or match again.": (
+        "此匹配的{0}“{1}”已被删除，或在改名后被清除，或不在视图层“{2}”中。请将其恢复，或重新匹配。"
     ),
     "Several objects are copies of the {0} of this match: {1}. Match the two again.": (
         "多个物体是此匹配的{0}的副本：{1}。请重新匹配两者。"

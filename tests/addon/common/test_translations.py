@@ -301,8 +301,8 @@ class TestSentencesWithGaps:
 
     def test_names_are_not_translated_and_words_are(self):
         said = translated(
-            'The source of this match, "source", was deleted or is not in the view layer "Points". '
-            "Bring it back, or match again."
+            'The source of this match, "source", was deleted, or renamed and cleared, or is not in the view layer '
+            '"Points". Bring it back, or match again.'
         )
         assert "ソース「source」" in said
         assert "「Points」" in said

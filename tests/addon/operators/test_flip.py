@@ -244,10 +244,28 @@ def subdivide(pair):
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
+def rename_and_clear_target(pair):
+    pair[1].name = "Renamed"
+    bpy.ops.hiermatch.clear(object="Renamed")
+
+
+def take_its_name(pair):
+    rename_and_clear_target(pair)
+    pair[0].name = "Target"
+
+
 STALE = {
     "deleted": (delete, 'The target of this match, "Target", was deleted'),
     "deleted by a user": (delete_as_a_user_does, 'The target of this match, "Target", was deleted'),
     "cleared": (clear_target, '"Target" does not carry this match any more'),
+    "renamed and cleared": (
+        rename_and_clear_target,
+        'The target of this match, "Target", was deleted, or renamed and cleared, or is not in',
+    ),
+    "cleared, and the other has its name": (
+        take_its_name,
+        'The target of this match, "Target", was deleted, or renamed',
+    ),
     "matched anew": (match_target_anew, '"Target" does not carry this match any more'),
     "subdivided": (subdivide, '"Target" has other vertices or faces than when it was matched'),
     "turned": (lambda pair: pair[1].data.flip_normals(), '"Target" has other vertices or faces'),
@@ -267,7 +285,7 @@ class TestErrors:
         bpy.context.view_layer.update()
         before = snapshot()
         with pytest.raises(RuntimeError, match=message) as caught:
-            flip(object="Source")
+            flip(object=pair[0].name)
         assert "Traceback" not in str(caught.value)
         assert snapshot() == before
 

@@ -243,6 +243,36 @@ class TestWatching:
         freshness._look()  # noqa: SLF001
         assert '"Target" was deleted' in summary().stale
 
+    @pytest.mark.parametrize("swapped", [False, True])
+    @pytest.mark.parametrize("which", [0, 1])
+    def test_renaming_an_object(self, quiet, which, swapped):
+        """The panel goes on showing their match, also if they are picked nowhere, and by the new name."""
+        if swapped:
+            bpy.ops.hiermatch.swap()
+        state, steering = bpy.context.scene.hiermatch, bpy.context.scene.hiermatch_steering
+        state.source = state.target = None
+        activate(quiet[0])
+        settle()
+        count = len(steering.pairs)
+        quiet[which].name = "Renamed"
+        assert bpy.ops.hiermatch.show(view="MATCH") == {"FINISHED"}
+        bpy.context.view_layer.update()
+        assert waiting()
+        freshness._look()  # noqa: SLF001
+        assert not summary().stale
+        names = ["Renamed" if number == which else ("Source", "Target")[number] for number in range(2)]
+        assert [summary().source, summary().target] == (names[::-1] if swapped else names)
+        assert len(steering.pairs) == count > 0
+        settle()
+        quiet[which].select_set(state=True)
+        bpy.context.view_layer.update()
+        assert not waiting()
+        # Another object may have the former name.
+        add_blob(("Source", "Target")[which])
+        freshness._look()  # noqa: SLF001
+        assert not summary().stale
+        assert bpy.ops.hiermatch.flip() == {"FINISHED"}
+
     def test_mirroring_an_object_and_back_is_looked_at_and_then_moving_it_is_not(self, quiet):
         mirror(quiet[1])
         assert waiting()
