@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.scene.motion import auto_keying
 
 from tests.addon.characters import add_action, add_person, posed_vertices, someone
 
@@ -96,11 +97,12 @@ def test_what_follows_already_needs_no_switch():
     assert "was set" not in bpy.context.scene.hiermatch_retarget.report.remarks
 
 
-def test_a_pose_goes_to_the_controls():
+def test_a_pose_goes_to_the_controls(monkeypatch):
     source, _ = add_person("A")
     target, _ = add_person("B")
     numbers = add_controls(target)
     bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
+    monkeypatch.setattr(auto_keying, "_options", lambda _tools: set())
     source.pose.bones["thigh.L"].rotation_quaternion = (0.9, 0.4, 0.1, 0.1)
     source.pose.bones["forearm.R"].rotation_quaternion = (0.9, 0.1, 0.1, 0.4)
     bpy.context.view_layer.update()
