@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag, eigh, qr
+from scipy.linalg import block_diag, qr
 from scipy.sparse import csr_array
 
 from ..runtime.arrays import Floats, Ints
@@ -125,7 +125,8 @@ def lowest_eigenpairs_steps(matrix: csr_array, null: Floats, count: int, guess: 
     n = matrix.shape[0]
     wanted = max(count, _LEAST)
     if n <= max(_DENSE, 4 * wanted):
-        values, vectors = eigh(matrix.toarray(), subset_by_index=[0, count - 1])
+        # All of them, by divide and conquer: LAPACK's search for some fails at regular grids, and takes longer.
+        values, vectors = (found[..., :count] for found in np.linalg.eigh(matrix.toarray()))
         vectors[:, 0] = null
         vectors[:, 1:] -= np.outer(null, null @ vectors[:, 1:])
         return EigenPairs(np.append(0, values[1:].clip(0)), vectors, complete=True)

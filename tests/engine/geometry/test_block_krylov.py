@@ -45,6 +45,12 @@ def test_a_square_grid_has_double_eigenvalues(count):
     check(lowest(matrix, count, exact[count - 1] + 1e-3), matrix, exact, count)
 
 
+@pytest.mark.parametrize(("n", "scale"), [(11, 1e-11), (11, 0.001), (12, 1e-8), (13, 1e-4), (14, 1e-7), (14, 1.0)])
+def test_small_grids_are_solved_in_any_units(n, scale):
+    matrix, exact = grid(n, n)
+    check(lowest(csr_array(scale * matrix), 100, scale * exact[99]), scale * matrix, scale * exact, 100)
+
+
 @pytest.mark.parametrize("factor", [1e-6, 0.01, 0.3, 1, 3, 100, 1e6])
 def test_the_guess_may_be_far_off(factor):
     matrix, exact = grid(37, 41)
