@@ -169,8 +169,8 @@ def pair_bones(
     chosen = _chosen(gains, found, trees, {target: source for source, target in fixed})
     given = {(int(a), int(b)) for a, b in fixed}
     chosen = _without_misplaced(chosen, within_target, given, target)
-    upright = _upright(rig, source, frames)
     doubtful = bool(np.average(rig.target_to_source.confidence, weights=target.vertex_areas) < DOUBTFUL)
+    upright = _upright(rig, source, frames, doubtful=doubtful)
     if doubtful:
         ends = _ending(trees[0], source, rig.weights, upright), _ending(skeleton, target, weights, np.eye(3))
         moving = rig.weights.sum(axis=0) > 0, (weights.sum(axis=0) > 0) & ~np.isin(np.arange(len(skeleton)), alone)
@@ -179,10 +179,13 @@ def pair_bones(
     sources, targets = chosen.T
     worth = found.scores[targets, sources].clip(min=0)
     worth[[pair in given for pair in zip(sources.tolist(), targets.tolist(), strict=True)]] = 1.0
-    # Where tails point is left to whoever made the rig: bones that move something turn as their surface does.
-    seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
-    evened = evened_rotations(seen[sources], (sources, targets), trees, mirrors, upright)
-    rotations = _swung(evened, (sources, targets), trees, doubtful=doubtful)
+    if doubtful:
+        rotations = _by_joints((sources, targets), trees, upright)
+    else:
+        # Where tails point is left to whoever made the rig: bones that move something turn as their surface does.
+        seen = np.where(found.moving[0][:, None, None], rig.rotations, placed.rotations)
+        evened = evened_rotations(seen[sources], (sources, targets), trees, mirrors, upright)
+        rotations = _swung(evened, (sources, targets), trees)
     return BonePairing(sources, targets, worth, rotations, placed.heads[sources], upright)
 
 
@@ -374,35 +377,58 @@ def _without_misplaced(
     return chosen
 
 
-def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None) -> Floats:
-    """Find how the target stands: turned by what takes axes to axes, or by one of the frames, if that is near."""
+def _upright(rig: FittedRig, source: TriangleMesh, frames: Floats | None, *, doubtful: bool) -> Floats:
+    """Find how the target stands: turned by what takes axes to axes, or by one of the frames, if that is near.
+
+    What a doubtful map says of how it leans is not known well enough.
+    """
     middle = standing(rig, source)
     known = Rotation.create_group("O").as_matrix().round()  # of a cube
     if frames is not None and len(frames):
         known = np.concatenate([known, (np.asarray(frames)[:, None] @ known).reshape(-1, 3, 3)])
-    return nearest_frame(middle, known, _TRUNK_NEAR_AXES)
+    return nearest_frame(middle, known, np.pi if doubtful else _TRUNK_NEAR_AXES)
 
 
-def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton], *, doubtful: bool) -> Floats:
+def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton]) -> Floats:
     """Swing rotations (k, 3, 3) of the pairs: about the bones as the surface is turned, along them as the joints lie.
 
-    Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.  If
-    the map is doubtful, so do joints that are however far from it, and those at which a limb begins that is of several
-    bones in one of the rigs.
+    Where both rigs have the same two joints in a row, these tell the direction better than the map of a thin limb.
     """
     turned = rotations.copy()
     parts = Segments.of(*ends, *trees)
-    stray = np.pi if doubtful else _STRAY_DIRECTION
     for part in np.flatnonzero(parts.single):
         below = parts.below(part)
-        if len(below) != 1 or not (doubtful or parts.single[below[0]]):
+        if len(below) != 1 or not parts.single[below[0]]:
             continue
         row = parts.rows[part][0]
-        ways = [
-            tree.heads[bones[below[0]][0]] - tree.heads[bones[part][0]]
-            for tree, bones in zip(trees, (parts.sources, parts.targets), strict=True)
-        ]
+        ways = _ways(parts, part, int(below[0]), trees)
         start, goal = unit_vectors(np.stack([turned[row] @ ways[0], ways[1]]))
-        if start @ goal >= np.cos(stray):
+        if start @ goal > np.cos(_STRAY_DIRECTION):
             turned[row] = least_turns(start[None], goal[None])[0] @ turned[row]
     return nearest_rotations(turned) if len(turned) else turned
+
+
+def _by_joints(ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton], upright: Floats) -> Floats:
+    """Rotations (k, 3, 3) of the pairs by their joints alone: limbs are bent against the body, but not twisted.
+
+    Where no joint or several follow, a bone rests against the body, or the limb that it ends, as its partner does.
+    """
+    parts = Segments.of(*ends, *trees)
+    turned = np.tile(upright, (len(ends[0]), 1, 1))
+    for part in sorted(range(len(parts)), key=lambda part: len(parts.above(part))):
+        below, above = parts.below(part), parts.parents[part]
+        if len(below) == 1:
+            start, goal = unit_vectors(np.stack(_ways(parts, part, int(below[0]), trees)))
+            turned[parts.rows[part]] = least_turns((upright @ start)[None], goal[None])[0] @ upright
+        elif not len(below) and above >= 0 and len(parts.below(above)) == 1:
+            turned[parts.rows[part]] = turned[parts.rows[above][0]]
+    return turned
+
+
+def _ways(parts: Segments, part: int, below: int, trees: tuple[Skeleton, Skeleton]) -> tuple[Floats, Floats]:
+    """Ways from where a segment begins to where the one below it does, in either rig, (3,) each."""
+    mine, others = (
+        tree.heads[bones[below][0]] - tree.heads[bones[part][0]]
+        for tree, bones in zip(trees, (parts.sources, parts.targets), strict=True)
+    )
+    return mine, others
