@@ -27,6 +27,9 @@ _BLUR = 0.8
 _MOST_PLACES = 5_000_000
 """Of a grid: some hundred megabytes while it is computed.  Surfaces spread more widely get a coarser one."""
 
+_COARSER = 1.1
+"""How many times as far apart places are moved at a time, until there are not more than twice as many with margins."""
+
 
 @dataclass(frozen=True, eq=False)
 class SolidIndicator:
@@ -73,6 +76,8 @@ def solid_indicator(mesh: TriangleMesh, spacing: float) -> SolidIndicator:
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     spacing = max(spacing, float(np.cbrt(np.prod(np.maximum(high - low, spacing)) / _MOST_PLACES)))
+    while np.prod((high - low) / spacing + 2 * _MARGIN) > 2 * _MOST_PLACES:  # around needles, margins are most of it
+        spacing *= _COARSER
     origin = low - _MARGIN * spacing
     count = np.ceil((high - origin) / spacing).astype(np.int64) + _MARGIN + 1
     shape = tuple(next_fast_len(int(number), real=True) for number in count)

@@ -68,3 +68,11 @@ def test_scattered_pieces_get_a_coarser_grid():
     solid = solid_indicator(TriangleMesh(*far), 0.05)
     assert solid.values.size < 8_000_000
     assert solid.spacing > 0.05
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_needle_gets_a_coarser_grid(axis):
+    vertices, triangles = icosphere(6)
+    stretched = 1e-3 * vertices
+    stretched[:, axis] *= 1e9
+    assert solid_indicator(TriangleMesh(stretched, triangles), 1e-4).values.size < 20_000_000
