@@ -174,8 +174,7 @@ def pair_bones(
     if doubtful:
         ends = _ending(trees[0], source, rig.weights, upright), _ending(skeleton, target, weights, np.eye(3))
         moving = rig.weights.sum(axis=0) > 0, (weights.sum(axis=0) > 0) & ~np.isin(np.arange(len(skeleton)), alone)
-        beside = tuple((other >= 0) & (other != np.arange(len(other))) for other in mirrors)
-        chosen = in_order(chosen, found.scores, ends, moving, beside, given=given)
+        chosen = in_order(chosen, found.scores, ends, moving, mirrors, given=given)
     sources, targets = chosen.T
     worth = found.scores[targets, sources].clip(min=0)
     worth[[pair in given for pair in zip(sources.tolist(), targets.tolist(), strict=True)]] = 1.0

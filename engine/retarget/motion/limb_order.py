@@ -24,13 +24,32 @@ _LEFT = 2.5
 bones of the limbs of the knight have the right partners, in both ways, in `maker_rigs` of the benchmarks; so they have
 with 2 and with 3."""
 
+_WIDTH, _NARROWEST = 2.0, 0.01
+"""What it costs, in the same units, if one limb begins further from that on the other side by the factor e, in units of
+its length; and the least distance: collar bones begin near the middle, upper arms do not.  With it the knight's arms
+are paired with those of an avatar that has straight collar bones; with half of it they are not."""
+
 
 class _Limb(NamedTuple):
-    """Bones in a row: numbers (k,), where they point (k, 3), and how far along the limb their heads and its end are."""
+    """Bones in a row.
+
+    Their numbers (k,), and where they point (k, 3); how far along the limb their heads, and its end, are (k + 1,); and
+    how far their heads are from those on the other side (k,).
+    """
 
     bones: Ints
     ways: Floats
-    lengths: Floats  # (k + 1,)
+    lengths: Floats
+    apart: Floats
+
+    def starting(self, first: int) -> _Limb:
+        """Leave out bones before one."""
+        return _Limb(self.bones[first:], self.ways[first:], self.lengths[first:], self.apart[first:])
+
+    @property
+    def width(self) -> float:
+        """Logarithm of how far the limb is from that on the other side, in units of its length."""
+        return float(np.log(max(self.apart[0] / max(self.lengths[-1] - self.lengths[0], TINY), _NARROWEST)))
 
     @property
     def bends(self) -> Floats:
@@ -50,7 +69,7 @@ def in_order(
     scores: Floats,
     trees: tuple[Skeleton, Skeleton],
     moving: tuple[Bools, Bools],
-    limbs: tuple[Bools, Bools],
+    mirrors: tuple[Ints, Ints],
     *,
     given: AbstractSet[tuple[int, int]] = frozenset(),
 ) -> Ints:
@@ -59,8 +78,8 @@ def in_order(
     The large foot of a short leg covers a long one up to the knee, by the map of the surface.  So bones of two limbs
     are partners that begin at the same part of the length, and point the same way once the first ones are laid onto
     each other.  Of all ways that keep their order the one of least cost is found by dynamic time warping [1]_: some may
-    share a partner, but not across a bend, such as at a heel; and the first of one limb may be left alone, such as a
-    collar bone.
+    share a partner, but hardly across a bend, such as at a heel; and the first of one limb may be left alone, such as a
+    collar bone, if the limbs are as far from those on the other side then.
 
     Parameters
     ----------
@@ -73,8 +92,8 @@ def in_order(
         end where what it moves does.
     moving : pair of arrays of bool, (a,) and (b,)
         Which bones move anything.
-    limbs : pair of arrays of bool, (a,) and (b,)
-        Which bones may be of limbs.
+    mirrors : pair of arrays of int, (a,) and (b,)
+        The bone on the other side of each: itself in the middle, -1 for none.
     given : set of (int, int), optional
         Pairs that stay, and all others of their limbs.
 
@@ -88,7 +107,7 @@ def in_order(
     .. [1] H. Sakoe, S. Chiba, "Dynamic programming algorithm optimization for spoken word recognition", IEEE
        Transactions on Acoustics, Speech, and Signal Processing 26(1), 1978.
     """
-    mine, others = (_limbs(*each) for each in zip(trees, moving, limbs, strict=True))
+    mine, others = (_limbs(*each) for each in zip(trees, moving, mirrors, strict=True))
     shared = np.array([[_shared(pairs, scores, one, other) for other in others] for one in mine])
     for first, one in enumerate(mine):
         for second, other in enumerate(others):
@@ -100,8 +119,9 @@ def in_order(
     return pairs[np.lexsort(pairs.T)]
 
 
-def _limbs(tree: Skeleton, moving: Bools, limbs: Bools) -> list[_Limb]:
-    """Find the limbs: bones that move something, one after the other, with no branch between."""
+def _limbs(tree: Skeleton, moving: Bools, mirrors: Ints) -> list[_Limb]:
+    """Find the limbs: bones of either side that move something, one after the other, with no branch between."""
+    limbs = (mirrors >= 0) & (mirrors != np.arange(len(tree)))
     above = tree.nearest_above(moving)
     below = [np.flatnonzero(moving & (above == bone)) for bone in range(len(tree))]
     found = []
@@ -114,7 +134,8 @@ def _limbs(tree: Skeleton, moving: Bools, limbs: Bools) -> list[_Limb]:
         lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
         if len(bones) > 1 and lengths[-1] > TINY:
             steps[-1] = steps[-2]  # what the last bone moves does not say well where it points
-            found.append(_Limb(bones, unit_vectors(steps), lengths))
+            apart = np.linalg.norm(tree.heads[bones] - tree.heads[mirrors[bones]], axis=1)
+            found.append(_Limb(bones, unit_vectors(steps), lengths, apart))
     return found
 
 
@@ -128,21 +149,16 @@ def _aligned(one: _Limb, other: _Limb, known: Floats) -> Ints:
     """Pair the bones of two limbs, (k, 2), at the least cost; what the surface says of any two (a, b) is taken off."""
     best: tuple[float, list[tuple[int, int]]] = np.inf, []
     for first in (first for first in np.ndindex(known.shape) if not min(first)):
-        here, there = (_from(limb, start) for limb, start in zip((one, other), first, strict=True))
+        here, there = (limb.starting(start) for limb, start in zip((one, other), first, strict=True))
         turn = least_turns(here.ways[:1], there.ways[:1])[0]
         apart = ((here.places[:, None] - there.places) / _PLACE) ** 2 + _cost(here.ways @ turn.T @ there.ways.T)
         alike = known[first[0] :, first[1] :]
         shared = 1 + here.bends[:, None] - alike, 1 + there.bends - alike
         cost, found = _cheapest(apart - alike, *shared)
-        cost += _LEFT * sum(first)
+        cost += _LEFT * sum(first) + _WIDTH * (here.width - there.width) ** 2
         if cost < best[0]:
             best = cost, [(a + first[0], b + first[1]) for a, b in found]
     return np.array([(one.bones[a], other.bones[b]) for a, b in best[1]], np.int64).reshape(-1, 2)
-
-
-def _from(limb: _Limb, start: int) -> _Limb:
-    """Leave out the first bones of a limb."""
-    return _Limb(limb.bones[start:], limb.ways[start:], limb.lengths[start:])
 
 
 def _cost(cosines: Floats) -> Floats:
