@@ -204,8 +204,9 @@ def paired(rows, source, target):
         mine = sorted((row for row in rows if row.target == bone.name and row.source), key=lambda row: -row.score)
         found = [limb(row.source) for row in mine]
         crossed += any(each is not None and each[1] != what[1] for each in found)
-        # A leg of an animal is built in other pieces: what has no piece of its own goes with the one above it.
-        good = (bool(found) and found[0] == what) or (not found and what[0] in LEGS)
+        # A leg of an animal is built in other pieces: what has no piece of its own goes with the one above it.  What
+        # stands for several, as a foot for another foot and its toes, has the one of its kind among them.
+        good = what in found or (not found and what[0] in LEGS)
         right, wrong = right + good, wrong + (not good)
         if not good:
             said.append(f"{bone.name}: {', '.join(row.source for row in mine) or '-'}")
