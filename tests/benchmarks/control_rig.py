@@ -5,7 +5,7 @@
 
 The rig is that of Blender's *Human (Meta-Rig)*, as it comes from *Generate Rig*, with a ball of half the square of
 `--segments` vertices that it moves; none if that is zero.  All limbs, fingers, the spine and the head swing at random,
-64 poses at a time as while a window is drawn.  Printed are the bones of the rig, how many of those with partners are
+128 poses at a time as while a window is drawn.  Printed are the bones of the rig, how many of those with partners are
 turned by a control, the seconds of one core in which these controls are found, those of a hundred poses, and by how
 many degrees bones point elsewhere than they should.
 """
@@ -29,7 +29,7 @@ BESIDE = ("breast", "pelvis", "palm")
 SWING = 0.3
 """Standard deviation of the angles, in radians."""
 
-AT_ONCE = 64
+AT_ONCE = 128
 
 
 def human():

@@ -56,11 +56,11 @@ def random_turns(count):
 def test_of_a_long_motion_few_poses_are_looked_at(updates, alone):
     rig = chains(*alone)
     updates.clear()
-    bases, missed, seen = posed_controls(rig, TURNED, random_turns(41), np.zeros((41, 6, 3)))
-    assert np.flatnonzero(seen).tolist() == [0, 8, 16, 24, 32, 40]
+    bases, missed, seen = posed_controls(rig, TURNED, random_turns(81), np.zeros((81, 6, 3)))
+    assert np.flatnonzero(seen).tolist() == [0, 16, 32, 48, 64, 80]
     assert len(updates) <= 6 + 3  # to begin and to end, and once more to learn what carries a limb
     assert missed.max() < 0.001
-    check(rig, bases, random_turns(41))
+    check(rig, bases, random_turns(81))
 
 
 def half_carried(rig, influence):
@@ -81,10 +81,10 @@ def half_carried(rig, influence):
 def test_what_goes_part_of_the_way_with_another_control_is_known_after_one_pose(influence):
     rig = chains()
     half_carried(rig, influence)
-    bases, missed, seen = posed_controls(rig, TURNED, random_turns(17), np.zeros((17, 6, 3)))
+    bases, missed, seen = posed_controls(rig, TURNED, random_turns(33), np.zeros((33, 6, 3)))
     assert seen.sum() == 3
     assert missed.max() < 0.001
-    check(rig, bases, random_turns(17))
+    check(rig, bases, random_turns(33))
 
 
 def test_where_controls_are_held_otherwise_each_pose_is_looked_at():
@@ -92,12 +92,12 @@ def test_where_controls_are_held_otherwise_each_pose_is_looked_at():
     half_carried(rig, 0.0)
     limit = rig.pose.bones["between"].constraints.new("LIMIT_ROTATION")
     limit.use_limit_x, limit.min_x, limit.max_x, limit.owner_space = True, 1.4, 1.8, "POSE"
-    turns = np.tile(np.eye(3), (25, 6, 1, 1))
-    turns[9:] = random_turns(16)
-    bases, missed, seen = posed_controls(rig, TURNED, turns, np.zeros((25, 6, 3)))
+    turns = np.tile(np.eye(3), (49, 6, 1, 1))
+    turns[17:] = random_turns(32)
+    bases, missed, seen = posed_controls(rig, TURNED, turns, np.zeros((49, 6, 3)))
     assert missed.max() < 0.001
     check(rig, bases, turns)
-    assert np.flatnonzero(~seen).tolist() == [1, 2, 3, 4, 5, 6, 7]  # at rest
+    assert np.flatnonzero(~seen).tolist() == list(range(1, 16))  # at rest
 
 
 def test_the_scene_that_is_shown_is_not_evaluated(updates):
