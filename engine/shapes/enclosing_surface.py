@@ -269,7 +269,9 @@ def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...], apart: float)
     """Tell which pieces (p,) lie on a surface made on such a grid, or near beneath it, for the most part."""
     tree, lying = cKDTree(mesh.vertices), np.zeros(len(pieces), bool)
     for number, piece in enumerate(pieces):
-        distances = tree.query(even_samples(piece.mesh, mesh.area / SAMPLES).positions)[0]
+        # A piece may be far larger than what was found to be inside of all.
+        spread = max(mesh.area, piece.mesh.area) / SAMPLES
+        distances = tree.query(even_samples(piece.mesh, spread).positions)[0]
         unit, own = np.sqrt(mesh.area), np.sqrt(piece.mesh.area)
         lying[number] = np.median(distances) < min(_LYING * unit, max(apart * unit, _ITS_OWN * own))
     return lying

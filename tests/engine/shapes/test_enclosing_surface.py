@@ -11,6 +11,7 @@ from engine.mesh.closest_points import ClosestPoints
 from engine.mesh.surface_points import SurfacePoints
 from engine.repair.cleaning import clean
 from engine.runtime.progress import run
+from engine.shapes import enclosing_surface
 from engine.shapes.enclosing_surface import with_limbs_steps
 from tests.limbs import modular_creature
 from tests.messes import together
@@ -222,3 +223,12 @@ def test_what_holds_two_parts_of_a_body_together_belongs_to_it_though_most_of_it
     assert (found.cleaned.vertex_parts == 0).all()
     # Without it they stay apart.
     assert (joined(TriangleMesh(*together(*halves))).cleaned.vertex_parts > 0).any()
+
+
+def test_where_next_to_nothing_is_inside_pieces_stay_as_they_are(body, monkeypatch):
+    # Of scattered sheets a speck may be inside, whose area says nothing of theirs.
+    vertices, triangles = icosphere(1)
+    monkeypatch.setattr(enclosing_surface, "surface_net", lambda *_: (1e-6 * vertices, triangles))
+    surface = joined(body.mesh)
+    assert surface.cleaned.vertex_parts.max() > 0
+    assert surface.mesh.area < whole().area
