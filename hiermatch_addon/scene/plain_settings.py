@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is set on a modifier, of an object or of a curve, as a text that is another one once it was changed."""
+"""Settings of a modifier, of an object or of a curve, as a text that is another one once they were changed."""
 
 from __future__ import annotations
 

@@ -60,3 +60,18 @@ def depths(obj, body):
         assert hit
         found.append(-(into @ Vector(point) - place).dot(normal))
     return np.array(found)
+
+
+def made_copies():
+    """Names of all that was fitted."""
+    return sorted(obj.name for obj in bpy.data.objects if "hiermatch_body" in obj)
+
+
+def add_twin(body):
+    """Add a copy of a body, at the same place."""
+    twin = body.copy()
+    twin.data = body.data.copy()
+    twin.name = "Twin"
+    bpy.context.scene.collection.objects.link(twin)
+    bpy.context.view_layer.update()
+    return twin

@@ -22,12 +22,13 @@ _PLACE = 0.35
 _LEFT = 2.5
 """What each bone costs that is left at the trunk, such as a collar bone, in the same units.  With these three, all
 bones of the limbs of the knight have the right partners, in both ways, in `maker_rigs` of the benchmarks; so they have
-with 2 and with 3."""
+with 2 and with 3 (both tried once)."""
 
 _WIDTH, _NARROWEST = 2.0, 0.01
 """What it costs, in the same units, if one limb begins further from that on the other side by the factor e, in units of
 its length; and the least distance: collar bones begin near the middle, upper arms do not.  With it the knight's arms
-are paired with those of an avatar that has straight collar bones; with half of it they are not."""
+are paired with those of an avatar that has straight collar bones (``maker_rigs --guided``); with half of it, tried
+once, they are not."""
 
 
 class _Limb(NamedTuple):

@@ -45,8 +45,8 @@ of ``python -m tests.benchmarks.worn_makers``: what is lifted far in one place c
 
 _ROOM = 0.8
 """Part of the distance that a vertex would have from the skin, lifted twice as far as any is, from which on it has
-room: with less, other skin is above it, as between thighs that touch, and it stays.  Without that O1 of ``python -m
-tests.benchmarks.outfits`` shows 0.29 % of the skin instead of 0.03."""
+room: with less, other skin is above it, as between thighs that touch, and it stays.  Without that, tried once, O1 of
+``python -m tests.benchmarks.outfits`` shows 0.29 % of the skin instead of 0.03."""
 
 _TRIFLE = 1e-4
 """What is less than this, in the same unit, is nothing."""

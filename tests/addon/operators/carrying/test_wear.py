@@ -11,7 +11,7 @@ from hiermatch.hiermatch_addon.jobs import transfer_job
 from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
 from hiermatch.hiermatch_addon.transfers.wearing import wear_transfer
 
-from tests.addon.garments import add_item, depths, fitted, in_world, wear
+from tests.addon.garments import add_item, depths, fitted, in_world, made_copies, wear
 from tests.addon.rigs import add_armature
 from tests.addon.scenes import DENSE, snapshot, weights_of
 from tests.addon.shape_keys import positions
@@ -44,92 +44,6 @@ def test_items_are_fitted_as_copies_and_again_in_place(dressed_pair):
     assert coat.name == "Coat"
 
 
-def made_copies():
-    return sorted(obj.name for obj in bpy.data.objects if "hiermatch_body" in obj)
-
-
-def test_copies_are_found_again_after_renaming(dressed_pair):
-    _, target, shirt, _ = dressed_pair
-    assert wear("Shirt", "Coat") == {"FINISHED"}
-    target.name, shirt.name = "Giant", "Blouse"
-    fitted("Coat").name = "My Coat"
-    assert wear("Blouse", target="Giant") == {"FINISHED"}
-    assert made_copies() == ["Blouse on Giant", "My Coat"]
-    assert fitted("Coat", "Giant").name == "My Coat"
-    assert [one.name for one in bpy.data.collections if "hiermatch_body" in one] == ["Outfit of Giant"]
-    assert not set(fitted("Blouse", "Giant").keys()) & {"hiermatch_item_name", "hiermatch_body_name"}
-
-
-def test_a_shape_key_is_found_again_after_renaming(dressed_pair):
-    _, target, shirt, _ = dressed_pair
-    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
-    target.name = "Giant"
-    assert wear("Shirt", target="Giant", wear_result="KEY") == {"FINISHED"}
-    assert shirt.data.shape_keys.key_blocks.keys() == ["Basis", "Fit to Giant"]
-
-
-def add_twin(body):
-    """Add a copy of a body, at the same place."""
-    twin = body.copy()
-    twin.data = body.data.copy()
-    twin.name = "Twin"
-    bpy.context.scene.collection.objects.link(twin)
-    bpy.context.view_layer.update()
-    return twin
-
-
-def test_what_another_body_wears_is_left_alone(dressed_pair):
-    _, target, *_ = dressed_pair
-    assert wear("Shirt") == {"FINISHED"}
-    add_twin(target)
-    assert wear("Shirt", target="Twin") == {"FINISHED"}
-    assert made_copies() == ["Shirt on Target", "Shirt on Twin"]
-
-
-def test_a_copy_that_was_edited_is_kept_aside(dressed_pair):
-    assert dressed_pair
-    assert wear("Shirt", "Coat") == {"FINISHED"}
-    fitted("Shirt").data.vertices[3].co.z += 0.5
-    where = tuple(fitted("Shirt").data.vertices[3].co)
-    assert wear("Shirt", "Coat") == {"FINISHED"}
-    assert made_copies() == ["Coat on Target", "Shirt on Target", "Shirt on Target (edited)"]
-    kept = bpy.data.objects["Shirt on Target (edited)"]
-    assert tuple(kept.data.vertices[3].co) == where
-    assert kept.users_collection == fitted("Shirt").users_collection
-    assert kept.hide_get()
-    assert kept.hide_render
-    assert "was edited after it had been fitted" in bpy.context.scene.hiermatch_retarget.report.notes
-    assert wear("Shirt", "Coat") == {"FINISHED"}
-    assert len(made_copies()) == 3
-
-
-def thicken(copy):
-    copy.modifiers["Thick"].thickness = 0.3
-
-
-def nudge(copy):
-    copy.location.z += 0.2
-
-
-@pytest.mark.parametrize("change", [thicken, nudge])
-def test_a_copy_whose_modifier_was_set_or_that_was_moved_is_kept_aside(dressed_pair, change):
-    _, target, shirt, _ = dressed_pair
-    shirt.modifiers.new("Thick", "SOLIDIFY").thickness = 0.01
-    assert wear("Shirt") == {"FINISHED"}
-    bpy.context.view_layer.update()
-    target.location.y += 2  # with all that it wears
-    fitted("Shirt").location.y += 2
-    bpy.context.view_layer.update()
-    assert wear("Shirt") == {"FINISHED"}
-    assert made_copies() == ["Shirt on Target"]
-    change(fitted("Shirt"))
-    thickness, height = fitted("Shirt").modifiers["Thick"].thickness, fitted("Shirt").location.z
-    assert wear("Shirt") == {"FINISHED"}
-    assert made_copies() == ["Shirt on Target", "Shirt on Target (edited)"]
-    kept = bpy.data.objects["Shirt on Target (edited)"]
-    assert (kept.modifiers["Thick"].thickness, kept.location.z) == (thickness, height)
-
-
 def test_a_surface_deform_is_bound_to_the_other_body(dressed_pair):
     source, target, shirt, _ = dressed_pair
     modifier = shirt.modifiers.new("Follow", "SURFACE_DEFORM")
@@ -150,45 +64,6 @@ def test_a_surface_deform_is_bound_to_the_other_body(dressed_pair):
     assert np.abs(np.abs(moved).max(axis=1) - 0.5).max() < 0.05
 
 
-def test_a_shape_key_on_the_original(dressed_pair):
-    _, target, shirt, _ = dressed_pair
-    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
-    key = shirt.data.shape_keys.key_blocks["Fit to Target"]
-    assert key.value == 1
-    assert not [obj for obj in bpy.data.objects if "hiermatch_body" in obj]
-    moved = np.array([shirt.matrix_world @ point.co for point in key.data])
-    assert np.linalg.norm(moved.mean(axis=0) - in_world(target).mean(axis=0)) < 0.3
-
-
-def test_shape_keys_for_several_bodies_stay_as_far_on_as_they_are(dressed_pair):
-    _, target, shirt, _ = dressed_pair
-    add_twin(target)
-    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
-    assert wear("Shirt", target="Twin", wear_result="KEY") == {"FINISHED"}
-    keys = shirt.data.shape_keys.key_blocks
-    assert [keys["Fit to Target"].value, keys["Fit to Twin"].value] == [1, 0]
-    keys["Fit to Twin"].value, keys["Fit to Twin"].slider_max = 0.5, 2
-    for body in ("Target", "Twin"):
-        assert wear("Shirt", target=body, wear_result="KEY") == {"FINISHED"}
-    assert [keys["Fit to Target"].value, keys["Fit to Twin"].value] == [1, 0.5]
-    assert keys["Fit to Twin"].slider_max == 2
-
-
-def test_a_copy_of_an_item_with_shape_keys_for_bodies_is_not_fitted_twice(dressed_pair):
-    _, target, shirt, coat = dressed_pair
-    coat.shape_key_add(name="Basis")
-    coat.shape_key_add(name="Puffed", from_mix=False)
-    assert wear("Shirt", "Coat", wear_result="KEY") == {"FINISHED"}
-    assert wear("Shirt", "Coat") == {"FINISHED"}
-    assert fitted("Shirt").data.shape_keys is None
-    assert fitted("Coat").data.shape_keys.key_blocks.keys() == ["Basis", "Puffed"]
-    assert shirt.data.shape_keys.key_blocks["Fit to Target"].value == 1
-    bpy.context.view_layer.update()
-    seen = fitted("Coat").evaluated_get(bpy.context.evaluated_depsgraph_get())
-    middle = np.mean([seen.matrix_world @ vertex.co for vertex in seen.data.vertices], axis=0)
-    assert np.linalg.norm(middle - in_world(target).mean(axis=0)) < 0.3
-
-
 def test_what_is_painted_on_a_copy_is_said_to_change_nothing(dressed_pair):
     _, _, shirt, _ = dressed_pair
     shirt.vertex_groups.new(name="Loose").add([1, 2], 1.0, "REPLACE")
@@ -198,110 +73,6 @@ def test_what_is_painted_on_a_copy_is_said_to_change_nothing(dressed_pair):
     assert wear("Shirt") == {"FINISHED"}
     notes = bpy.context.scene.hiermatch_retarget.report.notes
     assert 'What was painted on "Shirt on Target" in "Tight" changes nothing: paint it on "Shirt".' in notes
-
-
-def test_a_locked_shape_key_is_not_written_over(dressed_pair):
-    _, _, shirt, _ = dressed_pair
-    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
-    shirt.data.shape_keys.key_blocks["Fit to Target"].lock_shape = True
-    with pytest.raises(RuntimeError, match='The shape key "Fit to Target" of "Shirt" is locked'):
-        wear("Shirt", wear_result="KEY")
-
-
-def test_bodies_with_long_names_get_shape_keys_of_their_own(dressed_pair):
-    _, target, shirt, _ = dressed_pair
-    other = add_twin(target)
-    for body, end in ((target, "A"), (other, "B")):
-        body.name = "\u4eba" * 20 + end  # with "Fit to " longer than the name of a key can be
-    for body in (target, other, target):
-        assert wear("Shirt", target=body.name, wear_result="KEY") == {"FINISHED"}
-    _, *made = shirt.data.shape_keys.key_blocks.keys()
-    assert len(made) == 2
-    assert all(name.startswith("Fit to \u4eba\u4eba") for name in made)
-
-
-def test_keys_of_an_item_go_along(dressed_pair):
-    _, _, shirt, _ = dressed_pair
-    shirt.shape_key_add(name="Basis")
-    key = shirt.shape_key_add(name="Puffed")
-    up = np.zeros((len(key.data), 3))
-    up[:, 2] = 0.1
-    key.data.foreach_set("co", (positions(shirt) + up).astype(np.float32).ravel())
-    assert wear("Shirt") == {"FINISHED"}
-    copy = fitted("Shirt")
-    basis, puffed = (np.array([p.co for p in copy.data.shape_keys.key_blocks[n].data]) for n in ("Basis", "Puffed"))
-    lengths = np.linalg.norm(puffed - basis, axis=1)
-    assert lengths.min() > 0.03
-    assert lengths.max() < 0.4
-
-
-def add_belly(body, name="Belly"):
-    """Add a key that moves one end of a body outwards; return which of its vertices."""
-    if body.data.shape_keys is None:
-        body.shape_key_add(name="Basis")
-    key = body.shape_key_add(name=name, from_mix=False)
-    key.value = 0
-    points = positions(body)
-    chosen = points[:, 0] > np.quantile(points[:, 0], 0.8)
-    normals = np.array([vertex.normal for vertex in body.data.vertices])
-    key.data.foreach_set("co", (points + 0.1 * chosen[:, None] * normals).astype(np.float32).ravel())
-    return chosen
-
-
-def evaluated(obj):
-    bpy.context.view_layer.update()
-    made = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    matrix = np.array(made.matrix_world)
-    return np.array([vertex.co for vertex in made.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
-
-
-def test_items_follow_the_keys_of_the_body(dressed_pair):
-    _, target, *_ = dressed_pair
-    add_belly(target)
-    target.data.shape_keys.key_blocks["Belly"].slider_max = 2
-    target.shape_key_add(name="Nothing", from_mix=False)
-    assert wear("Shirt", "Coat") == {"FINISHED"}
-    for name in ("Shirt", "Coat"):
-        copy = fitted(name)
-        assert copy.data.shape_keys.key_blocks.keys() == ["Basis", "Belly"]
-        assert copy.data.shape_keys.key_blocks["Belly"].slider_max == 2
-        before = evaluated(copy)
-        target.data.shape_keys.key_blocks["Belly"].value = 1
-        moved = np.linalg.norm(evaluated(copy) - before, axis=1)
-        target.data.shape_keys.key_blocks["Belly"].value = 0
-        assert moved.max() > 0.05
-        assert (moved == 0).any()
-    assert 'follows 1 shape key of "Target"' in bpy.context.scene.hiermatch_retarget.report.remarks
-    assert wear("Shirt", wear_keys=False) == {"FINISHED"}
-    assert fitted("Shirt").data.shape_keys is None
-
-
-def drive(obj, name, body, leader):
-    """Let a key of an object be driven by one of a body's."""
-    driver = obj.data.shape_keys.driver_add(f'key_blocks["{name}"].value').driver
-    driver.type = "AVERAGE"
-    place = driver.variables.new().targets[0]
-    place.id_type, place.id = "KEY", body.data.shape_keys
-    place.data_path = f'key_blocks["{leader}"].value'
-
-
-def test_keys_of_an_item_that_the_body_drives_are_driven_by_the_other_body(dressed_pair):
-    source, target, shirt, _ = dressed_pair
-    for body in (source, target):
-        add_belly(body)
-    add_belly(source, "Tail")
-    for name in ("Belly", "Tail"):
-        add_belly(shirt, name)
-        drive(shirt, name, source, name)
-    assert wear("Shirt") == {"FINISHED"}
-    keys = fitted("Shirt").data.shape_keys
-    assert keys.key_blocks.keys() == ["Basis", "Belly", "Tail"]
-    read = {curve.data_path: curve.driver.variables[0].targets[0].id for curve in keys.animation_data.drivers}
-    assert read == {
-        'key_blocks["Belly"].value': target.data.shape_keys,
-        'key_blocks["Tail"].value': source.data.shape_keys,
-    }
-    assert f'still read from "{source.data.shape_keys.name}"' in bpy.context.scene.hiermatch_retarget.report.notes
 
 
 def test_selected_items_and_those_of_a_collection(dressed_pair):

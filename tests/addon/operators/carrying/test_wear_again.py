@@ -1,13 +1,77 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clothes that were fitted to one body, worn by it on the way to the next."""
+"""Clothes that were fitted before: found again, kept aside if they were edited, or worn on the way to the next body."""
 
 from __future__ import annotations
 
 import bpy
 import pytest
 
-from tests.addon.garments import fitted, wear
+from tests.addon.garments import add_twin, fitted, made_copies, wear
 from tests.addon.scenes import DENSE, QUICK, mesh_snapshot, weights_of
+
+
+def test_copies_are_found_again_after_renaming(dressed_pair):
+    _, target, shirt, _ = dressed_pair
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    target.name, shirt.name = "Giant", "Blouse"
+    fitted("Coat").name = "My Coat"
+    assert wear("Blouse", target="Giant") == {"FINISHED"}
+    assert made_copies() == ["Blouse on Giant", "My Coat"]
+    assert fitted("Coat", "Giant").name == "My Coat"
+    assert [one.name for one in bpy.data.collections if "hiermatch_body" in one] == ["Outfit of Giant"]
+    assert not set(fitted("Blouse", "Giant").keys()) & {"hiermatch_item_name", "hiermatch_body_name"}
+
+
+def test_what_another_body_wears_is_left_alone(dressed_pair):
+    _, target, *_ = dressed_pair
+    assert wear("Shirt") == {"FINISHED"}
+    add_twin(target)
+    assert wear("Shirt", target="Twin") == {"FINISHED"}
+    assert made_copies() == ["Shirt on Target", "Shirt on Twin"]
+
+
+def test_a_copy_that_was_edited_is_kept_aside(dressed_pair):
+    assert dressed_pair
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    fitted("Shirt").data.vertices[3].co.z += 0.5
+    where = tuple(fitted("Shirt").data.vertices[3].co)
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    assert made_copies() == ["Coat on Target", "Shirt on Target", "Shirt on Target (edited)"]
+    kept = bpy.data.objects["Shirt on Target (edited)"]
+    assert tuple(kept.data.vertices[3].co) == where
+    assert kept.users_collection == fitted("Shirt").users_collection
+    assert kept.hide_get()
+    assert kept.hide_render
+    assert "was edited after it had been fitted" in bpy.context.scene.hiermatch_retarget.report.notes
+    assert wear("Shirt", "Coat") == {"FINISHED"}
+    assert len(made_copies()) == 3
+
+
+def thicken(copy):
+    copy.modifiers["Thick"].thickness = 0.3
+
+
+def nudge(copy):
+    copy.location.z += 0.2
+
+
+@pytest.mark.parametrize("change", [thicken, nudge])
+def test_a_copy_whose_modifier_was_set_or_that_was_moved_is_kept_aside(dressed_pair, change):
+    _, target, shirt, _ = dressed_pair
+    shirt.modifiers.new("Thick", "SOLIDIFY").thickness = 0.01
+    assert wear("Shirt") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    target.location.y += 2  # with all that it wears
+    fitted("Shirt").location.y += 2
+    bpy.context.view_layer.update()
+    assert wear("Shirt") == {"FINISHED"}
+    assert made_copies() == ["Shirt on Target"]
+    change(fitted("Shirt"))
+    thickness, height = fitted("Shirt").modifiers["Thick"].thickness, fitted("Shirt").location.z
+    assert wear("Shirt") == {"FINISHED"}
+    assert made_copies() == ["Shirt on Target", "Shirt on Target (edited)"]
+    kept = bpy.data.objects["Shirt on Target (edited)"]
+    assert (kept.modifiers["Thick"].thickness, kept.location.z) == (thickness, height)
 
 
 @pytest.fixture

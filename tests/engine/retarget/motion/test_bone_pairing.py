@@ -55,12 +55,18 @@ def test_the_rest_pose_is_seen_by_the_surface(someone, paired):
     assert np.trace(apart) > 1 + 2 * np.cos(np.radians(4))
 
 
+def fitted_into_itself(person, confidence):
+    """A person's rig, fitted into the same person by a map of such a confidence."""
+    same = SurfaceMap.identity(person.mesh)
+    same = replace(same, confidence=np.full(len(same), confidence))
+    named = {"weights": person.rig.weights, "skeleton": person.rig.skeleton, "refine": False}
+    return fit_rig(person.mesh, person.mesh, same, same, **named)
+
+
 @pytest.mark.parametrize(("confidence", "follows"), [(1.0, False), (0.1, True)])
 def test_where_a_map_is_doubtful_joints_tell_where_limbs_point(someone, confidence, follows):
     tree, names = someone.rig.skeleton, someone.rig.names
-    same = SurfaceMap.identity(someone.mesh)
-    same = replace(same, confidence=np.full(len(same), confidence))
-    fitted = fit_rig(someone.mesh, someone.mesh, same, same, weights=someone.rig.weights, skeleton=tree, refine=False)
+    fitted = fitted_into_itself(someone, confidence)
     rotations = fitted.rotations.copy()
     for side, sign in (("L", 1), ("R", -1)):
         rotations[names.index(f"upper_arm.{side}")] = rotation([0, 1, 0], sign * np.radians(50))
@@ -76,9 +82,7 @@ def test_where_a_map_is_doubtful_joints_tell_where_limbs_point(someone, confiden
 def test_where_a_map_is_doubtful_limbs_are_paired_in_order(someone, confidence, right):
     # As if the map took the lower leg to the foot, as that of a large head on short legs with large feet does.
     tree, names = someone.rig.skeleton, someone.rig.names
-    same = SurfaceMap.identity(someone.mesh)
-    same = replace(same, confidence=np.full(len(same), confidence))
-    fitted = fit_rig(someone.mesh, someone.mesh, same, same, weights=someone.rig.weights, skeleton=tree, refine=False)
+    fitted = fitted_into_itself(someone, confidence)
     shifted = {
         f"{one}.{side}": f"{other}.{side}" for one, other in (("shin", "foot"), ("foot", "toe")) for side in "LR"
     }
