@@ -83,7 +83,7 @@ def _state(action: bpy.types.Action) -> str:
     layers: Sequence[Any] = getattr(action, "layers", ())
     strips = [len(layer.strips) for layer in layers]
     slots: Sequence[Any] = getattr(action, "slots", ())
-    settings = [(getattr(action, name)) for name in _RANGE if action.use_frame_range or name == "use_frame_range"]
+    settings = [getattr(action, name) for name in _RANGE if action.use_frame_range or name == "use_frame_range"]
     markers = [(marker.name, marker.frame) for marker in action.pose_markers]
     digest.update(f"{strips} {len(slots)} {settings} {markers}\0".encode())
     for curve in every_curve(action):
