@@ -12,7 +12,6 @@ from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from ...dense.credibility import DOUBTFUL
 from ...geometry.procrustes import least_turns, nearest_frame, nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
@@ -53,6 +52,11 @@ _FIXED = 10.0
 _STRAY_DIRECTION = np.radians(35.0)
 """A bone whose direction by the joints is further from that by the map keeps the latter: its joint means another
 place."""
+
+_DOUBTFUL = 0.2
+"""Mean confidence of a map over the target below which it says which limbs belong together, but no more: the knight's
+maps have 0.04 to 0.16, a husky's to a cat 0.25, which says where paws are better than joints do.  Chosen by ``python
+-m tests.benchmarks.maker_rigs``: with 0.3 that cat's paws walk 13 % of its height below the ground."""
 
 _TRUNK_NEAR_AXES = np.radians(20.0)
 """Bodies whose rotation against each other is no further from one that takes axes to axes are turned by just that."""
@@ -169,7 +173,7 @@ def pair_bones(
     chosen = _chosen(gains, found, trees, {target: source for source, target in fixed})
     given = {(int(a), int(b)) for a, b in fixed}
     chosen = _without_misplaced(chosen, within_target, given, target)
-    doubtful = bool(np.average(rig.target_to_source.confidence, weights=target.vertex_areas) < DOUBTFUL)
+    doubtful = bool(np.average(rig.target_to_source.confidence, weights=target.vertex_areas) < _DOUBTFUL)
     upright = _upright(rig, source, frames, doubtful=doubtful)
     if doubtful:
         ends = _ending(trees[0], source, rig.weights, upright), _ending(skeleton, target, weights, np.eye(3))
