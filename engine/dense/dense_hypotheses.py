@@ -52,9 +52,9 @@ class Selection:
     ambiguous : float
         Difference of scores up to which a map is registered before it is given up.
     contested : float
-        Difference of scores up to which what may be better of a registered map is tried, too, before one is chosen.
+        Difference of scores up to which a registered map is registered closely, too, before one is chosen.
     most : int
-        How many are registered, and how many of them are tried otherwise, at most.
+        How many are registered, and how many closely, at most.
     least : float
         Likeness below which no map is of use: all is given up as soon as it cannot be reached any more.
     least_softly : float

@@ -19,7 +19,7 @@ from ..shapes.shape import Shape
 from .credibility import EVEN, LITTLE_RISE, RISE, is_clear_choice
 from .dense_hypotheses import USUAL, MapHypothesis, Selection, SparseStart, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
-from .proposers import Contest, are_distinct, proposed_steps
+from .proposers import Contest, are_distinct, contenders, proposed_steps
 from .registered_hypotheses import Candidate, CloseFit, Follower, Settling, at_vertices
 from .rough_maps.extremity_maps import RoughSearch
 
@@ -188,12 +188,13 @@ def registered_pair_steps(
         raise MatchError("The surfaces are not enough alike to be matched.")
     if search:
         contest, candidates = yield from within(proposed_steps(contest, candidates), 0.6, 0.7)
-    best, *others = candidates
-    contest.check_last([best])
     # What cannot be right is followed as it is.
-    hopeful = contest.may_reach(EVEN, [best], LITTLE_RISE if search else RISE)
+    hopeful = contest.may_reach(EVEN, candidates, LITTLE_RISE if search else RISE)
+    contest.check_last(candidates)
+    fit, others = yield from within(_contest_steps(contest, candidates, closely=hopeful), 0.7, 0.9)
+    best = fit.candidate
+    contest.check_last([best])
     follow = contest.follow if hopeful else replace(contest.follow, settling=Settling(disagree=()))
-    fit = yield from within(follow.close_steps(best), 0.7, 0.9)
     fit, trips = yield from within(follow.settled_steps(fit), 0.9, 1.0)
     if best.hypothesis.is_rough:
         # Others are compared with what functional maps make of it, not with the rough map.
@@ -216,6 +217,18 @@ def _preview(hypothesis: MapHypothesis, registration: Registration | None = None
     else:
         images = registration.on_target.interpolate(there.triangles, there.vertices)[x.vertices]
     return Preview(x.shape.surface.as_given(x.shape.mesh.vertices[x.vertices]), images)
+
+
+def _contest_steps(
+    contest: Contest, candidates: list[Candidate], *, closely: bool
+) -> Steps[tuple[CloseFit, list[Candidate]]]:
+    """Register closely what may be chosen, and choose; returned are the most credible map and the other candidates."""
+    chosen = contenders(contest, candidates) if closely else candidates[:1]
+    fits = yield from contest.follow.all_close_steps(chosen)
+    others = [candidate for candidate in candidates if not any(candidate is each for each in chosen)]
+    if len(fits) > 1:
+        fits = sorted(map(contest.follow.judged_closely, fits), key=lambda fit: fit.candidate.score)
+    return fits[0], [*(fit.candidate for fit in fits[1:]), *others]
 
 
 def _rivals(

@@ -286,10 +286,25 @@ class Follower:
             hypothesis, registration, score, alike, isometry, self.in_place(registration.positions), credit
         )
 
+    def judged_closely(self, fit: CloseFit) -> CloseFit:
+        """Judge a candidate by the mean of how credible its soft registration is, and its close one.
+
+        A rough start may lead the soft one of the true map to where the surfaces meet badly, and a close one fits wrong
+        maps as well.
+        """
+        before, now = fit.candidate, self._judged(fit.candidate.hypothesis, fit.registration)
+        score, credit = (before.score + now.score) / 2, (before.credit + now.credit) / 2
+        return replace(fit, candidate=replace(before, score=score, credit=credit))
+
     def credited(self, candidate: Candidate) -> Candidate:
         """Judge a candidate anew by what is known to be left in place by now."""
         credit = self.credit(candidate.registration.positions)
         return replace(candidate, score=candidate.score + candidate.credit - credit, credit=credit)
+
+    def all_close_steps(self, candidates: Sequence[Candidate]) -> Steps[list[CloseFit]]:
+        """Register several candidates closely; see `close_steps`."""
+        found = yield from shared_steps(_closely_followed_steps, self, candidates)
+        return [CloseFit(candidate, *rest) for candidate, rest in zip(candidates, found, strict=True)]
 
     def close_steps(self, candidate: Candidate) -> Steps[CloseFit]:
         """Register closely: the source, then the target from where it lies, then the source again."""
@@ -439,6 +454,12 @@ def _lying_steps(follow: Follower, item: tuple[Candidate, Floats]) -> Steps[_Jud
 def _judged(found: Candidate) -> _Judged:
     """Take what is sent of a candidate, the hypothesis of which is known."""
     return found.registration, found.score, found.likeness, found.isometry, found.in_place, found.credit
+
+
+def _closely_followed_steps(follow: Follower, candidate: Candidate) -> Steps[tuple[Registration, Registration]]:
+    """Find what `Follower.close_steps` does, beside the candidate."""
+    found = yield from follow.close_steps(candidate)
+    return found.registration, found.reverse
 
 
 def _registered_steps(follow: Follower, item: tuple[Floats, Stage, float]) -> Steps[Registration]:

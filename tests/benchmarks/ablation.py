@@ -106,6 +106,7 @@ MECHANISMS = {
         )
     ],
     "other windings": [(f"{R}.untwisted", lambda own: lambda *given: own(*given)._replace(otherwise=[]))],
+    "close contest": [(f"{room}.contenders", lambda own: lambda *given: own(*given)[:1]) for room in (D, Q)],
     "agreeing in turns": [(f"{R}.Follower.settled_steps", agreeing_already)],
     "softening by strain": [("engine.registration.registration._softened", lambda _: lambda elastic, *_given: elastic)],
     "mended patches": [(f"{P}.with_patches_mended", lambda _: lambda _mesh, images, *_given: images)],

@@ -230,22 +230,29 @@ def with_soft_score(monkeypatch, origin, added):
     monkeypatch.setattr(Follower, "steps", steps)
 
 
-def test_the_most_credible_map_alone_is_registered_closely(bodies, both_starts, monkeypatch):
+def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, both_starts, monkeypatch):
     x, y, rest_x, rest_y = bodies
-    closely = []
-    own = Follower.close_steps
-    monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.hypothesis.origin) or own(self, c))
+    plain = run(registered_pair_steps(x, y, both_starts, search=False, selection=BOTH))
+    scores = {candidate.hypothesis.origin: candidate.score for candidate in plain.candidates}
+    # So that the wrong one seems a little better at first.
+    added = scores["exchanged"] - scores["true"] + 1
+    assert added > 1
+    with_soft_score(monkeypatch, "true", added)
     pair = run(registered_pair_steps(x, y, both_starts, search=False, selection=BOTH))
-    first, second = pair.candidates
-    assert closely == ["true"] == [first.hypothesis.origin]
-    assert pair.margin == pytest.approx(second.score - first.score)
+    assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true", "exchanged"]
     assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
     follow = Follower(x, y, pair.source, pair.target)
-    settled, trips = run(follow.settled_steps(run(own(follow, first))))
+    softly = [run(follow.steps(candidate.hypothesis)) for candidate in pair.candidates]
+    assert softly[0].score == pytest.approx(softly[1].score + 1)
+    fits = run(follow.all_close_steps(softly))
+    closely = [follow.judged_closely(fit).candidate.score for fit in fits]
+    assert closely == pytest.approx([candidate.score for candidate in pair.candidates])
+    assert pair.margin == pytest.approx(closely[1] - closely[0])
+    settled, trips = run(follow.settled_steps(fits[0]))
     np.testing.assert_array_equal(settled.registration.positions, pair.registration.positions)
     np.testing.assert_array_equal(settled.reverse.positions, pair.reverse.positions)
-    for each, of_pair in zip(trips, pair.trips, strict=True):
-        np.testing.assert_array_equal(each, of_pair)
+    for own, of_pair in zip(trips, pair.trips, strict=True):
+        np.testing.assert_array_equal(own, of_pair)
 
 
 def ways_there_and_back(follow, fit):
@@ -338,6 +345,16 @@ def test_strain_is_taken_for_as_sparse_and_directed_as_bodies_are_alike(few, exp
     assert directions == [expected[1]] * len(powers)
 
 
+def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_starts, monkeypatch):
+    with_soft_score(monkeypatch, "exchanged", 100)
+    closely = []
+    own = Follower.close_steps
+    monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.hypothesis.origin) or own(self, c))
+    pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False, selection=BOTH))
+    assert closely == ["true"]
+    assert pair.margin == pytest.approx(pair.candidates[1].score - pair.candidates[0].score)
+
+
 def test_motion_and_scale_do_not_matter(registered, bodies):
     x, y = bodies[:2]
     turn = rotation([1, -1, 2], 2.5)
@@ -370,13 +387,17 @@ def test_a_pair_that_nothing_was_compared_for_has_no_likeness():
     assert RegisteredPair(*[None] * 6, candidates=(), margin=None).likeness is None
 
 
-def test_where_no_map_can_be_right_nothing_else_is_proposed(bodies, both_starts, monkeypatch):
+def test_where_no_map_can_be_right_the_best_alone_is_followed(bodies, both_starts, monkeypatch):
+    """With the true map made to seem worse at first, the wrong one is kept: no close registration decides."""
     x, y = bodies[:2]
     asked = []
     monkeypatch.setattr(proposers, "PROPOSERS", (proposers.Proposer(lambda *_: asked.append(1), 4.0),))
     monkeypatch.setattr(proposers, "may_reach", lambda least, *_: least == -np.inf)
-    pair = run(registered_pair_steps(x, y, both_starts, selection=BOTH))
+    with_soft_score(monkeypatch, "true", 100.0)
+    selection = replace(BOTH, contested=1000.0)
+    pair = run(registered_pair_steps(x, y, both_starts, selection=selection))
     assert not asked
+    assert pair.candidates[0].hypothesis.origin != "true"
     assert pair.margin is not None
 
 
@@ -385,7 +406,7 @@ def test_surfaces_that_are_less_alike_than_asked_for_are_given_up_before_close_r
 ):
     x, y = bodies[:2]
     closely = []
-    monkeypatch.setattr(Follower, "close_steps", lambda *_: closely.append(1))
+    monkeypatch.setattr(dense_map, "_contest_steps", lambda *_: closely.append(1))
     for least in ({"least": np.inf}, {"least_softly": np.inf}):
         with pytest.raises(MatchError, match="not enough alike"):
             run(registered_pair_steps(x, y, both_starts, search=False, selection=replace(BOTH, **least)))
@@ -395,21 +416,19 @@ def test_surfaces_that_are_less_alike_than_asked_for_are_given_up_before_close_r
 def test_a_chosen_map_by_which_the_surfaces_are_less_alike_than_asked_for_is_not_followed(
     bodies, both_starts, monkeypatch
 ):
-    """Though another one is like enough."""
     x, y = bodies[:2]
-    own = Follower.steps
+    own = Follower.all_close_steps
 
-    def unlike_steps(self, hypothesis):
-        candidate = yield from own(self, hypothesis)
-        unlike = replace(candidate, likeness=0.0, in_place=0.0)
-        return unlike if hypothesis.origin == "true" else candidate
+    def unlike_steps(*given):
+        fits = yield from own(*given)
+        return [replace(fit, candidate=replace(fit.candidate, likeness=0.0, in_place=0.0)) for fit in fits]
 
-    closely = []
-    monkeypatch.setattr(Follower, "steps", unlike_steps)
-    monkeypatch.setattr(Follower, "close_steps", lambda *_: closely.append(1))
+    settled = []
+    monkeypatch.setattr(Follower, "all_close_steps", unlike_steps)
+    monkeypatch.setattr(Follower, "settled_steps", lambda *_: settled.append(1))
     with pytest.raises(MatchError, match="not enough alike"):
         run(registered_pair_steps(x, y, both_starts, search=False, selection=replace(BOTH, least=10.0)))
-    assert not closely
+    assert not settled
 
 
 @pytest.mark.parametrize(

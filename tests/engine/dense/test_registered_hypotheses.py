@@ -82,3 +82,21 @@ def test_where_a_map_is_looked_for_long_bodies_are_turned_back(long_bodies, upse
     pair = run(registered_pair_steps(x, y))
     assert misplaced(x, pair.target, pair.registration) < 0.03
     assert pair.candidates[0].score < upset[1].score
+
+
+def test_a_way_to_lie_that_is_no_better_at_first_is_registered_closely_as_well(long_bodies, upset, monkeypatch):
+    x, y = long_bodies
+    over = upset[1].registration
+
+    def ways(_self, candidates):
+        return returned([[c, replace(c, registration=over, score=c.score + 1)] for c in candidates])
+
+    closely = []
+    own = Follower.close_steps
+    monkeypatch.setattr(Follower, "rolled_back_steps", ways)
+    monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.registration) or own(self, c))
+    chosen = x.samples.vertices[:20]
+    pair = run(registered_pair_steps(x, y, [start_from(x, y, chosen, chosen)]))
+    assert over in closely
+    assert len(closely) == 2
+    assert misplaced(x, pair.target, pair.registration) < 0.03
