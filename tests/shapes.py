@@ -289,6 +289,18 @@ def capsule_surface(capsules, box, resolution, turn=0.0):
     return vertices, triangles
 
 
+def wire_box(cells, wire, size=(2.0, 2.0, 2.0), resolution=20):
+    """Mesh a box of wire around the origin: a grid of cells on each of its sides, as one closed surface."""
+    places = np.stack(np.meshgrid(*3 * [np.arange(cells + 1)]), axis=-1).reshape(-1, 3)
+    places = places[((places == 0) | (places == cells)).any(axis=1)]
+    first, second = (places[ends] for ends in np.nonzero(np.abs(places[:, None] - places).sum(axis=2) == 1))
+    once = first.sum(axis=1) < second.sum(axis=1)
+    step = np.asarray(size) / cells
+    ends = zip((first[once] - cells / 2) * step, (second[once] - cells / 2) * step, strict=True)
+    box = np.array([[-0.5], [0.5]]) * size + [[-3 * wire], [3 * wire]]
+    return capsule_surface([(*pair, wire, wire) for pair in ends], box, resolution)
+
+
 # Ends, radii at the ends: torso, neck, head, snout, two unequal ears, tail, four legs of different lengths, a hump.
 _CAPSULES = (
     ((-0.55, 0.0, 0.0), (0.5, 0.0, 0.05), 0.28, 0.3),

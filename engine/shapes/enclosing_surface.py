@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -25,6 +26,7 @@ from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, within
+from .openwork import FLAT, filled_openwork, is_openwork
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
 
@@ -43,9 +45,6 @@ the root of the area of a vertex of the surface: eight places for each, as many 
 
 _LEVEL = 0.4
 """How far inside counts as inside: less than half, so that open ends that stop short of each other meet."""
-
-_FLAT = 0.02
-"""Volume, by the power 3/2 of the area, below which a piece has no inside: a ball has 0.094."""
 
 _WIDEST = 0.06
 """Widest gap that is bridged, in sqrt(area)."""
@@ -177,13 +176,15 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
     Notes
     -----
     What is inside of the pieces is found on a grid, however they lie in each other and where they are open, and gaps
-    between them are bridged.  The surface is where that begins.  What is finer than the grid, such as fingers that
-    touch, is one there.
+    between them are bridged.  Wire frames stand for what they enclose.  The surface is where that begins.  What is
+    finer than the grid, such as fingers that touch, is one there.
     """
-    pieces, taking_part = cleaned.pieces, cleaned.of_body.copy()
-    count = sum(piece.mesh.vertex_count for piece, takes in zip(pieces, taking_part, strict=True) if takes)
-    most = min(most, _FINER * count)
+    taking_part = cleaned.of_body.copy()
+    pieces = [piece.mesh for piece in cleaned.pieces]
+    most = min(most, _FINER * sum(piece.vertex_count for piece in compress(pieces, taking_part)))
     apart = max(_SPACING, _PER_VERTEX / np.sqrt(most))
+    unit = float(np.sqrt(sum(piece.area for piece in compress(pieces, taking_part))))
+    pieces = [filled_openwork(each, apart * unit, _WIDEST * unit) if is_openwork(each) else each for each in pieces]
     skin = yield from within(_skin_steps(pieces, taking_part, ~taking_part, apart), 0.0, 0.5, _LABEL)
     lying = _lying_on(skin, pieces, apart) if skin is not None else taking_part
     if skin is not None and (taking_part & ~lying).any():
@@ -197,14 +198,14 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
     taking_part &= lying
     if not taking_part[0] or taking_part.sum() == 1:
         return None
-    body = _Body.of([piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if takes])
+    body = _Body.of(list(compress(cleaned.pieces, taking_part)))
     number = np.cumsum(~taking_part)
     number[taking_part] = 0
     parts = np.append(number, -1)[cleaned.vertex_parts]
     main = body.stand_in(coarse.mesh, cleaned)
     yield Progress(1.0, _LABEL)
     nearest = main.mesh.triangles[main.place_triangles, main.place_barycentric.argmax(axis=1)]
-    others = tuple(piece for piece, takes in zip(cleaned.pieces, taking_part, strict=True) if not takes)
+    others = tuple(compress(cleaned.pieces, ~taking_part))
     united = int(taking_part.sum())
     counts = replace(cleaned.counts, united=united, parts=cleaned.counts.parts + 1 - united, left_open=0)
     return replace(
@@ -218,16 +219,16 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
 
 
 def _skin_steps(
-    pieces: tuple[SurfacePart, ...], taking_part: Bools, thin: Bools, apart: float
+    pieces: Sequence[TriangleMesh], taking_part: Bools, thin: Bools, apart: float
 ) -> Steps[TriangleMesh | None]:
     """Find the surface around pieces (p,) that take part, some too thin for the grid; None if they have no inside.
 
     The places of the grid are that far apart, in sqrt(area).
     """
-    body = _Body.of([piece for piece, takes in zip(pieces, taking_part, strict=True) if takes])
-    unit = float(np.sqrt(body.mesh.area))
+    mesh, _, solids = _outward(compress(pieces, taking_part))
+    unit = float(np.sqrt(mesh.area))
     yield Progress(0.0, _LABEL)
-    solid = solid_indicator(body.solid, apart * unit)
+    solid = solid_indicator(TriangleMesh(mesh.vertices, mesh.triangles[solids]), apart * unit)
     for number in np.flatnonzero(taking_part & thin):
         places = np.rint((_midst(pieces[number], solid.spacing) - solid.origin) / solid.spacing).astype(np.int64)
         solid.values[tuple(places.T)] = np.maximum(solid.values[tuple(places.T)], (1 + _LEVEL) / 2)
@@ -243,20 +244,31 @@ def _skin_steps(
         return None
 
 
-def _midst(piece: SurfacePart, spacing: float) -> Floats:
+def _outward(pieces: Iterable[TriangleMesh]) -> tuple[TriangleMesh, Bools, Bools]:
+    """Turn pieces outward: all as one mesh, which of its triangles (m,) are turned, and which are around an inside."""
+    together = TriangleMesh.concatenated(list(pieces))
+    components, volumes = enclosed_volumes(together)
+    inward = (volumes < 0)[components]
+    areas = np.bincount(components, together.triangle_areas)
+    has_inside = (np.abs(volumes) >= FLAT * areas**1.5) | (areas == areas.max())
+    triangles = np.where(inward[:, None], together.triangles[:, [0, 2, 1]], together.triangles)
+    return TriangleMesh(together.vertices, triangles), inward, has_inside[components]
+
+
+def _midst(piece: TriangleMesh, spacing: float) -> Floats:
     """Spread points (k, 3) within a piece, below its surface by its volume over its area; none in a sheet."""
-    mesh = _Body.of([piece]).mesh
+    mesh, _, _ = _outward([piece])
     volume = enclosed_volumes(mesh)[1].sum()
-    if volume < _FLAT * mesh.area**1.5:
+    if volume < FLAT * mesh.area**1.5:
         return np.zeros((0, 3))
     samples = even_samples(mesh, spacing**2 / 4)
     return samples.positions - volume / mesh.area * mesh.triangle_normals[samples.triangles]
 
 
-def _between(pieces: tuple[SurfacePart, ...], reached: Bools, lost: Bools) -> Bools:
+def _between(pieces: Sequence[TriangleMesh], reached: Bools, lost: Bools) -> Bools:
     """Tell which pieces (p,) touch two of the body, one of them not reached, or if no larger than those, any two."""
-    touching, areas = np.zeros((2, len(pieces)), np.int64), np.array([piece.mesh.area for piece in pieces])
-    samples = [even_samples(piece.mesh, areas.sum() / SAMPLES).positions for piece in pieces]
+    touching, areas = np.zeros((2, len(pieces)), np.int64), np.array([piece.area for piece in pieces])
+    samples = [even_samples(piece, areas.sum() / SAMPLES).positions for piece in pieces]
     near = BESIDE * np.sqrt(areas.sum())
     for counts, side in zip(touching, (reached, lost), strict=True):
         for number in np.flatnonzero(side):
@@ -265,14 +277,14 @@ def _between(pieces: tuple[SurfacePart, ...], reached: Bools, lost: Bools) -> Bo
     return ((touching[1] > 0) | (areas <= areas[lost].max())) & (touching.sum(axis=0) > 1)
 
 
-def _lying_on(mesh: TriangleMesh, pieces: tuple[SurfacePart, ...], apart: float) -> Bools:
+def _lying_on(mesh: TriangleMesh, pieces: Sequence[TriangleMesh], apart: float) -> Bools:
     """Tell which pieces (p,) lie on a surface made on such a grid, or near beneath it, for the most part."""
     tree, lying = cKDTree(mesh.vertices), np.zeros(len(pieces), bool)
     for number, piece in enumerate(pieces):
         # A piece may be far larger than what was found to be inside of all.
-        spread = max(mesh.area, piece.mesh.area) / SAMPLES
-        distances = tree.query(even_samples(piece.mesh, spread).positions)[0]
-        unit, own = np.sqrt(mesh.area), np.sqrt(piece.mesh.area)
+        spread = max(mesh.area, piece.area) / SAMPLES
+        distances = tree.query(even_samples(piece, spread).positions)[0]
+        unit, own = np.sqrt(mesh.area), np.sqrt(piece.area)
         lying[number] = np.median(distances) < min(_LYING * unit, max(apart * unit, _ITS_OWN * own))
     return lying
 
@@ -289,31 +301,22 @@ class _Body:
         The original vertex and triangle of each, -1 in filled holes.
     turned : (m,) array of bool
         Which have their last two corners exchanged against the original.
-    solid : TriangleMesh
-        Those that have an inside.
     """
 
     mesh: TriangleMesh
     vertices: Ints
     triangles: Ints
     turned: Bools
-    solid: TriangleMesh
 
     @classmethod
     def of(cls, pieces: list[SurfacePart]) -> _Body:
         """Turn pieces outward."""
-        together = TriangleMesh.concatenated([piece.mesh for piece in pieces])
-        components, volumes = enclosed_volumes(together)
-        inward = (volumes < 0)[components]
-        areas = np.bincount(components, together.triangle_areas)
-        has_inside = (np.abs(volumes) >= _FLAT * areas**1.5) | (areas == areas.max())
-        triangles = np.where(inward[:, None], together.triangles[:, [0, 2, 1]], together.triangles)
+        mesh, inward, _ = _outward(piece.mesh for piece in pieces)
         return cls(
-            TriangleMesh(together.vertices, triangles),
+            mesh,
             np.concatenate([piece.original_vertices for piece in pieces]),
             np.concatenate([piece.original_triangles for piece in pieces]),
             np.concatenate([piece.turned for piece in pieces]) ^ inward,
-            TriangleMesh(together.vertices, triangles[has_inside[components]]),
         )
 
     def stand_in(self, mesh: TriangleMesh, cleaned: CleanSurface) -> StandIn:

@@ -15,7 +15,7 @@ from engine.shapes import enclosing_surface
 from engine.shapes.enclosing_surface import with_limbs_steps
 from tests.limbs import modular_creature
 from tests.messes import together
-from tests.shapes import creature, icosphere, permuted, rotation
+from tests.shapes import creature, icosphere, permuted, rotation, wire_box
 
 
 def joined(mesh):
@@ -223,6 +223,21 @@ def test_what_holds_two_parts_of_a_body_together_belongs_to_it_though_most_of_it
     assert (found.cleaned.vertex_parts == 0).all()
     # Without it they stay apart.
     assert (joined(TriangleMesh(*together(*halves))).cleaned.vertex_parts > 0).any()
+
+
+def test_a_frame_of_wire_is_as_what_it_encloses():
+    ball, faces = icosphere(12)
+    box = ball / np.abs(ball).max(axis=1, keepdims=True)
+    halves = [(box * [1, 1, 1.5] + [0, 0, 2.6 * side], faces) for side in (-1, 1)]
+    wires = wire_box(4, 0.05, (1.8, 1.8, 2.4))
+    found = joined(TriangleMesh(*together(*halves, wires)))
+    assert (found.cleaned.vertex_parts == 0).all()
+    assert genus(found.mesh) == 0
+    height = found.mesh.vertices[:, 2]
+    assert (height.min(), height.max()) == pytest.approx((-4.1, 4.1), abs=0.1)
+    # Nothing of it is within the frame.
+    middle = found.mesh.vertices[np.abs(height) < 0.8]
+    assert np.abs(middle[:, :2]).max(axis=1).min() > 0.8
 
 
 def test_where_next_to_nothing_is_inside_pieces_stay_as_they_are(body, monkeypatch):
