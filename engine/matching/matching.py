@@ -21,6 +21,7 @@ from ..shapes.borders import has_border, longest_border
 from ..shapes.known_shapes import KnownShapes
 from ..shapes.prepared_surface import PreparedSurface, prepared_steps
 from ..shapes.shape import Shape
+from .alike_match import alike_match_steps
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import OverlapMatch, overlap_match_steps
 from .partial_match import (
@@ -168,7 +169,10 @@ def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float, *, is_sure: bo
 
 def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     """Match surfaces of which much may have been cut off: what they share first, and all of them if that is unclear."""
-    overlap = yield from within(overlap_match_steps(x, y, task), 0.0, _OVERLAP)
+    alike = yield from within(alike_match_steps(x, y, task), 0.0, 0.1)
+    if alike is not None:
+        return alike
+    overlap = yield from within(overlap_match_steps(x, y, task), 0.1, _OVERLAP)
     cut = longest_border(x) > _CUT, longest_border(y) > _CUT
     if overlap is not None and overlap.is_likely and min(overlap.shares) < _SHARED:
         if all(cut):

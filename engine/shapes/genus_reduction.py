@@ -9,7 +9,6 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from ..geometry.eigenpairs import eigenpairs_steps
 from ..geometry.handle_loops import genus, shortest_handle_loop_steps
 from ..mesh.connectivity.boundary_loops import boundary_loops
 from ..mesh.connectivity.edge_chains import way_to_root
@@ -18,17 +17,14 @@ from ..mesh.connectivity.nonmanifold_vertices import split_fans
 from ..mesh.triangle_mesh import TriangleMesh
 from ..repair.clean_surface import SurfacePart
 from ..repair.hole_filling import fill_holes
-from ..runtime.arrays import TINY, Ints, numbered
+from ..runtime.arrays import Ints, numbered
 from ..runtime.progress import Steps, part_of, within
 from .proxy import Proxy, proxy_steps
 from .shape import Shape
+from .shape_preparation import spectra_apart_steps
 
 _MOST = 6
 """Handles that are cut at most: a surface that has so many more, such as chain mail, has them on purpose."""
-
-_COMPARED = 30
-"""Eigenvalues that tell how much alike two surfaces are: from ten to sixty they choose nearly the same cuts (``python
--m tests.benchmarks.fused_bodies``)."""
 
 _NEARER = 0.8
 """Part of what the eigenvalues of two surfaces are apart up to which handles of both are cut: bodies whose hands rest
@@ -74,19 +70,9 @@ def evened_steps(x: Shape, y: Shape) -> Steps[tuple[Shape, Shape]]:
         return pairs[0]
     apart = []
     for number, pair in enumerate(pairs):
-        apart.append((yield from within(_spectra_apart_steps(*pair), *part_of(number, len(pairs), 0.8))))
+        apart.append((yield from within(spectra_apart_steps(*pair), *part_of(number, len(pairs), 0.8))))
     best = int(np.argmin(apart))
     return pairs[best if apart[best] < _NEARER * apart[0] else 0]
-
-
-def _spectra_apart_steps(x: Shape, y: Shape) -> Steps[float]:
-    """Measure how far the eigenvalues of two shapes are apart: the mean of the logarithms of their ratios."""
-    logarithms = []
-    for shape in (x, y):
-        spectrum = yield from eigenpairs_steps(shape.laplace, min(_COMPARED + 1, shape.mesh.vertex_count))
-        logarithms.append(np.log(np.maximum(spectrum.values[1:] * shape.laplace.area, TINY)))
-    count = min(map(len, logarithms))
-    return float(np.abs(logarithms[0][:count] - logarithms[1][:count]).mean())
 
 
 def _opened_steps(shape: Shape, count: int, names: tuple[str, str]) -> Steps[list[Shape]]:

@@ -5,12 +5,19 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.laplacian import LaplaceBeltrami
+from ..runtime.arrays import TINY
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps
 from .shape import Shape
 from .surface_samples import SurfaceSampler
+
+_COMPARED = 30
+"""Eigenvalues that tell how much alike two surfaces are: from ten to sixty they choose nearly the same cuts of handles
+(``python -m tests.benchmarks.fused_bodies``)."""
 
 
 class Wanted(NamedTuple):
@@ -54,6 +61,34 @@ def prepared_shapes_steps(x: Shape, y: Shape, wanted: Wanted) -> Steps[None]:
             shape.take_samples_of(result)
 
 
+def spectra_apart_steps(x: Shape, y: Shape) -> Steps[float]:
+    """Measure how far the lowest eigenvalues of two shapes, in units of area, are apart, also called *Shape-DNA* [1]_.
+
+    Parameters
+    ----------
+    x, y : Shape
+        The shapes.
+
+    Returns
+    -------
+    float
+        The mean difference of their logarithms.
+
+    References
+    ----------
+    .. [1] M. Reuter, F.-E. Wolter, N. Peinecke, "Laplace-Beltrami spectra as 'Shape-DNA' of surfaces and solids",
+       Computer-Aided Design 38(4), 2006.
+    """
+    operators = x.laplace, y.laplace
+    spectra = yield from shared_steps(_spectrum_steps, _COMPARED + 1, operators)
+    count = min(map(len, spectra))
+    logarithms = [
+        np.log(np.maximum(found.values[1:count] * operator.area, TINY))
+        for found, operator in zip(spectra, operators, strict=True)
+    ]
+    return float(np.abs(logarithms[0] - logarithms[1]).mean())
+
+
 def finer_shapes(x: Shape, y: Shape) -> tuple[Shape, Shape]:
     """Give two shapes more vertices to be registered with, see `Shape.finer`, if either has few.
 
@@ -76,6 +111,11 @@ def finer_shapes_steps(x: Shape, y: Shape, eigenpairs: int) -> Steps[tuple[Shape
 def _prepared_steps(wanted: Wanted, part: SurfaceSampler | LaplaceBeltrami) -> Steps[SurfaceSampler | Spectrum]:
     """Sample a surface, or compute the eigenpairs of an operator."""
     if isinstance(part, LaplaceBeltrami):
-        return (yield from eigenpairs_steps(part, min(wanted.eigenpairs, part.vertex_count)))
+        return (yield from _spectrum_steps(wanted.eigenpairs, part))
     yield from part.steps(wanted.samples, wanted.measured)
     return part
+
+
+def _spectrum_steps(count: int, operator: LaplaceBeltrami) -> Steps[Spectrum]:
+    """Compute so many eigenpairs of an operator, if it has them."""
+    return eigenpairs_steps(operator, min(count, operator.vertex_count))

@@ -10,8 +10,8 @@ from engine import Shape, TriangleMesh
 from engine.dense.spectral_domain import MapDomain
 from engine.runtime.blas_threads import one_thread
 from engine.runtime.progress import run
-from engine.shapes.shape_preparation import Wanted, prepared_shapes_steps
-from tests.shapes import creature, icosphere, irregular
+from engine.shapes.shape_preparation import Wanted, prepared_shapes_steps, spectra_apart_steps
+from tests.shapes import creature, icosphere, irregular, permuted, plane, rotation
 
 WANTED = Wanted(40, 12, 20)
 
@@ -91,3 +91,31 @@ def test_what_arrives_elsewhere_says_the_same_of_the_surface():
     for name in "functions", "vertices", "signatures", "patches", "curvature", "gradients", "places":
         np.testing.assert_array_equal(getattr(arrived, name), getattr(sent, name))
     np.testing.assert_array_equal(arrived.shape.samples.distances, sent.shape.samples.distances)
+
+
+# --- spectra
+
+
+def apart(first, second):
+    return run(spectra_apart_steps(Shape(first), Shape(second)))
+
+
+def test_spectra_of_one_surface_do_not_depend_on_units_place_and_order():
+    vertices, triangles = plane(12, jitter=0.3)
+    moved = 50 * vertices @ rotation((1, 2, 3), 1.0).T + [3.0, 1.0, -2.0]
+    assert apart(TriangleMesh(vertices, triangles), TriangleMesh(*permuted(moved, triangles)[:2])) < 1e-6
+
+
+def test_spectra_of_rectangles_differ_as_their_eigenvalues_do():
+    """Those of a rectangle with sides a and b are pi^2 (m^2 / a^2 + n^2 / b^2), for all m and n from 0 on."""
+    vertices, triangles = plane(50)
+    m, n = np.mgrid[:30, :30].reshape(2, -1)
+    first, second = (np.sort(np.square(m) / side + np.square(n) * side)[1:31] for side in (1.0, 3.0))  # of area one
+    long = TriangleMesh(vertices * [3.0, 1.0, 1.0], triangles)
+    found = apart(TriangleMesh(vertices, triangles), long)
+    assert found == pytest.approx(np.abs(np.log(first / second)).mean(), rel=0.05)
+
+
+def test_the_spectrum_of_a_surface_with_few_vertices_is_compared_as_far_as_it_goes():
+    octahedron = TriangleMesh(*icosphere(1))
+    assert apart(octahedron, octahedron) == 0.0
