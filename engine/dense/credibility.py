@@ -7,8 +7,8 @@ The score of a map between samples is a weighted sum of the logarithms of its te
 
 and that of a registered map adds :math:`4 \sum \log g` for the gaps g that are left between the surfaces, from either
 side.  Smaller is more credible.  These scores compare maps of one pair of surfaces.  How much alike the surfaces are,
-whatever the other maps, says the *likeness* of the best one: by its score before it was registered, and by the energy E
-of the deformation that lays one surface onto the other,
+whatever the other maps, says the *likeness* of the best one: by its score before it was registered, and by what the
+deformation costs that lays one surface onto the other, E, see `Registration.cost`,
 
 .. math:: \ell = -s - 4 \log E.
 
@@ -42,7 +42,7 @@ _GAP_WEIGHT, _LEAST_GAP = 4.0, 1e-4
 same."""
 
 _ELASTIC_WEIGHT = 4.0
-"""Weight of the logarithm of the energy of a deformation."""
+"""Weight of the logarithm of what a deformation costs."""
 
 _RIGHT, _RIGHT_SPREAD = 13.5, 0.6
 """Likeness of surfaces that are matched wrongly as often as not, and by how much more or less it decides: cats, people
@@ -155,7 +155,7 @@ def registered_score(score: float, gaps: tuple[float, float], credit: float = 0.
 
 
 def likeness(score: float, energy: float) -> float:
-    """How much alike surfaces are if a map is right, by its `map_score` and the energy of the deformation."""
+    """How much alike surfaces are if a map is right, by its `map_score` and what the deformation costs."""
     return -(score + _ELASTIC_WEIGHT * float(np.log(max(energy, float(np.finfo(float).tiny)))))
 
 

@@ -7,12 +7,12 @@ D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes". 
 Of the paper             Module
 =======================  =================================================================================
 Correspondence, (1-6)    `problem`: distortion of a matching, its linear and quadratic part, one to one
-Diffusion metric, 9-11    `diffusion`; the eigenpairs of (9) are those of `engine.geometry.eigenpairs`
 Geodesic metric, (7)     `engine.geometry.geodesics`: fast marching
+Diffusion metric, 9-11   `diffusion`; the eigenpairs of (9) are those of `engine.geometry.eigenpairs`
 Descriptors              `descriptors`: histograms of distances and their comparison;
                          `spectral_descriptors`: heat (and wave) kernel signatures;
                          `sign_sequences`: eigenfunctions up to their signs
-Samples of both shapes   `sampled_pair`: farthest point samples, their distances and descriptors
+Terms of the distortion  `sampled_pair`: distances and descriptor differences of the samples, as a problem
 Section 4, coarse step   `exact`: branch and bound with dual bounds (the module `branch_and_bound` is the way in);
                          `sparse_hypotheses`: the true and the reflected answer of symmetric shapes
 Section 4, relaxed step  `relaxation`, solved by a quasi-Newton method, projected to integers

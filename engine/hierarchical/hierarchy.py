@@ -73,7 +73,7 @@ def refine_steps(
 
 
 def _add_points(problem: MatchingProblem, assignment: Ints) -> Ints:
-    """Place new points where their distances to the points already matched are kept best."""
+    """Place new points where their descriptors and their distances to the points already matched fit best."""
     old, size = len(assignment), problem.size[0]
     if size == old:
         return assignment

@@ -86,7 +86,8 @@ def match_steps(
     """Find corresponding points on two surfaces that differ by a non-rigid deformation.
 
     The first points are matched exactly by branch and bound; then points are added level by level, and all points are
-    matched again at each level in a relaxed problem over their neighbourhoods [1]_.
+    matched again at each level in a relaxed problem over their neighbourhoods [1]_.  With a dense map, which is the
+    default, that is only one of the starts of the map, and the points lie at last where the map takes them.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Other processes that take over parts of a computation, so that more than one core is at work.
+"""Other processes: helpers that take over parts of a computation, and one that does whole computations.
 
 The engine's work is many short steps on small arrays.  Threads would wait for the interpreter at each of them;
-processes do not.  A helper is started while the first work is done, and kept for some time for what comes next.  Where
-there is none, because there is no second core or no interpreter that can be started, all is done here, with the same
-result to the last bit.
+processes do not.  A helper is started while the first work is done, and kept for some time for what comes next.  The
+process that does whole computations (see `background`) is a `Helper` as well, and may have helpers of its own.  Where
+none can be started, or there is no second core, all is done here, with the same result to the last bit.
 """
 
 from __future__ import annotations
