@@ -59,6 +59,10 @@ LIMBS = {
 }
 """What limbs are called."""
 
+MIXAMO = {"arm": "upper_arm", "forearm": "lower_arm", "hand": "hand", "upleg": "upper_leg", "leg": "lower_leg"}
+MIXAMO["foot"] = "foot"
+"""And by Mixamo, after the side."""
+
 LEGS = {"front": r"(ik)?front_?(leg|shoulder|upper|lower).*|ff", "back": r"(ik)?back_?(leg|shoulder|upper|lower).*|ffb"}
 """And the legs of animals with their feet, whose bones are only told apart by leg."""
 
@@ -69,6 +73,9 @@ SHOWN = 8
 
 def limb(name, table=None):
     """What a bone does, and on which side; None if it is no limb."""
+    mixamo = re.fullmatch(r"mixamorig\d*:(left|right)(\w+)", name.lower())
+    if mixamo is not None and mixamo[2] in MIXAMO and table is not LEGS:
+        return MIXAMO[mixamo[2]], mixamo[1][0].upper()
     plain = re.sub(r"^(left|right) ", r"\1 ", name.lower())
     side = "L" if re.search(r"[._]l$|^left ", plain) else "R" if re.search(r"[._]r$|^right ", plain) else ""
     bare = re.sub(r"[._][lr]$", "", plain)
