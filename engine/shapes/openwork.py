@@ -23,6 +23,9 @@ once)."""
 _SMALLEST = 24
 """Places of the grid along openwork at least: it may be far smaller than the whole body."""
 
+_MOST_PLACES = 5_000_000
+"""Of the grid, about: some hundred megabytes.  Openwork far larger than the body, such as a fence, gets a coarser one."""
+
 _MARGIN = 3
 """Places of the grid beyond what is closed."""
 
@@ -69,8 +72,10 @@ def _closed(mesh: TriangleMesh, spacing: float, hole: float) -> TriangleMesh:
     """Close holes of a surface up to a width, and fill what is inside, on a grid."""
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     size = float((high - low).max())
-    spacing = min(spacing, size / _SMALLEST)
-    radius = min(hole, size) / spacing
+    hole = min(hole, size)
+    least = float(np.cbrt(np.prod(high - low + 2 * hole) / _MOST_PLACES))
+    spacing = max(min(spacing, size / _SMALLEST), least)
+    radius = hole / spacing
     origin = low - (radius + _MARGIN) * spacing
     shape = np.ceil((high - origin) / spacing + radius + _MARGIN).astype(np.int64) + 1
     empty = np.ones(shape, bool)

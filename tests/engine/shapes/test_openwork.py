@@ -58,6 +58,12 @@ def test_far_smaller_openwork_than_the_grid_is_filled_as_well(cube):
     assert volume == pytest.approx((0.01 * 2.1) ** 3, rel=0.3)
 
 
+def test_openwork_far_larger_than_the_grid_is_filled_on_a_coarser_one(cube):
+    large = TriangleMesh(1000 * cube.vertices, cube.triangles)
+    volume = enclosed_volumes(filled_openwork(large, SPACING, 500.0))[1].sum()
+    assert volume == pytest.approx(2100.0**3, rel=0.1)
+
+
 def test_a_grating_encloses_nothing():
     grating = TriangleMesh(*wire_box(4, 0.02, (2.0, 2.0, 0.001), resolution=40))
     assert is_openwork(grating)
