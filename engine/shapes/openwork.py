@@ -24,7 +24,7 @@ _SMALLEST = 24
 """Places of the grid along openwork at least: it may be far smaller than the whole body."""
 
 _MOST_PLACES = 5_000_000
-"""Of the grid, about: some hundred megabytes.  Openwork far larger than the body, such as a fence, gets a coarser one."""
+"""Of the grid, about: some hundred megabytes.  Openwork far larger than the body, as a fence is, has a coarser one."""
 
 _MARGIN = 3
 """Places of the grid beyond what is closed."""

@@ -35,6 +35,11 @@ _LEAST_SCORE = 0.3
 _LEAST_INSIDE = 0.25
 """Least part of what the smaller of two bones moves that the other moves as well, for them to be a pair."""
 
+_LEAST_WHOLE = 0.5
+"""Or what two bones have to move the same of with all that hangs on them: a map may slide a hand along its arm.
+Without it, the hands of the Mesh2Motion man go with ring fingers (``python -m tests.benchmarks.maker_rigs --only
+cryptovoxels.vrm:m2m-human-male.glb``)."""
+
 _SECOND_INSIDE = 0.75
 """The same for one that shares its partner with a better one, in units of what any bone there moves of it: two
 neighbors overlap as well where they meet."""
@@ -246,7 +251,7 @@ def _compared(
     apart = np.linalg.norm(trees[1].heads[:, None] - trees[0].heads, axis=2)
     place = _even(np.exp(-((apart / reach) ** 2)), mirrors)
     scores = _SHARES["subtree"] * whole + _SHARES["own"] * own + _SHARES["place"] * place
-    scores[inside < _LEAST_INSIDE] = -np.inf
+    scores[(inside < _LEAST_INSIDE) & (whole < _LEAST_WHOLE)] = -np.inf
     # Two bones that move nothing by themselves, but something hangs on them: roots.
     near = np.exp(-((apart / (_ROOT_REACH * extent)) ** 2))
     roots = _SHARES["subtree"] * whole + (1 - _SHARES["subtree"]) * near

@@ -9,7 +9,7 @@ from scipy.sparse import csr_array
 
 from engine import BonePairing, RigError, Skeleton, SurfaceMap, TriangleMesh, fit_rig, pair_bones
 from engine.mesh.reflection import reflected_mesh
-from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, haunched_rig, renamed
+from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, haunched_rig, person, renamed
 from tests.shapes import rotation
 
 
@@ -127,6 +127,24 @@ def test_a_bone_that_swings_from_another_joint_is_no_partner_though_both_carry_t
     for side in "LR":
         assert (f"Z_thigh.{side}", f"Z_thigh.{side}") in pairs
         assert ((f"Z_haunch.{side}", f"Z_haunch.{side}") in pairs) == (reaches[0] == reaches[1])
+
+
+def test_a_hand_that_the_map_slid_onto_the_arm_goes_with_the_hand_and_not_with_a_finger():
+    body = person(resolution=24)
+    rig, same = body.rig, SurfaceMap.identity(body.mesh)
+    weights = rig.weights.toarray()
+    for side in "LR":
+        forearm, hand, finger = (rig.names.index(f"{name}.{side}") for name in ("forearm", "hand", "middle1"))
+        elbow, wrist = abs(rig.skeleton.heads[forearm, 0]), abs(rig.skeleton.tails[forearm, 0])
+        along = (np.abs(body.mesh.vertices[:, 0]) - elbow) / (wrist - elbow)
+        weights[:, finger] += weights[:, hand] + np.where(along > 0.7, weights[:, forearm], 0.0)
+        weights[:, hand] = np.where((along > 0.4) & (along < 0.7), weights[:, forearm], 0.0)
+        weights[along > 0.4, forearm] = 0.0
+    slid = {"weights": csr_array(weights), "skeleton": rig.skeleton, "refine": False}
+    fitted = fit_rig(body.mesh, body.mesh, same, same, **slid)
+    pairing = pair_bones(fitted, body.mesh, body.mesh, rig.skeleton, rig.weights)
+    pairs = {(rig.names[a], rig.names[b]) for a, b in zip(pairing.sources, pairing.targets, strict=True)}
+    assert {("hand.L", "hand.L"), ("hand.R", "hand.R")} <= pairs
 
 
 def test_given_pairs_and_bones_left_alone_are_respected(someone, paired):
