@@ -116,7 +116,7 @@ MECHANISMS = {
     ],
     "joined pieces": [("engine.matching.matching.matched_with_pieces_steps", lambda _: pieces_apart)],
     "parts": [
-        ("engine.matching.matching.part_matched_steps", lambda _: lambda result, *_given: returned(result)),
+        ("engine.matching.matching.part_matched_steps", lambda _: lambda result, *_given, **_options: returned(result)),
         (
             "engine.matching.matching.agreed_part_steps",
             lambda _: lambda known, *_given, **_options: returned((known, False)),
