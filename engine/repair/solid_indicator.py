@@ -24,7 +24,7 @@ _SAMPLES = 12.0
 _BLUR = 0.8
 """Standard deviation of the blur, in places of the grid: else the function overshoots at the surface."""
 
-_MOST_PLACES = 5_000_000
+MOST_PLACES = 5_000_000
 """Of a grid: some hundred megabytes while it is computed.  Surfaces spread more widely get a coarser one."""
 
 _COARSER = 1.1
@@ -75,8 +75,8 @@ def solid_indicator(mesh: TriangleMesh, spacing: float) -> SolidIndicator:
     .. [1] M. Kazhdan, "Reconstruction of solid models from oriented point sets", Symposium on Geometry Processing 2005.
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    spacing = max(spacing, float(np.cbrt(np.prod(np.maximum(high - low, spacing)) / _MOST_PLACES)))
-    while np.prod((high - low) / spacing + 2 * _MARGIN) > 2 * _MOST_PLACES:  # around needles, margins are most of it
+    spacing = max(spacing, float(np.cbrt(np.prod(np.maximum(high - low, spacing)) / MOST_PLACES)))
+    while np.prod((high - low) / spacing + 2 * _MARGIN) > 2 * MOST_PLACES:  # around needles, margins are most of it
         spacing *= _COARSER
     origin = low - _MARGIN * spacing
     count = np.ceil((high - origin) / spacing).astype(np.int64) + _MARGIN + 1

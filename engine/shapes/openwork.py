@@ -10,6 +10,7 @@ from ..geometry.handle_loops import genus
 from ..mesh.area_samples import even_samples
 from ..mesh.connectivity.mesh_orientation import enclosed_volumes
 from ..mesh.triangle_mesh import TriangleMesh
+from ..repair.solid_indicator import MOST_PLACES
 from ..repair.surface_nets import surface_net
 
 FLAT = 0.02
@@ -21,19 +22,19 @@ to 127, and of the pieces of seven characters in clothes none of those without a
 once)."""
 
 _SMALLEST = 24
-"""Places of the grid along openwork at least: it may be far smaller than the whole body."""
-
-_MOST_PLACES = 5_000_000
-"""Of the grid, about: some hundred megabytes.  Openwork far larger than the body, as a fence is, has a coarser one."""
+"""Places of the grid along openwork at least, by hand: it may be far smaller than the whole body.  If it is far larger,
+as a fence is, `MOST_PLACES` make the grid coarser."""
 
 _MARGIN = 3
 """Places of the grid beyond what is closed."""
 
 _ROUND = 0.05
-"""Volume, by the power 3/2 of the area, from which on openwork is filled and not only thicker: half of a ball's."""
+"""Volume, by the power 3/2 of the area, from which on openwork is filled and not only thicker: half of a ball's, by
+hand."""
 
 _WIDER = 1, 2, 4
-"""How many times as wide holes are closed, one after the other, until it is filled."""
+"""How many times as wide holes are closed, one after the other, until it is filled: for five of the 48
+pieces of wire of the robot of ``docs/results.md`` once is not enough (tried once)."""
 
 
 def is_openwork(mesh: TriangleMesh) -> bool:
@@ -73,7 +74,7 @@ def _closed(mesh: TriangleMesh, spacing: float, hole: float) -> TriangleMesh:
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     size = float((high - low).max())
     hole = min(hole, size)
-    least = float(np.cbrt(np.prod(high - low + 2 * hole) / _MOST_PLACES))
+    least = float(np.cbrt(np.prod(high - low + 2 * hole) / MOST_PLACES))
     spacing = max(min(spacing, size / _SMALLEST), least)
     radius = hole / spacing
     origin = low - (radius + _MARGIN) * spacing

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Open surfaces that have about the same spectrum: matched as they are, unless they might still be parts."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, match
+from engine.dense.credibility import ALL_ALIKE
 from engine.matching.alike_match import alike_match_steps
 from engine.matching.shape_matching import MatchTask
 from engine.runtime.progress import run
@@ -70,6 +73,7 @@ def test_a_match_that_leaves_room_for_missing_parts_is_none(tried):
     assert task.least == task.least_softly > 20
 
 
-def test_a_match_by_which_nothing_can_be_missing_is_the_result(tried):
-    other = object()
-    assert tried(other)[0] is other
+@pytest.mark.parametrize(("likeness", "taken"), [(ALL_ALIKE + 0.1, True), (ALL_ALIKE - 0.1, False)])
+def test_a_match_is_the_result_if_nothing_can_be_missing_by_it(tried, likeness, taken):
+    other = SimpleNamespace(dense=SimpleNamespace(quality=SimpleNamespace(likeness=likeness)))
+    assert tried(other)[0] is (other if taken else None)
