@@ -105,6 +105,24 @@ class BonePairing:
     def __repr__(self) -> str:
         return f"<BonePairing: {len(self)} pairs of {len(set(self.targets.tolist()))} bones of the target>"
 
+    def comes_apart(self, source: Skeleton, target: Skeleton) -> bool:
+        """Tell whether the target stays together only where it has keys.
+
+        Bones that hang elsewhere than on what holds them, such as feet for a solver or all bones of a flat rig, are
+        put where they belong.  Between two keys they would go straight there, and what holds them along an arc.
+
+        Parameters
+        ----------
+        source, target : Skeleton
+            The bones of both rigs.
+
+        Returns
+        -------
+        bool
+            Whether there are such bones.
+        """
+        return not Segments.of(self.sources, self.targets, source, target).carried.all()
+
 
 def pair_bones(
     rig: FittedRig,

@@ -273,8 +273,8 @@ class MotionJob(SteppedJob):
         keys = read_keys(self._action(name), found_again(self._source))
         first, last = np.floor(keys.frames[0]), np.ceil(keys.frames[1])
         sparse = self._is_sparse(keys, last - first + 1)
-        if any(is_steered(found_again(link), pairing) for link, pairing in zip(self._targets, pairings, strict=True)):
-            sparse = False  # between keys, controls would turn otherwise than what they carry
+        if any(self._needs_keys(link, pairing) for link, pairing in zip(self._targets, pairings, strict=True)):
+            sparse = False
         frames = sparse_frames(keys) if sparse else np.arange(first, last + 1)
         sampled = (frames[:, None] + np.array([-SIDE_STEP, 0, SIDE_STEP])).ravel() if sparse else frames
         motion = yield from within(self._reading_steps(name, sampled, first), 0.0, 0.5)
@@ -317,6 +317,11 @@ class MotionJob(SteppedJob):
         if plan.keys == "SOURCE":
             return True
         return found < _FEW * count and not keys.modified and not needs_evaluation(found_again(self._source))
+
+    def _needs_keys(self, link: SideReference, pairing: BonePairing) -> bool:
+        """Tell whether a target moves rightly only where it has keys: by controls, or by bones that hang elsewhere."""
+        rig = found_again(link)
+        return is_steered(rig, pairing) or pairing.comes_apart(*map(own_skeleton, (found_again(self._source), rig)))
 
     def _reading_steps(self, name: str, frames: NDArray[np.float64], first: float) -> Steps[Motion]:
         """Read the source's poses in frames (f,), some at a time, and the way of its object from the first frame on."""

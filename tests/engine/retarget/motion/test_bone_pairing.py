@@ -147,6 +147,15 @@ def test_a_hand_that_the_map_slid_onto_the_arm_goes_with_the_hand_and_not_with_a
     assert {("hand.L", "hand.L"), ("hand.R", "hand.R")} <= pairs
 
 
+def test_a_flat_rig_comes_apart_between_keys(someone, paired):
+    own = someone.rig.skeleton
+    flat = Skeleton(np.full(len(own), -1), own.heads, own.tails)
+    pairing = paired(someone, someone.rig)
+    assert pairing.comes_apart(own, flat)
+    assert not pairing.comes_apart(own, own)
+    assert not pairing.comes_apart(flat, own)
+
+
 def test_given_pairs_and_bones_left_alone_are_respected(someone, paired):
     names = someone.rig.names
     hand, foot, head = (names.index(name) for name in ("hand.L", "foot.R", "head"))
