@@ -65,32 +65,52 @@ def filled(weights: csr_array, trusted: Bools, parts: WeldedParts) -> csr_array:
     values = csr_array(parts.mean_over(trusted) @ weights)
     reached = marked(parts.labels[known], parts.part_count)
     gaps = ~known & reached[parts.labels]
-    values = with_rows(values, np.flatnonzero(gaps), _harmonic(values, gaps, parts))
+    values = with_rows(values, np.flatnonzero(gaps), continued(values, gaps, parts))
     apart = np.flatnonzero(~reached[parts.labels])
     values = with_rows(values, apart, _nearest(values, apart, known, parts))
     rejected = np.flatnonzero(~trusted)
     return with_rows(weights, rejected, values[parts.welded[rejected]])
 
 
-def _harmonic(values: csr_array, gaps: Bools, parts: WeldedParts) -> csr_array:
-    """Continue values (w, g) harmonically into gaps (w,): the rows of these."""
-    unknown = np.flatnonzero(gaps)
+def continued(values: csr_array, places: Bools, parts: WeldedParts, held: Floats | None = None) -> csr_array:
+    r"""Continue values along the surface from where they are known.
+
+    Parameters
+    ----------
+    values : (w, g) csr_array of float
+        Values at the welded vertices.
+    places : (w,) array of bool
+        Those to find, k of them.
+    parts : WeldedParts
+        The surface.
+    held : (k,) array of float, optional
+        How much each of these is held at its own value, as a weight :math:`h` beside the stiffness of the surface; not
+        at all if not given.  Each part then needs one that is, or is known.
+
+    Returns
+    -------
+    (k, g) csr_array of float
+        The values there: :math:`\Delta w = 0`, or :math:`h (w - w_0) = \Delta w`.
+    """
+    unknown = np.flatnonzero(places)
     if not len(unknown):
         return csr_array((0, values.shape[1]))
-    # Only the triangles around the gaps matter.
-    around = parts.triangles[gaps[parts.triangles].any(axis=1)]
+    # Only the triangles around the places matter.
+    around = parts.triangles[places[parts.triangles].any(axis=1)]
     involved, corners = np.unique(around, return_inverse=True)
     stiffness = _stiffness(parts.positions[involved], corners.reshape(-1, 3))
-    inside = gaps[involved]
+    inside = places[involved]
     rows = stiffness[inside]
-    given = values[involved[~inside]]
-    columns = np.unique(given.indices)
+    given, matrix = values[involved[~inside]], rows[:, inside]
+    right = csr_array(-rows[:, ~inside] @ given)
+    if held is not None:
+        right, matrix = csr_array(right + diags_array(held) @ values[unknown]), matrix + diags_array(held)
+    columns = np.unique(right.indices)
     if not len(columns):
         return csr_array((len(unknown), values.shape[1]))
-    right = -(rows[:, ~inside] @ given[:, columns]).toarray()
-    solved = splu(rows[:, inside].tocsc()).solve(right)
+    solved = splu(matrix.tocsc()).solve(right[:, columns].toarray())
     # Where more than two triangles meet in an edge, and by rounding, a little may be out of bounds.
-    result = csr_array(np.where(solved < _LEAST_WEIGHT, 0.0, np.minimum(solved, given.data.max())))
+    result = csr_array(np.where(solved < _LEAST_WEIGHT, 0.0, np.minimum(solved, values.data.max())))
     return csr_array((result.data, columns[result.indices], result.indptr), (len(unknown), values.shape[1]))
 
 

@@ -15,6 +15,7 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools
 from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress, Steps
+from .loose_weights import with_loose_parts
 from .rigid_parts import with_rigid_parts, with_single_bones
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
 from .soft_joints import with_soft_joints
@@ -97,8 +98,8 @@ def carry_weights_steps(
     telling : (g,) array of bool, optional
         The columns that tell whether neighbours move together: those of bones; all if not given.
     fill : bool
-        Whether vertices that the map tears away from their neighbours take the weights around them, and those between
-        plates of the source pass over gradually.
+        Whether vertices that the map tears away from their neighbours take the weights around them, those between
+        plates of the source pass over gradually, and loose parts of which the map is not sure are evened out.
     fill_alone : bool
         Whether vertices that have no partner on the source take the weights around them, too.
     rigid : bool
@@ -134,6 +135,7 @@ def carry_weights_steps(
         torn = torn_vertices(bones, target_to_source, parts, source)
         yield Progress(0.5, "Filling in weights")
         result = filled(result, ~torn, parts)
+        result = with_loose_parts(result, target_to_source.confidence, parts)
     if fill_alone:
         result = filled(result, target_to_source.has_partner, parts)
     if parts.seams:
