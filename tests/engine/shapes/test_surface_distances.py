@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from engine import Shape, SurfacePoints, TriangleMesh, run
+from engine import Shape, SurfacePoints, TriangleMesh, run, use_processes
 from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances, squared_offsets, symmetric_roots
 from tests.shapes import icosphere, plane, plane_with_hole, torus
 
@@ -17,6 +17,14 @@ def random_points(mesh, count, seed=0):
     random = np.random.default_rng(seed)
     triangles = random.integers(0, mesh.triangle_count, count)
     return SurfacePoints.from_barycentric(mesh, triangles, random.dirichlet([1, 1, 1], count))
+
+
+@pytest.fixture
+def alone():
+    """Count what is done in this process, where all of it is."""
+    use_processes(1)
+    yield
+    use_processes()
 
 
 @pytest.fixture
@@ -114,6 +122,7 @@ def test_they_are_symmetric_and_continuous_across_edges():
     assert between[0, 1] == pytest.approx(0, abs=1e-3)
 
 
+@pytest.mark.usefixtures("alone")
 def test_rows_are_computed_once_and_their_memory_is_bounded(monkeypatch):
     shape = shape_of(icosphere(5))
     asked = []
@@ -135,6 +144,7 @@ def test_rows_are_computed_once_and_their_memory_is_bounded(monkeypatch):
     np.testing.assert_array_equal(small.between(points), expected)
 
 
+@pytest.mark.usefixtures("alone")
 def test_rows_of_the_samples_are_used(monkeypatch):
     shape = shape_of(icosphere(5))
     run(shape.sample_steps(20))
