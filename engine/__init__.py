@@ -8,6 +8,7 @@ from .geometry.geodesics import GeodesicSolver
 from .geometry.voronoi_labels import nearest_regions
 from .hierarchical.settings import SETUPS, MatchSettings
 from .hierarchical.sparse_result import CoarseMatch, Level
+from .matching.followed_pairs import followed_share
 from .matching.matching import match, match_steps
 from .matching.refinement import distortion_after, placed_by_map, refine_map, refine_map_steps
 from .matching.result import DIRECT, MIRRORED, MatchResult
@@ -19,6 +20,7 @@ from .mesh.polygons import Polygons
 from .mesh.surface_map import SurfaceMap
 from .mesh.surface_points import SurfacePoints
 from .mesh.triangle_mesh import TriangleMesh
+from .retarget.limbs.limb_tips import RiggedBody, paired_limb_tips
 from .retarget.morphing import in_between
 from .retarget.motion.bone_pairing import BonePairing, pair_bones
 from .retarget.motion.key_reduction import reduced_keys, slopes_of
@@ -107,6 +109,7 @@ __all__ = [
     "RetrievalSettings",
     "RetrievedMatch",
     "RigError",
+    "RiggedBody",
     "Scaling",
     "SettingsError",
     "Shape",
@@ -149,6 +152,7 @@ __all__ = [
     "fit_rig",
     "fit_rig_steps",
     "follow_keys_steps",
+    "followed_share",
     "handed_weights",
     "hanging_triangles",
     "humanoid_bones",
@@ -167,6 +171,7 @@ __all__ = [
     "nearest_regions",
     "open_ends",
     "pair_bones",
+    "paired_limb_tips",
     "paired_weights",
     "place_joints",
     "placed_by_map",

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nearest similarities between points, nearest rotations to many matrices at once, least rotations between vectors."""
+"""Nearest similarities between points and nearest points, nearest rotations to many matrices, least rotations."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
-from ..runtime.arrays import TINY, Bools, Floats, slices, unit_vectors
+from ..runtime.arrays import TINY, Bools, Floats, Ints, slices, unit_vectors
 
 _TURNS = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], np.float64)
 """No turn and the half turns around the axes: after one of them any rotation is less than 121 degrees from none."""
@@ -66,6 +67,26 @@ def _unit_root(covariance: Floats) -> Floats:
     """Return the symmetric matrix that takes points of that covariance to such of unit covariance."""
     variances, axes = np.linalg.eigh(covariance)
     return (axes / np.sqrt(np.maximum(variances, max(_FLAT * variances[-1], TINY)))) @ axes.T
+
+
+def paired_points(here: Floats, there: Floats) -> tuple[Ints, Ints, float]:
+    """Pair points of two clouds so that they lie as near to each other as they can, in the sense of least squares.
+
+    Parameters
+    ----------
+    here, there : (n, 3) and (m, 3) arrays of float
+        The points of either cloud, from a common centre and in a common unit.
+
+    Returns
+    -------
+    first, second : (k,) arrays of int
+        The pairs, as many as the smaller cloud has points.
+    agreement : float
+        The correlation of both clouds, to which points without a partner add nothing: 1 if they are the same.
+    """
+    first, second = linear_sum_assignment(np.square(here[:, None] - there).sum(axis=2))
+    total = float(np.square(here).sum() + np.square(there).sum())
+    return first, second, 2 * float((here[first] * there[second]).sum()) / max(total, TINY)
 
 
 def nearest_similarity(

@@ -80,6 +80,7 @@ def match_steps(
     settings: MatchSettings | None = None,
     *,
     landmarks: ArrayLike | None = None,
+    assumed: bool = False,
     excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
     known: KnownShapes | None = None,
 ) -> Steps[MatchResult]:
@@ -101,6 +102,8 @@ def match_steps(
         points, all different, on the main parts of the meshes.  They are the first points of the result, and exact
         in all of it.  One may be enough to choose between left and right; where the landmarks call for a map that
         mirrors the surface, the orientation in the result's `quality` is that of the mirrored source.
+    assumed : bool
+        Whether it is only tried that the landmarks correspond: then they lead the match, but it is judged without them.
     excluded : pair of (n,) array_like of bool, optional
         Vertices of the source and of the target to leave out.  In dense maps they follow what is around them.
     known : KnownShapes, optional
@@ -125,7 +128,7 @@ def match_steps(
     """
     _check_types((source, target), settings)
     settings = settings or MatchSettings()
-    task = MatchTask(settings, landmarks)
+    task = MatchTask(settings, landmarks, assumed=assumed)
     call_helpers()
     x, y = yield from within(_shapes_steps((source, target), excluded, known), 0.0, 0.06)
     if not settings.dense:

@@ -6,9 +6,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from ..dense.credibility import DOUBTFUL
+from ..geometry.procrustes import paired_points
 from ..runtime.arrays import Floats, Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
@@ -108,8 +108,7 @@ def standing_ends(x: Shape, y: Shape) -> Ints:
     if min(map(len, numbers)) < _FEWEST:
         return none
     here, there = (_placed(shape)[shape.samples.vertices[n]] for shape, n in zip((x, y), numbers, strict=True))
-    first, second = linear_sum_assignment(np.square(here[:, None] - there).sum(axis=2))
-    agreement = 2 * float((here[first] * there[second]).sum()) / float(np.square(here).sum() + np.square(there).sum())
+    first, second, agreement = paired_points(here, there)
     return np.column_stack([numbers[0][first], numbers[1][second]]) if agreement >= _ALIKE else none
 
 

@@ -5,17 +5,21 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from ...engine import (
     DOUBTFUL,
+    MatchError,
     MatchSettings,
     Progress,
+    RiggedBody,
     SettingsError,
     called_steps,
     densify_steps,
     distortion_after,
+    followed_share,
     match_steps,
+    paired_limb_tips,
     placed_by_map,
     within,
 )
@@ -23,6 +27,7 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..properties.preferences import shape_memory
 from ..properties.properties import match_settings
+from ..scene.armatures import read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_pair
 from ..storage import writing
@@ -38,13 +43,15 @@ from .verdict import advice_on, hung_on_bones, is_half
 if TYPE_CHECKING:
     import bpy
 
-    from ...engine import MatchResult, Steps
+    from ...engine import MatchResult, Steps, SurfaceMap
     from ..properties.properties import MatchOptions
     from ..scene.character import Side
     from ..storage.contents import Content
     from ..storage.vertex_maps import MapPair
 
 __all__ = ["JobOptions", "MatchJob", "Outcome", "job_options"]
+
+_BY_RIGS = "The shapes have little in common: limbs were taken for the same that both rigs have in the same places."
 
 _MATCHED = 0.98
 """Where on the bar of progress the match ends, and what is written is prepared."""
@@ -265,7 +272,9 @@ class MatchJob(SteppedJob):
             excluded=self._excluded,
             known=self._known,
         )
-        result = yield from within(steps, 0.0, 0.7 if both else 1.0)
+        end = 0.7 if both else 1.0
+        result = yield from within(steps, 0.0, end)
+        result = yield from within(self._by_rigs_steps(result), end, end)
         others, chosen = list(result.alternatives), options.alternative
         if chosen > len(others):
             return _Found(result, 0)
@@ -296,6 +305,37 @@ class MatchJob(SteppedJob):
             quality=dense.quality,
         )
         return _Found(replace(result, alternatives=tuple(others)), chosen)
+
+    def _by_rigs_steps(self, result: MatchResult) -> Steps[MatchResult]:
+        """Match anew by the ends of limbs, as both rigs have them, if a match is doubtful and takes them elsewhere."""
+        options, quality, meshes = self._options, result.quality, self._meshes
+        guided = self._landmarks is not None and len(self._landmarks)
+        if quality is None or quality.confidence >= DOUBTFUL or options.use_modifiers or guided:
+            return result
+        bodies = [
+            RiggedBody(mesh, rig.skeleton, rig.weights)
+            for mesh, reference in zip(meshes, self._references, strict=True)
+            if (side := reference.find()) is not None and (rig := read_rig(side)) is not None
+        ]
+        if len(bodies) < 2:
+            return result
+        pairs = paired_limb_tips(bodies[0], bodies[1])[: options.settings.points]
+        if not len(pairs) or (share := followed_share(_maps(result), meshes, pairs)) == 1.0:
+            return result
+        steps = match_steps(
+            *meshes,
+            options.settings,
+            landmarks=pairs,
+            assumed=True,
+            excluded=self._excluded,
+            known=self._known,
+        )
+        try:
+            other = yield from steps
+        except MatchError:  # an end of a limb is on nothing that is matched
+            return result
+        better = followed_share(_maps(other), meshes, pairs) > share
+        return replace(other, notes=(*other.notes, _BY_RIGS)) if better else result
 
     def _prepare_steps(self, found: _Found) -> Steps[_Prepared]:
         """Prepare what is to be written of the answers."""
@@ -407,6 +447,11 @@ class MatchJob(SteppedJob):
                     f'"{obj.name}" got another number of vertices while it was being matched. Nothing was written.'
                 )
         return objects
+
+
+def _maps(result: MatchResult) -> tuple[SurfaceMap, SurfaceMap]:
+    """Return the dense maps of a match, which has some: there and back."""
+    return cast("SurfaceMap", result.source_to_target), cast("SurfaceMap", result.target_to_source)
 
 
 def _check_points(obj: Side, settings: MatchSettings) -> None:

@@ -16,12 +16,12 @@ from ...geometry.procrustes import least_turns, nearest_frame, nearest_rotations
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
 from ...runtime.errors import RigError
+from ..limbs.limb_order import in_order
+from ..limbs.mirrored_bones import evened_rotations, mirrored_bones
 from ..rig.fitted_rig import FittedRig
 from ..rig.joint_placement import place_joints, standing
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import carried, row_shares, row_sums
-from .limb_order import in_order
-from .mirrored_bones import evened_rotations, mirrored_bones
 from .segments import Segments
 from .tree_alignment import aligned
 

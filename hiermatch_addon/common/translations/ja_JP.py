@@ -1910,6 +1910,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The map turns large parts of the surface over: do not trust it; try landmarks.": (
         "マップが表面の大きな部分を裏返しています。信頼せず、ランドマークを試してください。"
     ),
+    "The shapes have little in common: limbs were taken for the same that both rigs have in the same places.": (
+        "形状の共通点がわずかです: 両方のリグが同じ位置に持つ手足などを対応するものとみなしました。"
+    ),
     "The shapes have little in common: the ends of their limbs were taken for the same where both stand alike.": (
         "形状の共通点がわずかです: 両方が同じように立っているので、手足などの先端を対応するものとみなしました。"
     ),

@@ -1586,6 +1586,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The map turns large parts of the surface over: do not trust it; try landmarks.": (
         "映射将表面的大片区域翻转：不可信，请尝试使用地标。"
     ),
+    "The shapes have little in common: limbs were taken for the same that both rigs have in the same places.": (
+        "两个形状共同点很少：双方骨架在相同位置都有的肢体被视为彼此对应。"
+    ),
     "The shapes have little in common: the ends of their limbs were taken for the same where both stand alike.": (
         "两个形状共同点很少：两者站姿相似，因此把肢体末端视为彼此对应。"
     ),

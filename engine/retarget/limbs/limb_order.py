@@ -116,8 +116,19 @@ def in_order(
             if best and not any(a in one.bones or b in other.bones for a, b in given):
                 lost = np.isin(pairs[:, 0], one.bones) | np.isin(pairs[:, 1], other.bones)
                 known = scores[np.ix_(other.bones, one.bones)].T.clip(min=0)
-                pairs = np.concatenate([pairs[~lost], _aligned(one, other, known)])
+                sides = [(one, other), *_on_other_side((one, mine, mirrors[0]), (other, others, mirrors[1]))]
+                pairs = np.concatenate([pairs[~lost], _aligned(sides, known)])
     return pairs[np.lexsort(pairs.T)]
+
+
+def _on_other_side(*ends: tuple[_Limb, list[_Limb], Ints]) -> list[tuple[_Limb, _Limb]]:
+    """Find the limbs that are mirror images of two, each among those of its rig, as a pair; none if there are none."""
+    found = [
+        next((one for one in limbs if set(one.bones) == set(mirrors[limb.bones])), None)
+        for limb, limbs, mirrors in ends
+    ]
+    first, second = found
+    return [] if first is None or second is None else [(first, second)]
 
 
 def _limbs(tree: Skeleton, moving: Bools, mirrors: Ints) -> list[_Limb]:
@@ -146,20 +157,29 @@ def _shared(pairs: Ints, scores: Floats, one: _Limb, other: _Limb) -> float:
     return float(scores[between[:, 1], between[:, 0]].clip(min=0).sum())
 
 
-def _aligned(one: _Limb, other: _Limb, known: Floats) -> Ints:
-    """Pair the bones of two limbs, (k, 2), at the least cost; what the surface says of any two (a, b) is taken off."""
+def _aligned(sides: list[tuple[_Limb, _Limb]], known: Floats) -> Ints:
+    """Pair the bones of two limbs, (k, 2), at the least cost; what the surface says of any two (a, b) is taken off.
+
+    If there are such limbs on the other side as well, costs are the mean of both: what is a close choice is made alike.
+    """
     best: tuple[float, list[tuple[int, int]]] = np.inf, []
     for first in (first for first in np.ndindex(known.shape) if not min(first)):
-        here, there = (limb.starting(start) for limb, start in zip((one, other), first, strict=True))
-        turn = least_turns(here.ways[:1], there.ways[:1])[0]
-        apart = ((here.places[:, None] - there.places) / _PLACE) ** 2 + _cost(here.ways @ turn.T @ there.ways.T)
+        costs = [_costs(one.starting(first[0]), other.starting(first[1])) for one, other in sides]
+        apart, mine, others, width = (sum(each) / len(sides) for each in zip(*costs, strict=True))
         alike = known[first[0] :, first[1] :]
-        shared = 1 + here.bends[:, None] - alike, 1 + there.bends - alike
-        cost, found = _cheapest(apart - alike, *shared)
-        cost += _LEFT * sum(first) + _WIDTH * (here.width - there.width) ** 2
+        cost, found = _cheapest(apart - alike, 1 + mine[:, None] - alike, 1 + others - alike)
+        cost += _LEFT * sum(first) + width
         if cost < best[0]:
             best = cost, [(a + first[0], b + first[1]) for a, b in found]
+    one, other = sides[0]
     return np.array([(one.bones[a], other.bones[b]) for a, b in best[1]], np.int64).reshape(-1, 2)
+
+
+def _costs(here: _Limb, there: _Limb) -> tuple[Floats, Floats, Floats, float]:
+    """Find what it costs to pair bones (a, b), that bones share a partner (a,) and (b,), and that widths differ."""
+    turn = least_turns(here.ways[:1], there.ways[:1])[0]
+    apart = ((here.places[:, None] - there.places) / _PLACE) ** 2 + _cost(here.ways @ turn.T @ there.ways.T)
+    return apart, here.bends, there.bends, _WIDTH * (here.width - there.width) ** 2
 
 
 def _cost(cosines: Floats) -> Floats:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import Skeleton
-from engine.retarget.motion.limb_order import in_order
+from engine.retarget.limbs.limb_order import in_order
 
 LEG = {"thigh": (0, 0, -0.4), "calf": (0, 0.07, -0.43), "foot": (0, -0.16, -0.08), "ball": (0, -0.1, 0.0)}
 SHORT_LEG = {"upper": (0, 0, -0.23), "lower": (0, 0.03, -0.14), "foot": (0, -0.12, -0.12), "toes": (0, -0.2, 0.0)}

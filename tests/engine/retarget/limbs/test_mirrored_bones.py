@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from engine import Skeleton
-from engine.retarget.motion.mirrored_bones import evened_rotations, mirrored_bones
+from engine.retarget.limbs.mirrored_bones import evened_rotations, mirrored_bones
 from tests.people import fine_rig, person, renamed
 from tests.shapes import rotation
 
