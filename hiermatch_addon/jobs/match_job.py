@@ -7,6 +7,8 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
+from scipy.sparse import csr_array
+
 from ...engine import (
     DOUBTFUL,
     MatchError,
@@ -27,7 +29,7 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..properties.preferences import shape_memory
 from ..properties.properties import match_settings
-from ..scene.armatures import read_rig
+from ..scene.armatures import held_vertices, read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_pair
 from ..storage import writing
@@ -42,8 +44,10 @@ from .verdict import advice_on, hung_on_bones, is_half
 
 if TYPE_CHECKING:
     import bpy
+    import numpy as np
+    from numpy.typing import NDArray
 
-    from ...engine import MatchResult, Steps, SurfaceMap
+    from ...engine import MatchResult, Steps, SurfaceMap, TriangleMesh
     from ..properties.properties import MatchOptions
     from ..scene.character import Side
     from ..storage.contents import Content
@@ -312,14 +316,11 @@ class MatchJob(SteppedJob):
         guided = self._landmarks is not None and len(self._landmarks)
         if quality is None or quality.confidence >= DOUBTFUL or options.use_modifiers or guided:
             return result
-        bodies = [
-            RiggedBody(mesh, rig.skeleton, rig.weights)
-            for mesh, reference in zip(meshes, self._references, strict=True)
-            if (side := reference.find()) is not None and (rig := read_rig(side)) is not None
-        ]
-        if len(bodies) < 2:
+        bodies = [_rigged_body(each, mesh) for each, mesh in zip(self._references, meshes, strict=True)]
+        if bodies[0] is None or bodies[1] is None:
             return result
-        pairs = paired_limb_tips(bodies[0], bodies[1])[: options.settings.points]
+        (first, held), (second, others) = bodies[0], bodies[1]
+        pairs = paired_limb_tips(first, second)[: options.settings.points]
         if not len(pairs) or (share := followed_share(_maps(result), meshes, pairs)) == 1.0:
             return result
         steps = match_steps(
@@ -327,7 +328,7 @@ class MatchJob(SteppedJob):
             options.settings,
             landmarks=pairs,
             assumed=True,
-            excluded=self._excluded,
+            excluded=(_either(self._excluded[0], held), _either(self._excluded[1], others)),
             known=self._known,
         )
         try:
@@ -447,6 +448,24 @@ class MatchJob(SteppedJob):
                     f'"{obj.name}" got another number of vertices while it was being matched. Nothing was written.'
                 )
         return objects
+
+
+def _rigged_body(reference: SideReference, mesh: TriangleMesh) -> tuple[RiggedBody, NDArray[np.bool_]] | None:
+    """Return a body with its rig, without weights of what it holds, and which vertices that are; None without a rig."""
+    side = reference.find()
+    rig = None if side is None else read_rig(side)
+    if side is None or rig is None:
+        return None
+    held = held_vertices(side)
+    weights = csr_array(rig.weights.multiply(~held[:, None]))
+    weights.eliminate_zeros()
+    return RiggedBody(mesh, rig.skeleton, weights), held
+
+
+def _either(chosen: NDArray[np.bool_] | None, held: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
+    """Leave out what is held as well; nothing if neither is anything."""
+    both = held if chosen is None else chosen | held
+    return both if both.any() else None
 
 
 def _maps(result: MatchResult) -> tuple[SurfaceMap, SurfaceMap]:

@@ -86,6 +86,11 @@ def held_by(obj: bpy.types.Object, armature: bpy.types.Object) -> str:
     return bone if bone and armature_of(armature).bones[bone].use_deform else ""
 
 
+def held_vertices(side: Side) -> NDArray[np.bool_]:
+    """Tell which vertices of a side, (n,), are of parts that hang on a bone as a whole."""
+    return np.concatenate([np.full(len(mesh_of(part).vertices), bool(bone_of(part))) for part in parts_of(side)])
+
+
 def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | None:
     """Find the first Armature modifier of an object that has an armature."""
     for modifier in obj.modifiers:

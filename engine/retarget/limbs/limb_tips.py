@@ -79,7 +79,7 @@ def _limb_tips(body: RiggedBody) -> Ints:
         own = np.flatnonzero(strongest == bone)
         vertices[number] = own[np.linalg.norm(mesh.vertices[own] - tree.heads[bone], axis=1).argmax()]
     places, mirrors = mesh.vertices[vertices], mirrored_bones(tree)
-    reach = _BESIDE * float(np.ptp(mesh.vertices, axis=0).max())
+    reach = _BESIDE * float(np.ptp(mesh.vertices[strongest >= 0], axis=0).max(initial=0.0))
     order = np.argsort(-np.linalg.norm(places - tree.heads[moving].mean(axis=0), axis=1), kind="stable").tolist()
 
     def differ(one: int, other: int) -> bool:

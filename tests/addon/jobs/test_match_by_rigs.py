@@ -11,7 +11,7 @@ from hiermatch.hiermatch_addon.jobs import match_job
 from hiermatch.hiermatch_addon.storage.landmarks import find_landmarks
 
 from tests.addon.characters import add_person
-from tests.addon.scenes import made_up_result
+from tests.addon.scenes import add_blob, made_up_result
 
 NOTE = "limbs were taken for the same that both rigs have"
 
@@ -92,3 +92,19 @@ def test_ends_of_limbs_that_cannot_be_used_leave_what_there_was(asked, capfd):
     bpy.ops.hiermatch.match(source="A Body", target="B Body")
     assert len(calls) == 2
     assert NOTE not in capfd.readouterr().out
+
+
+def test_what_a_body_holds_is_no_limb_and_is_left_out(asked):
+    calls = asked()
+    for name in "AB":
+        body, _ = add_person(name)
+        sword = add_blob(f"Sword {name}", 8, 6)
+        sword.parent, sword.parent_type, sword.parent_bone = body, "BONE", "hand.L"
+        sword.matrix_parent_inverse.translation = (0, 3, 0)
+    bpy.context.view_layer.update()
+    bpy.ops.hiermatch.match(source="A", target="B")
+    pairs = calls[1]["landmarks"]
+    assert len(pairs) == 5
+    for held, ends in zip(calls[1]["excluded"], pairs.T, strict=True):
+        assert held.sum() == len(sword.data.vertices)
+        assert not held[ends].any()
