@@ -7,8 +7,6 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from scipy.sparse import csr_array
-
 from ...engine import (
     DOUBTFUL,
     MatchError,
@@ -29,7 +27,7 @@ from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..properties.preferences import shape_memory
 from ..properties.properties import match_settings
-from ..scene.armatures import held_vertices, read_rig
+from ..scene.armatures import held_vertices, read_rig, without_held
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_pair
 from ..storage import writing
@@ -456,16 +454,13 @@ def _rigged_body(reference: SideReference, mesh: TriangleMesh) -> tuple[RiggedBo
     rig = None if side is None else read_rig(side)
     if side is None or rig is None:
         return None
-    held = held_vertices(side)
-    weights = csr_array(rig.weights.multiply(~held[:, None]))
-    weights.eliminate_zeros()
-    return RiggedBody(mesh, rig.skeleton, weights), held
+    return RiggedBody(mesh, rig.skeleton, without_held(side, rig.weights)), held_vertices(side)
 
 
 def _either(chosen: NDArray[np.bool_] | None, held: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
-    """Leave out what is held as well; nothing if neither is anything."""
+    """Leave out what is held as well, but not all."""
     both = held if chosen is None else chosen | held
-    return both if both.any() else None
+    return both if both.any() and not both.all() else chosen
 
 
 def _maps(result: MatchResult) -> tuple[SurfaceMap, SurfaceMap]:

@@ -91,6 +91,16 @@ def held_vertices(side: Side) -> NDArray[np.bool_]:
     return np.concatenate([np.full(len(mesh_of(part).vertices), bool(bone_of(part))) for part in parts_of(side)])
 
 
+def without_held(side: Side, weights: csr_array) -> csr_array:
+    """Take the weights (n, b) of parts that hang on a bone as a whole away, such as of swords, if others do not."""
+    held = held_vertices(side)
+    if held.all() or not held.any():
+        return weights
+    result = csr_array(weights.multiply(~held[:, None]))
+    result.eliminate_zeros()
+    return result
+
+
 def armature_modifier(obj: bpy.types.Object) -> bpy.types.ArmatureModifier | None:
     """Find the first Armature modifier of an object that has an armature."""
     for modifier in obj.modifiers:

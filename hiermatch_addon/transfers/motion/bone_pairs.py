@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Any, cast
 
@@ -16,7 +16,7 @@ from ...common.side_names import side_of
 from ...jobs.transfer import Transfer, TransferReport
 from ...jobs.transfer_job import TransferJob, carry_fresh_match
 from ...properties.bone_pairs import held_pairs, write_pairing
-from ...scene.armatures import armature_of, bone_weights, read_skeleton
+from ...scene.armatures import armature_of, bone_weights, read_skeleton, without_held
 from ...scene.character import parts_of
 from ...scene.motion.rigs import in_own_spaces, object_rotation, two_rigs
 
@@ -40,12 +40,12 @@ _EXCHANGED = 0.5
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """What was read: the names of both rigs' bones, the target's bones and weights, and how both stand."""
+    """What was read: the names of both rigs' bones, the target's bones, both weights, and how both stand."""
 
     rigs: tuple[str, str]
     names: tuple[tuple[str, ...], tuple[str, ...]]
     skeleton: Skeleton
-    weights: csr_array
+    weights: tuple[csr_array, csr_array]
     held: tuple[list[tuple[int, int]], list[int]]
     turns: tuple[NDArray[np.float64], NDArray[np.float64]]
     matrix: NDArray[np.float64]
@@ -97,7 +97,8 @@ class BonePairTransfer(Transfer):
         """Read the target's rig, and what is held of the pairs that are there."""
         rigs = two_rigs(source, target, written=False)
         names = tuple(tuple(bone.name for bone in armature_of(rig).bones) for rig in rigs)
-        if not bone_weights(source, rigs[0], names[0]).nnz:
+        weights = bone_weights(source, rigs[0], names[0])
+        if not weights.nnz:
             raise ObjectError(
                 f'No vertex of "{source.name}" is in a vertex group of a deforming bone of "{rigs[0].name}", so '
                 "it is open what the bones belong to. Bind the Source to its armature with weights first."
@@ -106,7 +107,7 @@ class BonePairTransfer(Transfer):
             (rigs[0].name, rigs[1].name),
             cast("Any", names),
             read_skeleton(rigs[1]),
-            bone_weights(target, rigs[1], names[1]),
+            (without_held(source, weights), without_held(target, bone_weights(target, rigs[1], names[1]))),
             held_pairs(cast("bpy.types.Scene", context.scene), *rigs),
             (object_rotation(rigs[0]), object_rotation(rigs[1])),
             np.array(rigs[1].matrix_world, np.float64),
@@ -119,11 +120,11 @@ class BonePairTransfer(Transfer):
             raise RuntimeError("The rig was not fitted.")
         yield Progress(0.0, "Pairing bones")
         found = pair_bones(
-            passage.rig,
+            replace(passage.rig, weights=task.weights[0]),
             passage.pair.source,
             passage.pair.target,
             task.skeleton,
-            task.weights,
+            task.weights[1],
             fixed=task.held[0],
             alone=task.held[1],
             frames=(task.turns[1] @ task.turns[0].T)[None],

@@ -3,7 +3,14 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from hiermatch.hiermatch_addon.scene.armatures import find_armature, read_rig, read_skeleton
+from hiermatch.hiermatch_addon.scene.armatures import (
+    bone_weights,
+    find_armature,
+    held_vertices,
+    read_rig,
+    read_skeleton,
+    without_held,
+)
 from hiermatch.hiermatch_addon.scene.binding import bind, unbind
 from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
 from mathutils import Matrix
@@ -98,3 +105,19 @@ def test_there_is_no_rig_without_an_armature_or_weights():
     assert read_rig(obj) is None
     assert read_rig(add_blob("Blob")) is None
     assert bpy.data.armatures
+
+
+def test_what_hangs_on_bones_has_weights_of_a_body_only_if_all_of_it_does():
+    rig, _ = add_person("A")
+    sword = add_blob("Sword", 8, 6)
+    sword.parent, sword.parent_type, sword.parent_bone = rig, "BONE", "hand.L"
+    bpy.context.view_layer.update()
+    names = [bone.name for bone in rig.data.bones]
+    side = side_of(rig, bpy.context.view_layer)
+    weights = bone_weights(side, rig, names)
+    held = held_vertices(side)
+    assert held.sum() == len(sword.data.vertices)
+    kept = without_held(side, weights)
+    assert not kept[np.flatnonzero(held)].nnz
+    np.testing.assert_array_equal(kept.toarray()[~held], weights.toarray()[~held])
+    assert without_held(sword, bone_weights(sword, rig, names)).nnz == len(sword.data.vertices)
