@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from engine import RiggedBody, Skeleton, TriangleMesh, paired_limb_tips
 from tests.people import person, renamed
@@ -54,3 +55,5 @@ def test_a_body_that_lies_does_not_stand_alike_and_one_bone_has_no_limbs(someone
     one = Skeleton(np.array([-1]), np.zeros((1, 3)), np.ones((1, 3)))
     whole = RiggedBody(someone.mesh, one, someone.rig.weights[:, :1])
     assert not len(paired_limb_tips(body_of(someone), whole))
+    unbound = body_of(someone)._replace(weights=csr_array(someone.rig.weights.shape))
+    assert not len(paired_limb_tips(body_of(someone), unbound))
