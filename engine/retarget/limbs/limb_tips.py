@@ -17,10 +17,10 @@ from .mirrored_bones import mirrored_bones
 
 _BESIDE = 0.12
 """How near ends are, in units of the largest extent of the body, that belong to one limb: fingers of eight people are
-at most 0.07 apart, and so are feet, but these are mirror images of each other."""
+at most 0.07 apart, and so are feet, but these are mirror images of each other (tried once)."""
 
 _MOST, _FEWEST = 16, 4
-"""Ends that are looked at, and that two bodies must have to be compared."""
+"""Ends that are looked at, and that two bodies must have to be compared, by hand: three are always in a plane."""
 
 _ALIKE = 0.8
 """Agreement of the ends from which on bodies stand alike, see `paired_points`: people of six makers have 0.93 to 1.00,

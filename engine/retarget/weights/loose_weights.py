@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Skin weights of loose parts that stand off, such as horns, wings and axes: from where they touch the body."""
+"""Skin weights of loose parts that stand off, such as horns and wings: from where they touch the body."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from horse and husky to the cow, the mean error of the animated bodies is 1.46 w
 this, and 1.12 with 0.02, which is worse for both women."""
 
 _SUREST = 0.9
-"""Part of the area on which a map is less sure than where it is surest: some vertices are so by chance."""
+"""Part of the area on which a map is less sure than where it is surest, by hand: some vertices are so by chance."""
 
 _BOUNDS = 1e-4
-"""How sure a map is of any place at least, and how unsure, of one: what has no confidence at all keeps its mean."""
+"""How sure a map is of any place at least, and how unsure, of one, by hand: what has no confidence keeps its mean."""
 
 
 def with_loose_parts(weights: csr_array, confidence: Floats, parts: WeldedParts) -> csr_array:

@@ -102,15 +102,17 @@ def continued(values: csr_array, places: Bools, parts: WeldedParts, held: Floats
     inside = places[involved]
     rows = stiffness[inside]
     given, matrix = values[involved[~inside]], rows[:, inside]
-    right = csr_array(-rows[:, ~inside] @ given)
+    right, most = csr_array(-rows[:, ~inside] @ given), given.data.max(initial=0.0)
     if held is not None:
-        right, matrix = csr_array(right + diags_array(held) @ values[unknown]), matrix + diags_array(held)
+        own = values[unknown]
+        right, most = csr_array(right + diags_array(held) @ own), max(most, own.data.max(initial=0.0))
+        matrix = matrix + diags_array(held)
     columns = np.unique(right.indices)
     if not len(columns):
         return csr_array((len(unknown), values.shape[1]))
     solved = splu(matrix.tocsc()).solve(right[:, columns].toarray())
     # Where more than two triangles meet in an edge, and by rounding, a little may be out of bounds.
-    result = csr_array(np.where(solved < _LEAST_WEIGHT, 0.0, np.minimum(solved, values.data.max())))
+    result = csr_array(np.where(solved < _LEAST_WEIGHT, 0.0, np.minimum(solved, most)))
     return csr_array((result.data, columns[result.indices], result.indptr), (len(unknown), values.shape[1]))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weights of wings, horns and axes, which stand off from the body that they touch."""
+"""Weights of wings and horns, which stand off from the body that they touch."""
 
 import numpy as np
 import pytest
