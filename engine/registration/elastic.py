@@ -49,8 +49,6 @@ class ElasticSurface:
         Rest positions v.
     laplace : LaplaceBeltrami
         The operator of the surface.
-    edges : (e, 3) array of float, optional
-        The edges at rest, if not those between the vertices, see `strained`.
 
     Attributes
     ----------
@@ -62,27 +60,32 @@ class ElasticSurface:
     .. [1] O. Sorkine, M. Alexa, "As-rigid-as-possible surface modeling", SGP 2007.
     """
 
-    def __init__(self, vertices: Floats, laplace: LaplaceBeltrami, edges: Floats | None = None) -> None:
-        n = len(vertices)
-        self._vertices, self._laplace = vertices, laplace
+    def __init__(self, vertices: Floats, laplace: LaplaceBeltrami) -> None:
+        n, self._laplace = len(vertices), laplace
         self._tails, self._heads, self._weights = weighted_edges(laplace)  # (e,) each
-        self._edges = vertices[self._tails] - vertices[self._heads] if edges is None else edges  # (e, 3)
         count = len(self._tails)
         ends = (np.concatenate([self._tails, self._heads]), np.tile(np.arange(count), 2))
         # Sums over the edges around each vertex: of what does not, and of what does change sign with the direction.
         self._around = csr_array((np.ones(2 * count), ends), shape=(n, count))
         self._divergence = csr_array((np.repeat([1.0, -1.0], count), ends), shape=(n, count))
-        self._covariance = self._covariances(self._weights)
         one_way = csr_array((np.ones(count), (self._tails, self._heads)), shape=(n, n))
         self._average = averaging(csr_array(one_way + one_way.T))
-        self._edge_length = float(np.sqrt(np.square(self._edges).sum(axis=1).mean())) if count else 1.0
-        self._resist(self._weights)
+        self._resisting = self._weights
+        self._rest(vertices[self._tails] - vertices[self._heads])
+
+    def _rest(self, edges: Floats) -> None:
+        """Let the edges (e, 3) at rest be these."""
+        self._edges = edges
+        self._edge_length = float(np.sqrt(np.square(edges).sum(axis=1).mean())) if len(edges) else 1.0
+        self._covariance = self._covariances(self._weights)
+        self._resist(self._resisting)
 
     def _resist(self, weights: Floats) -> None:
         """Let edges have weights (e,) in the energy."""
         self._resisting = weights
         self.stiffness = csr_array(self._divergence @ diags_array(weights) @ self._divergence.T)
-        self._pull = csr_array(self._covariances(weights).T) / 2
+        covariance = self._covariance if weights is self._weights else self._covariances(weights)
+        self._pull = csr_array(covariance.T) / 2
 
     def _covariances(self, weights: Floats) -> csr_array:
         """Matrix (3 n, n) that makes of positions the covariances (3, 3) of rest edges and edges around each vertex."""
@@ -91,7 +94,7 @@ class ElasticSurface:
         rows = np.stack([[3 * here[:, None] + np.arange(3)] * 2 for here in ends])  # (2, 2, e, 3)
         columns = np.broadcast_to(np.stack(ends)[:, :, None], rows.shape)
         signed = np.broadcast_to(np.stack([weighted, -weighted]), rows.shape)
-        n = len(self._vertices)
+        n = len(self._laplace.mass)
         return csr_array((signed.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, n))
 
     def rotations(self, positions: Floats, radius: float) -> Floats:
@@ -208,11 +211,20 @@ class ElasticSurface:
         logarithms = np.log(np.maximum(values, np.exp(-_MOST_STRETCHED)))
         accepted = np.clip(np.abs(logarithms), _DOUBTED, _MOST_STRETCHED) - _DOUBTED
         stretch = np.einsum("nab,nb,ncb->nac", vectors, np.exp(np.sign(logarithms) * accepted), vectors)
-        return ElasticSurface(self._vertices, self._laplace, self._at_edges(stretch))
+        return self._with_edges(self._at_edges(stretch))
 
     def resized(self, scales: Floats) -> ElasticSurface:
         """Take the surface as at rest in other sizes, so many times as large at each vertex (n,)."""
-        return ElasticSurface(self._vertices, self._laplace, self._at_edges(scales[:, None, None] * np.eye(3)))
+        return self._with_edges(self._at_edges(scales[:, None, None] * np.eye(3)))
+
+    def posed(self, vertices: Floats) -> ElasticSurface:
+        """Take the surface as at rest with its vertices (n, 3) elsewhere."""
+        return self._with_edges(vertices[self._tails] - vertices[self._heads])
+
+    def _with_edges(self, edges: Floats) -> ElasticSurface:
+        other = copy.copy(self)
+        other._rest(edges)  # noqa: SLF001
+        return other
 
     def _stretches(self, positions: Floats, averaged: Callable[[Floats], Floats]) -> Floats:
         """Fit a linear map to the deformation around each vertex: the symmetric part of its polar decomposition.

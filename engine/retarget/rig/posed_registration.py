@@ -79,8 +79,8 @@ class PosedRegistration:
     def __init__(
         self, body: TriangleMesh, laplace: LaplaceBeltrami, target: TriangleMesh, homes: Homes | None = None
     ) -> None:
-        self._body, self._laplace, self._homes = body, laplace, homes
-        self._search = ClosestPoints(body)
+        self._body, self._homes = body, homes
+        self._search, self._elastic = ClosestPoints(body), ElasticSurface(body.vertices, laplace)
         scale = float(np.sqrt(target.area))
         centre = np.average(target.vertices, axis=0, weights=target.vertex_areas)
         # Small triangles are where the detail is: by its area alone, a hand would not count.
@@ -115,7 +115,7 @@ class PosedRegistration:
             Where it is then.
         """
         target = self._target
-        elastic = ElasticSurface(self._inside(posed), self._laplace)
+        elastic = self._elastic.posed(self._inside(posed))
         now = self._inside(positions)
         system = _SlidingSystem(self._planes(now, matches, seeking), stiffness * elastic.stiffness)
         for _ in range(_SOLVES):

@@ -246,20 +246,6 @@ def test_progress_counts_the_rounds(bodies, near_truth, functions):
     assert fractions == sorted(fractions)
 
 
-@pytest.mark.parametrize(("few", "rounds"), [(0, 5), (10**9, 2)], ids=["fine", "coarse"])
-def test_only_surfaces_of_many_vertices_go_on_further(few, rounds, bodies, near_truth, monkeypatch):
-    """They do so as in the last round: it is the same as asking for these rounds."""
-    monkeypatch.setattr("engine.registration.registration.COARSE", few)
-    source, target = bodies[:2]
-    start = target.vertices[near_truth]
-    stage = Stage((40, 1000), 0.1, 0.05, momentum=0.5)
-    asked = replace(stage, weights=(40,) + (1000,) * (rounds - 1))
-    found, same = (run(register_steps(source, target, start, (each,))) for each in (replace(stage, further=3), asked))
-    np.testing.assert_array_equal(found.positions, same.positions)
-    fractions = [report.fraction for report in register_steps(source, target, start, (replace(stage, further=3),))]
-    np.testing.assert_allclose(np.unique(fractions), np.arange(rounds + 1) / rounds)
-
-
 def test_a_smooth_start_with_all_functions_is_the_map_itself():
     ball = deformable(*icosphere(3))
     spectrum = run(eigenpairs_steps(laplace_beltrami(ball.mesh), len(ball.vertices)))
