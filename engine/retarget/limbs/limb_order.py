@@ -20,9 +20,9 @@ _PLACE = 0.35
 """How far apart along the limb partners begin, in units of its length, that costs the same."""
 
 _LEFT = 2.5
-"""What each bone costs that is left at the trunk, such as a collar bone, in the same units.  With these three, all
-bones of the limbs of the knight have the right partners, in both ways, in `maker_rigs` of the benchmarks; so they have
-with 2 and with 3 (both tried once)."""
+"""What each bone costs that is left at the trunk, such as a collar bone, in the same units, beside the part of the limb
+that is lost with it: a thigh is no collar bone.  With these three, all bones of the limbs of the knight have the right
+partners, in both ways, in `maker_rigs` of the benchmarks; so they have with 2 and with 3 (both tried once)."""
 
 _WIDTH, _NARROWEST = 2.0, 0.01
 """What it costs, in the same units, if one limb begins further from that on the other side by the factor e, in units of
@@ -168,7 +168,10 @@ def _aligned(sides: list[tuple[_Limb, _Limb]], known: Floats) -> Ints:
         apart, mine, others, width = (sum(each) / len(sides) for each in zip(*costs, strict=True))
         alike = known[first[0] :, first[1] :]
         cost, found = _cheapest(apart - alike, 1 + mine[:, None] - alike, 1 + others - alike)
-        cost += _LEFT * sum(first) + width
+        left = sum(
+            _LEFT * start + (limb.places[start] / _PLACE) ** 2 for limb, start in zip(sides[0], first, strict=True)
+        )
+        cost += float(left) + width
         if cost < best[0]:
             best = cost, [(a + first[0], b + first[1]) for a, b in found]
     one, other = sides[0]

@@ -54,6 +54,12 @@ def test_a_short_leg_with_a_large_foot_is_paired_joint_by_joint(pairs):
     assert partners(SHORT_LEG, LEG, pairs) == STRAIGHT
 
 
+def test_a_thigh_is_not_left_at_the_trunk_though_what_is_left_would_be_as_far_apart():
+    long_leg = {"thigh": (0, -0.04, -0.48), "calf": (0, 0.03, -0.54), "foot": (0, 0.01, -0.18)}
+    found = partners(SHORT_LEG, long_leg, ((1, 2), (2, 2), (4, 3)), starts=(0.17, 0.08))
+    assert found == {("upper", "thigh"), ("lower", "calf"), ("foot", "foot"), ("toes", "foot")}
+
+
 @pytest.mark.parametrize("size", [0.01, 7.0])
 def test_sizes_do_not_matter(size):
     assert partners(SHORT_LEG, LEG, size=size) == STRAIGHT
