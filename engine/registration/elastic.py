@@ -222,6 +222,7 @@ class ElasticSurface:
         return self._with_edges(vertices[self._tails] - vertices[self._heads])
 
     def _with_edges(self, edges: Floats) -> ElasticSurface:
+        """Take the surface as it is, but with other edges (e, 3) at rest."""
         other = copy.copy(self)
         other._rest(edges)  # noqa: SLF001
         return other

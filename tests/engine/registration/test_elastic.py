@@ -314,3 +314,14 @@ def test_the_operator_may_be_that_of_the_surface_in_another_size(body):
     np.testing.assert_allclose(
         other.strained(bent, NEAR).pull(rotations), elastic.strained(bent, NEAR).pull(rotations), atol=1e-6
     )
+
+
+def test_a_surface_posed_anew_is_the_one_made_of_these_vertices(body):
+    vertices, triangles, elastic = body
+    places = vertices + 0.1 * np.sin(3 * vertices[:, ::-1])
+    posed, made = elastic.posed(places), ElasticSurface(places, laplace_beltrami(TriangleMesh(vertices, triangles)))
+    turned = posed.rotations(vertices, NEAR)
+    np.testing.assert_allclose(turned, made.rotations(vertices, NEAR), atol=1e-12)
+    np.testing.assert_allclose(posed.pull(turned), made.pull(turned), atol=1e-12)
+    assert abs(posed.stiffness - made.stiffness).max() == 0
+    assert elastic.energy(vertices, elastic.rotations(vertices, NEAR)) < 1e-12  # which stays as it was
