@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -215,11 +216,11 @@ def map_hypotheses_steps(
         leads = yield from within(steps, 0.05, 0.4)
     candidates = [(_between_fine(a, b, _smooth_maps(a, b, lead.points)), lead.origin) for lead in leads]
     candidates += [(_from_start(a, b, start), start.origin) for start in starts]
-    if search:
-        candidates += [(points, "rigid") for points in rigid_maps(a, b)]
-    refined = yield from within(shared_steps(_refined_lead_steps, domains, candidates), 0.4, 1.0)
+    # What takes longest comes first.
+    items = [*([None] if search else []), *candidates]
+    refined = yield from within(shared_steps(_refined_leads_steps, domains, items), 0.4, 1.0)
     most = {1: selection.keeping, -1: selection.mirroring}
-    kept = distinct_leads(b, refined, selection.apart, selection.hopeless, most)
+    kept = distinct_leads(b, list(chain.from_iterable(refined)), selection.apart, selection.hopeless, most)
     return [hypothesis_of(domains, lead) for lead in kept]
 
 
@@ -323,11 +324,17 @@ def _at_fine_samples(x: MapDomain, y: MapDomain, images: PointMaps) -> PointMaps
     return PointMaps(y.nearest_samples(images.on_y[x.vertices]), x.nearest_samples(images.on_x[y.vertices]))
 
 
-def _refined_lead_steps(domains: tuple[MapDomain, MapDomain], start: tuple[PointMaps, str]) -> Steps[MapLead]:
-    """Refine a map between the fine samples, from somewhere, and score it."""
+def _refined_leads_steps(
+    domains: tuple[MapDomain, MapDomain], start: tuple[PointMaps, str] | None
+) -> Steps[list[MapLead]]:
+    """Refine a map between the fine samples, from somewhere, and score it; or look for rigid ones first (None)."""
     x, y = domains
-    points = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, start[0], _FINE_SIZES)
-    return _assessed(x, y, points, start[1])
+    starts = [(points, "rigid") for points in rigid_maps(x, y)] if start is None else [start]
+    leads = []
+    for points, origin in starts:
+        refined = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, points, _FINE_SIZES)
+        leads.append(_assessed(x, y, refined, origin))
+    return leads
 
 
 def hypothesis_of(

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import chain, compress
+from itertools import chain
 from operator import attrgetter, is_
 from typing import NamedTuple
 
@@ -37,8 +37,12 @@ _DISTINCT = 0.07
 _ELSEWHERE, _LIMB = 0.15, 0.02
 """Or they are different maps if they take so large a part of the source so far, in sqrt(area), from each other."""
 
+_ROUGHLY = 0.3
+"""The same distance for a rough map, which errs by half of that here and there: of bodies much alike (`game_units`,
+`dense_pairs`), all that were nearer to another map led to that, and none to a better place there worth the time."""
+
 _LIKE = 0.04
-"""Mean distance, in sqrt(area), up to which a rough map would lead to where another one already has."""
+"""Mean distance, in sqrt(area), up to which a rough map between other bodies would lead to where another one has."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +105,7 @@ class Proposer(NamedTuple):
     rise: float
 
 
-def are_distinct(first: Floats, second: Floats, areas: Floats) -> bool:
+def are_distinct(first: Floats, second: Floats, areas: Floats, elsewhere: float = _ELSEWHERE) -> bool:
     """Say whether two registrations are different maps, as a whole or in where they take a limb.
 
     Parameters
@@ -110,12 +114,14 @@ def are_distinct(first: Floats, second: Floats, areas: Floats) -> bool:
         Where they take the vertices of the source, in units of the square root of the target's area.
     areas : (n,) array of float
         Areas of these vertices, in any unit; zero where it says nothing that they are taken elsewhere.
+    elsewhere : float
+        From which distance on, in the same units, a limb is taken elsewhere.
     """
     if not areas.any():
         return False
     apart = np.linalg.norm(first - second, axis=1)
-    mean, elsewhere = np.average(np.stack([apart, apart > _ELSEWHERE]), axis=1, weights=areas)
-    return bool(mean > _DISTINCT or elsewhere > _LIMB)
+    mean, share = np.average(np.stack([apart, apart > elsewhere]), axis=1, weights=areas)
+    return bool(mean > _DISTINCT or share > _LIMB)
 
 
 def contenders(contest: Contest, candidates: list[Candidate]) -> list[Candidate]:
@@ -139,16 +145,23 @@ def _matchings_steps(contest: Contest, candidates: list[Candidate]) -> Steps[lis
     if not best.is_doubtful:
         return candidates
     rough = yield from within(unrefined_hypotheses_steps(best.domains), 0.0, 0.25)
-    hypotheses = [h for h in rough if landmarks is None or agrees(follow.x, follow.y, landmarks, h)]
     taken = [candidate.registration.positions for candidate in candidates]
-    starts = [follow.start(hypothesis.images) for hypothesis in hypotheses]
-    new = [all(follow.apart(start, positions) > _LIKE for positions in taken) for start in starts]
-    followed = yield from within(follow.all_steps(list(compress(hypotheses, new))), 0.25, 1.0)
-    for start, candidate in zip(compress(starts, new), followed, strict=True):
-        if all(follow.apart(start, positions) > _LIKE for positions in taken):
-            candidates = [*candidates, candidate]
-            taken += [start, candidate.registration.positions]
-    return sorted(candidates, key=lambda candidate: candidate.score)
+    are_unlike = is_less_alike(candidates[0].likeness, MUCH_ALIKE)
+
+    def leads_elsewhere(start: Floats, other: Floats) -> bool:
+        """Say whether a rough map may lead to another map than one that is known, or of unlike bodies a better one."""
+        is_better = are_unlike and follow.apart(start, other) > _LIKE
+        return is_better or are_distinct(start, other, follow.source.mass, _ROUGHLY)
+
+    new = []
+    for hypothesis in rough:
+        start = follow.start(hypothesis.images)
+        is_new = all(leads_elsewhere(start, other) for other in taken)
+        if is_new and (landmarks is None or agrees(follow.x, follow.y, landmarks, hypothesis)):
+            new.append(hypothesis)
+            taken.append(start)
+    followed = yield from within(follow.all_steps(new), 0.25, 1.0)
+    return sorted([*candidates, *followed], key=lambda candidate: candidate.score)
 
 
 def _limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:

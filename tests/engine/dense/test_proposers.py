@@ -26,6 +26,47 @@ def test_maps_that_take_one_limb_elsewhere_are_distinct_and_those_that_err_a_lit
     assert are_distinct(places, places + 4 * offset, areas)
     # Where neither finds a partner anywhere, nothing tells them apart.
     assert not are_distinct(places, places + limb, np.zeros_like(areas))
+    # Of rough maps, only what is farther away is elsewhere.
+    assert not are_distinct(places, places + 0.7 * limb, areas, elsewhere=0.3)
+    assert are_distinct(places, places + limb, areas, elsewhere=0.3)
+
+
+@pytest.mark.parametrize(
+    ("likeness", "followed"),
+    [(MUCH_ALIKE + 1, ["limb", "elsewhere"]), (MUCH_ALIKE - 1, ["near", "limb", "elsewhere"])],
+    ids=["alike", "unlike"],
+)
+def test_rough_maps_that_lead_to_a_known_one_are_not_followed_but_between_unlike_bodies(
+    monkeypatch, likeness, followed
+):
+    limb = 0.5 * (np.arange(100) < 4)[:, None]
+    starts = {"near": 0.05, "limb": limb, "again": limb, "elsewhere": 1.0, "same": 0.0}
+
+    def following(hypotheses):
+        yield from ()
+        return [SimpleNamespace(hypothesis=hypothesis, score=2.0) for hypothesis in hypotheses]
+
+    follow = SimpleNamespace(
+        start=lambda images: np.zeros((100, 3)) + starts[images] * np.array([1.0, 0, 0]),
+        apart=lambda first, second: np.linalg.norm(first - second, axis=1).mean(),
+        source=SimpleNamespace(mass=np.full(100, 0.01)),
+        all_steps=following,
+    )
+    best = SimpleNamespace(
+        hypothesis=SimpleNamespace(is_doubtful=True, domains=None),
+        registration=SimpleNamespace(positions=np.zeros((100, 3))),
+        likeness=likeness,
+        score=1.0,
+    )
+
+    def proposing(_domains):
+        yield from ()
+        return [SimpleNamespace(images=name) for name in starts]
+
+    monkeypatch.setattr(proposers, "unrefined_hypotheses_steps", proposing)
+    found = run(proposers.PROPOSERS[0].steps(Contest(follow), [best]))
+    assert found[0] is best
+    assert [candidate.hypothesis.images for candidate in found[1:]] == followed
 
 
 @pytest.mark.parametrize(
