@@ -73,14 +73,6 @@ def repaired_start_steps(x: Shape, y: Shape, maps: PointMaps) -> Steps[SparseSta
     return SparseStart(rows[0] / x.scale, rows[1] / y.scale, "limbs")
 
 
-def exchanged_limbs(x: Shape, y: Shape, maps: PointMaps) -> tuple[bool, bool]:
-    """Say whether a map exchanges limbs, seen from either surface; see `repaired_start_steps`.
-
-    Seen from one alone, a true map may seem to, about once in thirty times; hardly ever from both.
-    """
-    return (_exchange(x, y, maps.on_y, maps.on_x) is not None, _exchange(y, x, maps.on_x, maps.on_y) is not None)
-
-
 def _exchange(x: Shape, y: Shape, there: Ints, back: Ints) -> tuple[Ints, Ints] | None:
     """Find vertices of X and where they belong on Y, if the tips of X have got each other's images."""
     middle = _trusted_middle(x, there, back)

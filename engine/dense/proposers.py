@@ -24,12 +24,8 @@ from ..shapes.landmarks import Landmarks
 from .credibility import EVEN, LITTLE_RISE, MUCH_ALIKE, RISE, is_less_alike, is_placed, may_reach
 from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
-from .limb_sides import exchanged_limbs, repaired_start_steps
+from .limb_sides import repaired_start_steps
 from .registered_hypotheses import Candidate, Follower
-
-_CONTRADICTED = 4.0
-"""Difference of scores up to which a map whose limbs are where they belong is preferred to one that exchanges them as
-seen from both surfaces."""
 
 _DISTINCT = 0.07
 """Mean distance, in sqrt(area), from which on two registrations are different maps."""
@@ -165,20 +161,15 @@ def _matchings_steps(contest: Contest, candidates: list[Candidate]) -> Steps[lis
 
 
 def _limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
-    """Propose the best candidate anew if it exchanges limbs, with these put right, in its place if that is better."""
-    follow, (best, *others) = contest.follow, candidates
+    """Propose the best candidate anew if it seems to exchange limbs, with these put right."""
+    follow, best = contest.follow, candidates[0]
     shapes, domains = (follow.x, follow.y), best.hypothesis.domains
-    wrong = follow.vertex_maps(best.registration)
-    start = yield from within(repaired_start_steps(*shapes, wrong), 0.0, 0.0)
+    start = yield from within(repaired_start_steps(*shapes, follow.vertex_maps(best.registration)), 0.0, 0.0)
     if start is None:
         return candidates
     hypotheses = yield from within(map_hypotheses_steps(*shapes, (start,), search=False, domains=domains), 0.0, 0.3)
     repaired = yield from within(follow.steps(hypotheses[0]), 0.3, 1.0)
-    right = follow.vertex_maps(repaired.registration)
-    # What exchanges the ends of limbs may fit a little better by all other measures.
-    clear = all(exchanged_limbs(*shapes, wrong)) and not any(exchanged_limbs(*shapes, right))
-    better = repaired.score < best.score + (_CONTRADICTED if clear else 0.0)
-    return [repaired, *others] if better else candidates
+    return sorted([repaired, *candidates], key=lambda candidate: candidate.score)
 
 
 def _turned_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:

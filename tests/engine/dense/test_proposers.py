@@ -69,6 +69,28 @@ def test_rough_maps_that_lead_to_a_known_one_are_not_followed_but_between_unlike
     assert [candidate.hypothesis.images for candidate in found[1:]] == followed
 
 
+@pytest.mark.parametrize(("score", "order"), [(0.5, ["limbs", "best"]), (1.5, ["best", "limbs"])])
+def test_limbs_that_were_put_right_are_compared_with_what_seemed_to_exchange_them(monkeypatch, score, order):
+    def returning(value):
+        def steps(*_given, **_options):
+            yield from ()
+            return value
+
+        return steps
+
+    def candidate(origin, score):
+        return SimpleNamespace(hypothesis=SimpleNamespace(origin=origin, domains=None), registration=None, score=score)
+
+    follow = SimpleNamespace(x=None, y=None, vertex_maps=lambda _: None, steps=returning(candidate("limbs", score)))
+    contest, candidates = Contest(follow), [candidate("best", 1.0)]
+    monkeypatch.setattr(proposers, "map_hypotheses_steps", returning([candidates[0].hypothesis]))
+    monkeypatch.setattr(proposers, "repaired_start_steps", returning(object()))
+    found = run(proposers.PROPOSERS[1].steps(contest, candidates))
+    assert [each.hypothesis.origin for each in found] == order
+    monkeypatch.setattr(proposers, "repaired_start_steps", returning(None))
+    assert run(proposers.PROPOSERS[1].steps(contest, candidates)) is candidates
+
+
 @pytest.mark.parametrize(
     ("scores", "places", "chosen"),
     [
