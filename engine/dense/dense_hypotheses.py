@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..runtime.parallel_map import shared_steps
-from ..runtime.progress import Progress, Steps, run, within
+from ..runtime.progress import Progress, Steps, in_turn, run, within
 from ..shapes.shape import Shape
 from .credibility import map_score
 from .functional_maps import (
@@ -328,13 +328,14 @@ def _refined_leads_steps(
     domains: tuple[MapDomain, MapDomain], start: tuple[PointMaps, str] | None
 ) -> Steps[list[MapLead]]:
     """Refine a map between the fine samples, from somewhere, and score it; or look for rigid ones first (None)."""
-    x, y = domains
-    starts = [(points, "rigid") for points in rigid_maps(x, y)] if start is None else [start]
-    leads = []
-    for points, origin in starts:
-        refined = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, points, _FINE_SIZES)
-        leads.append(_assessed(x, y, refined, origin))
-    return leads
+    starts = [(points, "rigid") for points in rigid_maps(*domains)] if start is None else [start]
+    return (yield from in_turn(_refined_lead_steps(*domains, *each) for each in starts))
+
+
+def _refined_lead_steps(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Steps[MapLead]:
+    """Refine a map between the fine samples, and score it."""
+    refined = yield from refine_bijective_steps(x.fine_basis, y.fine_basis, points, _FINE_SIZES)
+    return _assessed(x, y, refined, origin)
 
 
 def hypothesis_of(
