@@ -34,8 +34,9 @@ _ELSEWHERE, _LIMB = 0.15, 0.02
 """Or they are different maps if they take so large a part of the source so far, in sqrt(area), from each other."""
 
 _ROUGHLY = 0.3
-"""The same distance for a rough map, which errs by half of that here and there: of bodies much alike (`game_units`,
-`dense_pairs`), all that were nearer to another map led to that, and none to a better place there worth the time."""
+"""The same distance for a rough map, which errs by half of that here and there.  Between bodies much alike, of the
+bodies of `game_units` and the listed pairs of `dense_pairs`, all but one that were nearer to another map led to that,
+and the one to a worse map (tried once)."""
 
 _LIKE = 0.04
 """Mean distance, in sqrt(area), up to which a rough map between other bodies would lead to where another one has."""

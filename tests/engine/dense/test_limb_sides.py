@@ -63,6 +63,11 @@ def pairs(start):
     return start.source_distances.argmin(axis=1), start.target_distances.argmin(axis=1)
 
 
+def is_seen_from(body, vertices):
+    """Say whether a start was found by the tips of this body: then all of its vertices there are samples."""
+    return np.isin(vertices, body.shape.samples.vertices).all()
+
+
 def assert_true(x, y, start):
     here, there = pairs(start)
     assert np.linalg.norm(x.rest[here] - y.rest[there], axis=1).max() < 0.12 * x.size
@@ -110,9 +115,14 @@ def test_nothing_is_said_where_the_maps_do_not_agree(bodies):
 @pytest.mark.parametrize("top", [None, -0.7])
 def test_exchanged_legs_are_found_and_put_right(bodies, end, top):
     x, y = bodies
-    start = run(repaired_start_steps(x.shape, y.shape, exchanged(x, y, end, top)))
+    maps = exchanged(x, y, end, top)
+    start = run(repaired_start_steps(x.shape, y.shape, maps))
     assert start is not None
     assert start.origin == "limbs"
+    # Either side sees it by itself.
+    back = run(repaired_start_steps(y.shape, x.shape, PointMaps(maps.on_x, maps.on_y)))
+    assert is_seen_from(x, pairs(start)[0])
+    assert is_seen_from(y, pairs(back)[0])
     assert_true(x, y, start)
     assert {tuple(np.sign(x.rest[v, :2])) for v in pairs(start)[0] if x.leg(end)[v]} >= {(end[0], 1), (end[0], -1)}
 
@@ -144,4 +154,6 @@ def test_legs_that_only_the_way_back_exchanges_are_found(bodies):
     maps = PointMaps(truth(x, y).on_y, exchanged(x, y, FORE, -0.6).on_x)
     start = run(repaired_start_steps(x.shape, y.shape, maps))
     assert start is not None
+    assert not is_seen_from(x, pairs(start)[0])
+    assert is_seen_from(y, pairs(start)[1])
     assert_true(x, y, start)
