@@ -104,22 +104,6 @@ class Layer:
     closing: Bools
 
 
-@dataclass(frozen=True, eq=False)
-class Pushed:
-    """An item that was pushed out.
-
-    Attributes
-    ----------
-    positions : (n, 3) array of float
-        Where its vertices are now.
-    through : float
-        What part of its samples is still below what it lies on.
-    """
-
-    positions: Floats
-    through: float
-
-
 def layer_of(
     surface_before: Surface,
     surface: Surface,
@@ -189,9 +173,8 @@ def _lids(middles: Floats, item: TriangleMesh, unit: float) -> Bools:
         return np.zeros(item.triangle_count, bool)
     own = item.vertices[item.triangles].mean(axis=1)
     there = np.isfinite(cKDTree(middles).query(own, distance_upper_bound=_ONE * unit)[0])
-    neighbours = triangle_neighbours(twins_of(item.vertices, item.triangles))
-    one, side = np.nonzero(neighbours >= 0)
-    other, normals = neighbours[one, side], item.triangle_normals
+    other, normals = triangle_neighbours(twins_of(item.vertices, item.triangles)).ravel(), item.triangle_normals
+    one = np.arange(item.triangle_count).repeat(3)
     flat = np.einsum("li,li->l", normals[one], normals[other]) > _CROSSING
     labels = joined_components(item.triangle_count, one[flat], other[flat])
     return np.isin(labels, labels[there])
@@ -214,8 +197,8 @@ def pushed_out(
     layers: Sequence[Layer],
     fixed: Bools,
     unit: float,
-) -> Pushed:
-    """Push an item out of what is below it.
+) -> Floats:
+    """Push an item out of what is below it: where its vertices are then, (n, 3).
 
     Where samples of it are below, or vertices of what is below are above it, the cloth is moved along the normals
     there; the move is as smooth as that allows, so that folds and seams keep their shape.
@@ -243,18 +226,13 @@ def pushed_out(
     shares = np.asarray((samples != 0).sum(axis=0)).ravel()
     sample_mass = samples @ (mass / np.maximum(shares, 1))
     tolerance = 1e-4 * unit
-    through = 0.0
     surface = Surface(mesh)
     sides = [(_Above(layer, samples.shape[0]), _Under(layer, len(positions), unit)) for layer in layers]
     for number in range(_ROUNDS):
         item, all_places = surface.moved(positions), number < _SMOOTHLY
         rows, moves, counts = _needed(item, samples, sample_mass, sides, free=free, all_places=all_places)
-        if rows is None:
-            through = 0.0
-            break
         needed = np.linalg.norm(moves, axis=1)
-        through = float((needed > 5 * tolerance).sum() / samples.shape[0])
-        if needed.max() < tolerance:
+        if rows is None or needed.max() < tolerance:
             break
         moves *= np.minimum(1, _LARGEST_STEP * unit / np.maximum(needed, tolerance))[:, None]
         if all_places:
@@ -263,7 +241,7 @@ def pushed_out(
             positions = positions + factor.solve(weighted.T @ moves) * free[:, None]
         else:
             positions = positions + _directly(rows, moves) * free[:, None]
-    return Pushed(positions, through)
+    return positions
 
 
 def _needed(

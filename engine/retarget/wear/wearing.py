@@ -61,7 +61,7 @@ _NOTHING = 5e-4
 """A push over less than this, in the same unit, is none."""
 
 _SUNK = 0.002
-"""How far within what it lay on a rigid piece may be in places, in the same unit: 3 mm on a human."""
+"""How far within what it lay on a place of an item may be, in the same unit, to show: 3 mm on a human."""
 
 _FASTENED = 0.02
 """How far from a rigid piece, in the same unit, cloth is that it is fastened to."""
@@ -432,11 +432,10 @@ def _push(
     rigid = work.pieces >= 0
     fixed = rigid if item.left is None else rigid | item.left
     laplace = laplace_beltrami(now)
-    pushed = pushed_out(mesh, start, laplace, samples[0], layers=layers, fixed=fixed, unit=new_unit)
-    positions = pushed.positions
+    positions = pushed_out(mesh, start, laplace, samples[0], layers=layers, fixed=fixed, unit=new_unit)
     if rigid.any():
         positions = _with_pieces(work, positions, layers)
-    work.positions, work.through = positions, pushed.through + _sunk(positions, np.flatnonzero(rigid), layers, new_unit)
+    work.positions, work.through = positions, _sunk(samples[0] @ positions, layers, new_unit)
     moved = np.linalg.norm(positions - start, axis=1)
     work.pushed = np.where(moved > _NOTHING * new_unit, moved, 0.0)
 
@@ -469,13 +468,14 @@ def _with_pieces(work: _Work, positions: Floats, layers: Sequence[Layer]) -> Flo
     return moved
 
 
-def _sunk(positions: Floats, rigid: Ints, layers: Sequence[Layer], unit: float) -> float:
-    """Tell what part of an item's vertices are rigid ones, (r,), that lay outside and are clearly inside now."""
-    deep = np.zeros(len(rigid), bool)
+def _sunk(points: Floats, layers: Sequence[Layer], unit: float) -> float:
+    """Tell what part of an item's samples, (s, 3), lay outside and are clearly inside now, 0 to 1."""
+    deep = np.zeros(len(points), bool)
     for layer in layers:
-        found = layer.surface.clearance(positions[rigid], layer.starts[rigid])
-        deep |= np.isfinite(layer.wanted[rigid]) & found.known & (found.distances < -_SUNK * unit)
-    return float(deep.sum() / len(positions))
+        lying = np.flatnonzero(np.isfinite(layer.wanted))
+        found = layer.surface.clearance(points[lying], layer.starts[lying])
+        deep[lying] |= found.known & (found.distances < -_SUNK * unit)
+    return float(deep.mean())
 
 
 def _fitted(work: _Work, skin: Surface, source_to_target: SurfaceMap, units: tuple[float, float]) -> FittedItem:
