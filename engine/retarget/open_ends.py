@@ -8,11 +8,9 @@ from typing import Final
 import numpy as np
 
 from ..mesh.connectivity.components import joined_components
+from ..mesh.connectivity.welded_parts import WeldedParts
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Floats
-
-_COINCIDENT: Final = 1e-6
-"""Vertices closer than this part of the diagonal of the bounding box are one: meshes are split at UV seams."""
 
 _LEAST_GIRTH: Final = 0.2
 """An opening counts from this length on, in units of the root of the surface's area: a sleeve has about 0.25,
@@ -29,7 +27,7 @@ def open_ends(mesh: TriangleMesh) -> int:
     Parameters
     ----------
     mesh : TriangleMesh
-        The surface.  Vertices at the same place count as one.
+        The surface.  Seams that it was cut open at, as for UVs, are closed.
 
     Returns
     -------
@@ -37,27 +35,18 @@ def open_ends(mesh: TriangleMesh) -> int:
         How many boundary curves there are whose length is a good part of the root of its area, and whose middle is
         outside of the other pieces: an opening that a piece goes into, as a leg into a boot, is no end of the whole.
     """
-    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
-    cells = np.round(mesh.vertices / (_COINCIDENT * size)).astype(np.int64)
-    _, place = np.unique(cells, axis=0, return_inverse=True)
-    corners = place.ravel()[mesh.triangles]
-    ends = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    ends = ends[ends[:, 0] != ends[:, 1]]
-    edges, counts = np.unique(ends, axis=0, return_counts=True)
-    border = edges[counts == 1]
+    parts = WeldedParts.of(mesh)
+    points, border = parts.positions, parts.closed.boundary_edges
     if not len(border):
         return 0
-    points = np.zeros((int(place.max()) + 1, 3))
-    points[place.ravel()] = mesh.vertices
     lengths = np.linalg.norm(points[border[:, 1]] - points[border[:, 0]], axis=1)
     curve = joined_components(len(points), *border.T)[border[:, 0]]
     girths = np.bincount(curve, lengths)
-    piece = joined_components(len(points), *edges.T)
     count = 0
     for number in np.flatnonzero(girths > _LEAST_GIRTH * np.sqrt(mesh.area)):
         own = curve == number
         middle = lengths[own] @ points[border[own]].mean(axis=1) / girths[number]
-        others = corners[piece[corners[:, 0]] != piece[border[own][0, 0]]]
+        others = parts.triangles[parts.labels[parts.triangles[:, 0]] != parts.labels[border[own][0, 0]]]
         count += abs(_winding_number(points[others] - middle)) < _FILLED
     return int(count)
 

@@ -27,6 +27,15 @@ def test_a_seam_is_no_end():
     assert open_ends(loose) == 2
 
 
+def test_a_seam_that_is_not_quite_closed_is_no_end_wherever_it_stands():
+    vertices, triangles = cylinder()
+    corners = vertices[triangles].reshape(-1, 3)
+    random = np.random.default_rng(0)
+    corners += 1e-7 * random.standard_normal(corners.shape)
+    for shift in random.uniform(-1, 1, (10, 3)):
+        assert open_ends(TriangleMesh(corners + shift, np.arange(len(corners)).reshape(-1, 3))) == 2
+
+
 @pytest.mark.parametrize("turned", [False, True])
 def test_an_opening_that_another_piece_goes_into_is_no_end(turned):
     """A ball in one end of a tube, as a neck in a collar; far away it fills nothing."""
