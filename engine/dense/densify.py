@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import NamedTuple
 
+from numpy.typing import ArrayLike
+
 from ..mesh.reflection import reflected_mesh, reflected_points
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
@@ -17,14 +19,15 @@ from ..registration.prolongation import lift_steps
 from ..registration.registration import POLISH, Registration, Stage
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
+from ..runtime.errors import MatchError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
-from ..runtime.progress import Progress, Steps, at_once, within
+from ..runtime.progress import Progress, Steps, at_once, in_turn, within
 from ..runtime.worker import call_helpers
 from ..shapes.enclosing_surface import with_limbs_steps
 from ..shapes.genus_reduction import evened_steps
 from ..shapes.landmarks import placed_at_vertices
 from ..shapes.prepared_surface import PreparedSurface
-from ..shapes.shape import Shape
+from ..shapes.shape import Shape, check_surface, left_out_of
 from ..shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
 from .components.extended_maps import WholeMap, whole_maps_steps
 from .components.masked_maps import piece_of, with_pieces_only
@@ -33,6 +36,9 @@ from .dense_hypotheses import SparseStart
 from .dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from .functional_maps import nearest_both_ways
 from .quality import DenseMatch, assess_maps, with_alternatives, with_pieces
+
+_FEWEST = 3
+"""Pairs of points that a correspondence to be extended has at least: fewer do not say how surfaces lie."""
 
 _SAMPLES = 512
 """Samples of each surface that hypotheses are compared at."""
@@ -52,6 +58,7 @@ def densify_steps(
     source_points: SurfacePoints,
     target_points: SurfacePoints,
     *,
+    excluded: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
     maps: tuple[SurfaceMap | None, SurfaceMap | None] = (None, None),
     margin: float | None = None,
     alternatives: int = 0,
@@ -68,6 +75,8 @@ def densify_steps(
         found in one direction, which is the other one as well.
     source_points, target_points : SurfacePoints
         Corresponding points (k,) on them: some twenty, spread over the surface, are needed at least.
+    excluded : pair of (n,) array_like of bool, optional
+        Vertices of the source and of the target to leave out.
     maps : pair of SurfaceMap, optional
         Of two meshes, maps there and back by another correspondence: what has no partner by these has none by this
         one, if that is much.
@@ -85,12 +94,20 @@ def densify_steps(
     Raises
     ------
     MatchError
-        If a point does not lie on the main part of its mesh.
+        If a point does not lie on the main part of its mesh, or there are fewer than three pairs of them.
+    MeshError
+        If a surface is none.
     """
+    if not len(source_points) == len(target_points) >= _FEWEST:
+        raise MatchError(
+            f"{len(source_points)} points of the source and {len(target_points)} of the target cannot be extended to a "
+            f"map: give as many of one as of the other, {_FEWEST} at least."
+        )
     call_helpers()
-    covered = _piece_of(source, maps[0], source_points), _piece_of(target, maps[1], target_points)
-    x = yield from within(_shape_steps(source, "source", covered[0], source_points), 0.0, 0.1)
-    y = yield from within(_shape_steps(target, "target", covered[1], target_points), 0.1, 0.2)
+    first = _piece_of(source, "source", maps[0], source_points)
+    covered = first, _piece_of(target, "target", maps[1], target_points)
+    ends = zip((source, target), ("source", "target"), excluded, covered, (source_points, target_points), strict=True)
+    x, y = yield from within(in_turn(_shape_steps(*end) for end in ends), 0.0, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     x, y = finer_shapes(x, y)
     start = SparseStart(_rows(x, source_points), _rows(y, target_points), "given")
@@ -114,18 +131,31 @@ def densify_steps(
 densify = at_once(densify_steps)
 
 
-def _piece_of(surface: TriangleMesh | Shape, found: SurfaceMap | None, points: SurfacePoints) -> Bools | None:
-    """Tell which vertices of a mesh have a partner by an earlier map; a shape is taken as it is."""
+def _piece_of(
+    surface: TriangleMesh | Shape, name: str, found: SurfaceMap | None, points: SurfacePoints
+) -> Bools | None:
+    """Tell which vertices of a mesh that points lie on have a partner by an earlier map; a shape is taken as it is."""
+    check_surface(surface, name)
+    mesh = surface.original if isinstance(surface, Shape) else surface
+    if points.triangles.max() >= mesh.triangle_count or (mesh.triangles[points.triangles] != points.corners).any():
+        raise MatchError(f"The points of the {name} do not lie on it, but on another mesh.")
     return None if isinstance(surface, Shape) else piece_of(surface, found, points.nearest_vertices)
 
 
 def _shape_steps(
-    surface: TriangleMesh | Shape, name: str, covered: Bools | None, points: SurfacePoints
+    surface: TriangleMesh | Shape,
+    name: str,
+    excluded: ArrayLike | None,
+    covered: Bools | None,
+    points: SurfacePoints,
 ) -> Steps[Shape]:
-    """Prepare what is covered of a mesh, so that points lie on it, or return a shape as it is."""
+    """Prepare what is covered and not excluded of a mesh, so that points lie on it, or return a shape as it is."""
+    left_out = left_out_of(surface, name, excluded)
     if isinstance(surface, Shape):
         return surface
-    shape = yield from within(Shape.steps(surface, name, excluded=None if covered is None else ~covered), 0.0, 0.7)
+    if covered is not None:
+        left_out = ~covered if left_out is None else left_out | ~covered
+    shape = yield from within(Shape.steps(surface, name, excluded=left_out), 0.0, 0.7)
     return (yield from within(with_limbs_steps(shape, name, points.nearest_vertices), 0.7, 1.0))
 
 

@@ -13,14 +13,14 @@ from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools
 from ..runtime.background import can_go_beside
-from ..runtime.errors import MatchError, MeshError, SettingsError
+from ..runtime.errors import MatchError, SettingsError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, at_once, within
 from ..runtime.worker import call_helpers
 from ..shapes.borders import has_border, longest_border
 from ..shapes.known_shapes import KnownShapes
 from ..shapes.prepared_surface import PreparedSurface, prepared_steps
-from ..shapes.shape import Shape
+from ..shapes.shape import Shape, check_surface, left_out_of
 from .alike_match import alike_match_steps
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import OverlapMatch, overlap_match_steps
@@ -120,14 +120,18 @@ def match_steps(
         If a surface has too few vertices for the points that were asked for, landmarks cannot be used, or vertices are
         excluded from a `Shape`, which was made with or without them.
     MeshError, SettingsError
-        If a surface is given by arrays, or the settings by a dictionary.
+        If a surface is none, as its arrays, or the settings are a dictionary.
 
     References
     ----------
     .. [1] D. Raviv, A. Dubrovina, R. Kimmel, "Hierarchical Matching of Non-rigid Shapes", SSVM 2011.
     """
-    _check_types((source, target), settings)
+    for surface, name in ((source, "source"), (target, "target")):
+        check_surface(surface, name)
+    if isinstance(settings, dict):
+        raise SettingsError("The settings are a dictionary. Make settings of it first: MatchSettings(**settings).")
     settings = settings or MatchSettings()
+    landmarks = None if landmarks is None or not np.size(landmarks) else landmarks
     task = MatchTask(settings, landmarks, assumed=assumed)
     call_helpers()
     x, y = yield from within(_shapes_steps((source, target), excluded, known), 0.0, 0.06)
@@ -145,18 +149,6 @@ def match_steps(
 
 
 match = at_once(match_steps)
-
-
-def _check_types(surfaces: tuple[object, object], settings: object) -> None:
-    """Raise an error if what should be surfaces are arrays, or the settings a dictionary."""
-    for surface, name in zip(surfaces, ("source", "target"), strict=True):
-        if isinstance(surface, (tuple, list, np.ndarray)):
-            raise MeshError(
-                f"The {name} is of the type {type(surface).__name__}. Make a mesh of its vertices and triangles first: "
-                "TriangleMesh(vertices, triangles)."
-            )
-    if isinstance(settings, dict):
-        raise SettingsError("The settings are a dictionary. Make settings of it first: MatchSettings(**settings).")
 
 
 def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float, *, is_sure: bool = False) -> Steps[MatchResult]:
@@ -257,18 +249,14 @@ def _shapes_steps(
     shapes: list[Shape | None] = []
     items: list[_Unprepared] = []
     for surface, name, left_out in zip(surfaces, ("source", "target"), excluded, strict=True):
-        if not isinstance(surface, Shape):
-            item = surface, name, None if left_out is None else np.asarray(left_out, bool)
-            found = None if known is None else known.find(*item)
-            items += [item] if found is None else []
-            shapes.append(found)
-        elif left_out is not None:
-            raise MatchError(
-                f"No vertices can be left out of the {name} any more, because it was prepared before. "
-                "Give the mesh itself, or leave them out when you make the shape."
-            )
-        else:
+        mask = left_out_of(surface, name, left_out)
+        if isinstance(surface, Shape):
             shapes.append(surface)
+            continue
+        item = surface, name, mask
+        found = None if known is None else known.find(*item)
+        items += [item] if found is None else []
+        shapes.append(found)
     share = shared_steps if all(_SMALL < item[0].vertex_count <= MOST_SENT for item in items) else here_steps
     prepared = iter(zip(items, (yield from share(_prepared_mesh_steps, None, items)), strict=True))
     return [_new_shape(*next(prepared), known) if shape is None else shape for shape in shapes]

@@ -25,7 +25,7 @@ from ..runtime.progress import Steps, at_once, run, within
 from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
 from ..shapes.landmarks import locate_landmarks
 from ..shapes.prepared_surface import PreparedSurface
-from ..shapes.shape import Shape
+from ..shapes.shape import Shape, check_surface
 from ..shapes.shape_preparation import finer_shapes
 
 _DETAILED = 100
@@ -54,9 +54,9 @@ def refine_map_steps(
     """Make a dense map better around landmarks.
 
     The source is laid smoothly onto the target where the map takes it, and registered from there, held at the
-    landmarks; then the target onto the source.  So
-    the map stays what it is as a whole: one that takes a limb to another limb is to be matched again.  Nothing is
-    sampled, compared or proposed, which takes most of the time of a match.
+    landmarks; then the target onto the source.  So the map stays what it is as a whole: one that takes a limb to
+    another limb is to be matched again.  Nothing is sampled, compared or proposed, which takes most of the time of a
+    match.
 
     Parameters
     ----------
@@ -79,8 +79,14 @@ def refine_map_steps(
     Raises
     ------
     MatchError
-        If there are no landmarks, or they cannot be used.
+        If there are no landmarks, they cannot be used, or a map is not one of these surfaces.
+    MeshError
+        If a surface is none.
     """
+    for surface, name in ((source, "source"), (target, "target")):
+        check_surface(surface, name)
+    if target_to_source is not None:
+        target_to_source.check(target, source)
     mirrored = source_to_target.orientation(source, target) < 0
     ends = _ends(landmarks)
     pieces = piece_of(source, source_to_target, ends[0]), piece_of(target, target_to_source, ends[1])

@@ -19,7 +19,7 @@ from ..runtime.arrays import Bools, Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
 from ..runtime.progress import Progress, Steps, at_once, part_of, within
-from ..shapes.shape import Shape
+from ..shapes.shape import Shape, check_surface
 
 _LEVELS = (np.arange(64) + 0.5) / 64  # at which the quantiles of distances are taken
 
@@ -165,6 +165,8 @@ def retrieve_steps(
     settings = settings or RetrievalSettings()
     if not len(shapes):
         raise MatchError("There are no shapes to compare with: choose at least one beside the query.")
+    for number, surface in enumerate([query, *shapes]):
+        check_surface(surface, f"shape {number} of the list" if number else "query")
     source = query if isinstance(query, Shape) else Shape(query)
     targets = [shape if isinstance(shape, Shape) else Shape(shape) for shape in shapes]
     _check(source, "The query", settings)

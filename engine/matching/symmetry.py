@@ -21,7 +21,7 @@ from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, at_once, part_of, within
-from ..shapes.shape import Shape
+from ..shapes.shape import Shape, check_surface
 
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
 _MOVED_SHARE = 0.3  # part of the coarse points that has to be in another place: the others may lie on the axis
@@ -137,6 +137,7 @@ def find_symmetry_steps(
        IJCV 89, 2010.
     """
     settings = settings or MatchSettings()
+    check_surface(surface)
     shape = surface if isinstance(surface, Shape) else Shape(surface)
     if shape.mesh.vertex_count < settings.points:
         raise MatchError(

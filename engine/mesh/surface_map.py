@@ -235,7 +235,7 @@ class SurfaceMap:
             units of the square root of the area: 1 where the map keeps lengths.  An edge without length has no stretch
             and is NaN.
         """
-        self._check(domain, image)
+        self.check(domain, image)
         a, b = domain.edges.T
         mapped = np.linalg.norm(self.positions[b] - self.positions[a], axis=1) / np.sqrt(image.area)
         original = domain.edge_lengths / np.sqrt(domain.area)
@@ -260,7 +260,7 @@ class SurfaceMap:
         Then most of it is turned over, and what fits the map best on the whole is a reflection: where only the
         triangles of one of the two are the wrong way round, it is a rotation.
         """
-        self._check(domain, image)
+        self.check(domain, image)
         shares = domain.vertex_areas / domain.area
         here, there = (each - shares @ each for each in (domain.vertices, self.positions))
         spread = there.T @ (shares[:, None] * here)
@@ -275,7 +275,7 @@ class SurfaceMap:
             1 if the triangle of the three mapped corners looks to the side of the image's normal there, -1 if to the
             other, 0 if it has no area: the sign of the Jacobian of the map.
         """
-        self._check(domain, image)
+        self.check(domain, image)
         normals = self.transfer(image.vertex_normals)
         signs = np.empty(domain.triangle_count, np.int8)
         for part in slices(domain.triangle_count, _CHUNK):
@@ -293,11 +293,17 @@ class SurfaceMap:
     def _area_share(domain: TriangleMesh, selected: Bools) -> float:
         return float(domain.triangle_areas[selected].sum() / domain.area)
 
-    def _check(self, domain: TriangleMesh, image: TriangleMesh) -> None:
-        """Raise an error if these are not the meshes that the map leads from and to."""
+    def check(self, domain: TriangleMesh, image: TriangleMesh) -> None:
+        """Raise an error if these are not the meshes that the map leads from and to, by their numbers of vertices.
+
+        Raises
+        ------
+        MatchError
+            If they are not.
+        """
         if domain.vertex_count != len(self):
             raise MatchError(
-                f"The map is one of {len(self)} vertices, but the mesh it is measured on has {domain.vertex_count}."
+                f"The map is one of {len(self)} vertices, but the mesh it should lead from has {domain.vertex_count}."
             )
         self._check_image(image)
 

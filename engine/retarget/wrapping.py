@@ -115,9 +115,13 @@ def wrap_steps(
     MatchError
         If the maps are not those of the surfaces, or do not hold the source anywhere.
     """
-    if len(source_to_target) != source.vertex_count or len(target_to_source) != target.vertex_count:
-        raise MatchError("The maps belong to other meshes than those to be wrapped. Match them again.")
-    wanted = source_to_target.positions if registered is None else registered
+    source_to_target.check(source, target)
+    target_to_source.check(target, source)
+    wanted = source_to_target.positions if registered is None else np.asarray(registered, np.float64)
+    if wanted.shape != source.vertices.shape:
+        raise MatchError(
+            f"There are {source.vertex_count} vertices, but places where they belong of the shape {wanted.shape}."
+        )
     if source_to_target.mirrors(source, target):  # what lies there without a crease is the mirror image
         source = reflected_mesh(source)
         target_to_source = reflected_map(source, target_to_source)

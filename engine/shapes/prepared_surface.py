@@ -191,6 +191,7 @@ def prepared_steps(
     kept = np.arange(mesh.triangle_count)
     part, left_out = mesh, np.zeros(mesh.vertex_count, bool)
     if excluded is not None:
+        excluded = np.asarray(excluded, bool)
         if excluded.shape != (mesh.vertex_count,):
             raise MatchError(
                 f"The vertices to leave out of the {name} should be given by {mesh.vertex_count} values, one for each "

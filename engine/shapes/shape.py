@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.geodesics import GeodesicSolver
 from ..geometry.laplacian import LaplaceBeltrami, laplace_beltrami
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.errors import MatchError, MeshError
 from ..runtime.progress import Steps, run
 from .prepared_surface import PreparedSurface, prepared_steps
 from .proxy import MATCHED, Proxy
@@ -285,3 +287,43 @@ class Shape:
     def unit_functions(self, count: int | None = None) -> Floats:
         """First eigenfunctions at all vertices, in units in which the area is one, (n, count), or all."""
         return self.spectrum.functions[:, :count] * np.sqrt(self.laplace.area)
+
+
+def check_surface(surface: object, name: str = "surface") -> None:
+    """Raise an error if what should be a surface is not: its vertices, say, or None.
+
+    Parameters
+    ----------
+    surface : object
+        What was given for a mesh, or the shape of one.
+    name : str
+        What the error calls it.
+
+    Raises
+    ------
+    MeshError
+        If it is neither.
+    """
+    if not isinstance(surface, (TriangleMesh, Shape)):
+        raise MeshError(
+            f"The {name} is of the type {type(surface).__name__}. Make a mesh of its vertices and triangles first: "
+            "TriangleMesh(vertices, triangles)."
+        )
+
+
+def left_out_of(surface: TriangleMesh | Shape, name: str, excluded: ArrayLike | None) -> Bools | None:
+    """Return which vertices (n,) are to be left out of a mesh, or None; nothing can be left out of a shape any more.
+
+    Raises
+    ------
+    MatchError
+        If it should.
+    """
+    if excluded is None:
+        return None
+    if isinstance(surface, Shape):
+        raise MatchError(
+            f"No vertices can be left out of the {name} any more, because it was prepared before. "
+            "Give the mesh itself, or leave them out when you make the shape."
+        )
+    return np.asarray(excluded, bool)

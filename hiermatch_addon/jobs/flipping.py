@@ -14,6 +14,7 @@ from ..scene.character import read_surface
 from ..scene.pair import check_pair
 from ..storage.answer_writing import following_steps, mapped_contents_steps, restored
 from ..storage.contents import contents_steps
+from ..storage.excluded_regions import excluded_vertices, region_names
 from ..storage.halves import find_keyed
 from ..storage.stored_match import StoredMatch
 from ..storage.vertex_maps import StoredMaps, read_all_maps
@@ -77,6 +78,11 @@ class FlipJob(RewritingJob):
             read_surface(source.obj, depsgraph, use_modifiers=use_modifiers),
             read_surface(target.obj, depsgraph, use_modifiers=use_modifiers),
         )
+        left_out = [  # a region that is gone by now leaves nothing out
+            excluded_vertices(side.obj, name if name in region_names(side.obj) else "")
+            for side, name in zip((source, target), stored.written.excluded, strict=True)
+        ]
+        self._excluded = left_out[0], left_out[1]
         kept = read_all_maps(source.obj, target.obj, half.prefix, count)
         self._maps, self._shown = dict(zip(stored.order, kept, strict=True)), stored.chosen
         chosen = number if number >= 0 else (stored.chosen + 1) % count
@@ -102,6 +108,7 @@ class FlipJob(RewritingJob):
                 *meshes,
                 points.source_points,
                 points.target_points,
+                excluded=self._excluded,
                 maps=known,
                 margin=stored.margin,
                 alternatives=stored.turned,

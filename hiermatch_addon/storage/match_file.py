@@ -190,7 +190,7 @@ def _header(match: MatchFile) -> dict[str, Any]:
         **sides,
         "answers": answers,
         "chosen": stored.chosen,
-        "written": dict(vars(stored.written)),
+        "written": {name: value for name, value in vars(stored.written).items() if isinstance(value, bool)},
         "notes": list(stored.notes),
         "left_out": list(stored.left_out),
     }
@@ -249,13 +249,12 @@ def _match_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> 
             raise ValueError("source and target have not as many points")
         answers[number] = _answer(names[number], described[number], points, distortion)
     maps, *others = (read.maps(_start(place), counts) for place in range(len(order)))
+    written: dict[str, Any] = {name: bool(value) for name, value in header["written"].items()}
     stored = StoredMatch(
         names=(str(sides[0]["name"]), str(sides[1]["name"])),
         topologies=(str(sides[0].get("topology", "")), str(sides[1].get("topology", ""))),
         positions=(str(sides[0].get("positions", "")), str(sides[1].get("positions", ""))),
-        written=replace(
-            Written(**{name: bool(value) for name, value in header["written"].items()}), dense=maps is not None
-        ),
+        written=replace(Written(**written), dense=maps is not None),
         source_points=source_points,
         answers=tuple(answers[number] for number in sorted(answers)),
         chosen=chosen,

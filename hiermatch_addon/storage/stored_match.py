@@ -39,6 +39,8 @@ class Written:
         Which kinds are written.
     dense : bool
         Whether the meshes keep dense maps.
+    excluded : pair of str
+        Names of the regions of source and target that were left out; exported files do not have them.
     """
 
     use_modifiers: bool
@@ -47,6 +49,7 @@ class Written:
     distortion: bool
     confidence: bool = False  # what a file of an older version says nothing of was not written
     dense: bool = False
+    excluded: tuple[str, str] = ("", "")
 
 
 @dataclass(frozen=True, eq=False)
@@ -344,7 +347,7 @@ class StoredMatch:
             names=(source["names"]["source"], source["names"]["target"]),
             topologies=(source["topology"], target["topology"]),
             positions=(source.get("positions", ""), target.get("positions", "")),
-            written=Written(**source["written"]),
+            written=Written(**source["written"] | {"excluded": tuple(source["written"].get("excluded", ("", "")))}),
             source_points=CornerPoints.from_plain(source["points"]),
             answers=tuple(
                 Answer.from_plain(name, plain, target["points"][name]) for name, plain in source["answers"].items()

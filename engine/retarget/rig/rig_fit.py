@@ -99,6 +99,8 @@ def fit_rig_steps(
         If the weights do not fit the source and the bones, or no bone moves the main part of the source.
     """
     weights = _checked(weights, source, skeleton)
+    source_to_target.check(source, target)
+    target_to_source.check(target, source)
     bodies, maps = (source, target), (source_to_target, target_to_source)
     if not source_to_target.mirrors(source, target):
         return (yield from _fitted_steps(bodies, maps, weights, skeleton, (refine, known)))

@@ -96,6 +96,8 @@ def carry_standing_rig_steps(
     ------
     RigError
         If there is no bone, or not one normal for each.
+    MatchError
+        If the maps are not those of the surfaces.
 
     References
     ----------
@@ -105,6 +107,8 @@ def carry_standing_rig_steps(
         raise RigError(
             f"{len(skeleton)} bones need one normal each, at least one, but got an array of the shape {normals.shape}."
         )
+    source_to_target.check(source, target)
+    target_to_source.check(target, source)
     yield Progress(0.0, "Carrying joints")
     field = _Field.of(source, target, source_to_target, target_to_source)
     places = joint_places(skeleton)

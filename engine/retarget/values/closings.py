@@ -167,13 +167,8 @@ def _check(
             f"Offsets of the source and of the target should have the shapes {expected[0]} and {expected[1]}, "
             f"but have {offsets.shape} and {carried.shape}."
         )
-    counts = source.vertex_count, target.vertex_count
-    for found, ends in zip(maps, (counts, counts[::-1]), strict=True):
-        if (len(found), found.image_vertex_count) != ends:
-            raise MatchError(
-                f"A map leads from {len(found)} to {found.image_vertex_count} vertices, but the meshes have "
-                f"{ends[0]} and {ends[1]}: they do not belong together."
-            )
+    maps[0].check(source, target)
+    maps[1].check(target, source)
 
 
 class _Seeking:

@@ -14,6 +14,7 @@ from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools
 from ...runtime.background import can_go_beside
+from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
 from .loose_weights import with_loose_parts
 from .rigid_parts import with_rigid_parts, with_single_bones
@@ -117,7 +118,15 @@ def carry_weights_steps(
     -------
     CarriedWeights
         The weights at the vertices of the target.
+
+    Raises
+    ------
+    MatchError
+        If weights, surfaces and map do not belong together.
     """
+    target_to_source.check(target, source)
+    if weights.shape[0] != source.vertex_count:
+        raise MatchError(f"There are weights of {weights.shape[0]} vertices, but the source has {source.vertex_count}.")
     yield Progress(0.0, "Carrying weights")
     result = carried(weights, target_to_source)
     torn = np.zeros(len(target_to_source), bool)

@@ -1858,9 +1858,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Looking for missing parts": "足りない部分を探しています",
     "Looking for torn vertices": "引き離された頂点を探しています",
     "Filling in weights": "ウェイトを補充しています",
-    "The maps belong to other meshes than those to be wrapped. Match them again.": (
-        "マップはラップするメッシュとは別のメッシュのものです。再マッチングしてください。"
-    ),
     "The map does not hold the source anywhere on the target: the two are too different. Match them again.": (
         "マップはターゲットのどこにもソースを留められません。両者が違いすぎます。再マッチングしてください。"
     ),

@@ -1536,9 +1536,6 @@ MESSAGES: Final[dict[str, str]] = {
     "Looking for missing parts": "正在查找缺失的部分",
     "Looking for torn vertices": "正在查找撕开的顶点",
     "Filling in weights": "正在填充权重",
-    "The maps belong to other meshes than those to be wrapped. Match them again.": (
-        "这些映射属于其他网格，而不是要包裹的网格。请重新匹配。"
-    ),
     "The map does not hold the source anywhere on the target: the two are too different. Match them again.": (
         "映射无法将源固定在目标的任何位置：两者差异过大。请重新匹配。"
     ),

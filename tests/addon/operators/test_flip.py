@@ -103,6 +103,17 @@ class TestAnswers:
         assert written() == expected
         assert summary_values() == told
 
+    def test_what_was_left_out_of_the_match_is_left_out_again(self, pair, monkeypatch):
+        for obj in pair:
+            heights = np.array([vertex.co.z for vertex in obj.data.vertices])
+            high = np.flatnonzero(heights > np.quantile(heights, 0.95))
+            obj.vertex_groups.new(name="Top").add(high.tolist(), 1.0, "REPLACE")
+        left_out = {"exclude_source": "Top", "exclude_target": "Top"}
+        self.test_is_the_same_as_matching_for_the_other(pair, DENSE | left_out, monkeypatch)
+        bpy.data.objects["Source"].vertex_groups.remove(bpy.data.objects["Source"].vertex_groups["Top"])
+        flip()
+        assert summary().answer == 0
+
     @pytest.mark.parametrize("mirrored", [False, True])
     def test_twice_is_as_before(self, pair, mirrored):
         assert pair

@@ -8,6 +8,7 @@ from engine import (
     MatchError,
     MatchQuality,
     MatchSettings,
+    MeshError,
     Shape,
     SurfaceMap,
     SurfacePoints,
@@ -348,6 +349,37 @@ def test_progress_of_a_densification_rises(symmetric, symmetric_result):
         for mesh, places in ((source, preview.source), (target, preview.target)):
             distances = ClosestPoints(mesh).nearest(places).squared_distances
             assert distances.max() < 1e-18 * mesh.area
+
+
+def test_what_is_excluded_is_left_out_of_the_map_of_an_answer_as_well(symmetric, symmetric_result):
+    source, target, rest_x, rest_y = symmetric
+    left_out = [rest[:, 1] > 0.9 * rest[:, 1].max() for rest in (rest_x, rest_y)]
+    mirrored = symmetric_result.alternatives[0]
+    inside = ~left_out[0][mirrored.source_points.nearest_vertices]
+    inside &= ~left_out[1][target.triangles[mirrored.target_points.triangles]].any(axis=1)
+    points = mirrored.source_points.at(inside), mirrored.target_points.at(inside)
+    dense = densify(source, target, *points, excluded=left_out)
+    for found, image, gone in (
+        (dense.source_to_target, target, left_out[1]),
+        (dense.target_to_source, source, left_out[0]),
+    ):
+        assert gone.any()
+        assert not gone[image.triangles[found.triangles]].any()
+    with pytest.raises(MatchError, match="No vertices can be left out of the source"):
+        densify(Shape(source), target, *points, excluded=left_out)
+
+
+def test_points_that_cannot_be_extended_are_refused_in_words(symmetric, symmetric_result):
+    source, target = symmetric[:2]
+    here, there = symmetric_result.source_points, symmetric_result.target_points
+    few = np.arange(2)
+    for points in ((here, there.at(few)), (here.at(few), there.at(few))):
+        with pytest.raises(MatchError, match="cannot be extended to a map"):
+            densify(source, target, *points)
+    with pytest.raises(MatchError, match="points of the target do not lie on it"):
+        densify(source, TriangleMesh(*icosphere(2)), here, there)
+    with pytest.raises(MeshError, match="source is of the type ndarray"):
+        densify(source.vertices, target, here, there)
 
 
 def test_points_beside_the_main_part_are_refused_in_words(symmetric, symmetric_result):

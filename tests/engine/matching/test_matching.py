@@ -6,7 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import MatchError, MatchSettings, MeshError, SettingsError, Shape, TriangleMesh, match, match_steps
+from engine import (
+    MatchError,
+    MatchSettings,
+    MeshError,
+    SettingsError,
+    Shape,
+    TriangleMesh,
+    find_symmetry,
+    match,
+    match_steps,
+    retrieve,
+)
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
 from tests.shapes import creature, icosphere, permuted, rotation
@@ -225,6 +236,12 @@ def test_arrays_in_the_place_of_meshes_and_a_dictionary_of_settings_are_refused_
     arrays = bodies[1].vertices, bodies[1].triangles
     with pytest.raises(MeshError, match=r"target is of the type tuple.*TriangleMesh\(vertices, triangles\)"):
         match(bodies[0], arrays)
+    with pytest.raises(MeshError, match="source is of the type NoneType"):
+        match(None, bodies[1])
+    with pytest.raises(MeshError, match="shape 2 of the list is of the type tuple"):
+        retrieve(bodies[0], [bodies[1], arrays])
+    with pytest.raises(MeshError, match="surface is of the type ndarray"):
+        find_symmetry(bodies[0].vertices)
     with pytest.raises(SettingsError, match=r"MatchSettings\(\*\*settings\)"):
         match(*bodies[:2], {"points": 40})
 

@@ -55,6 +55,11 @@ def result(whole, half):
     return match(whole[0], half[0], QUICK)
 
 
+def test_no_landmarks_are_as_if_none_were_asked_for(whole, half, result):
+    again = match(whole[0], half[0], QUICK, landmarks=[])
+    np.testing.assert_array_equal(again.source_to_target.positions, result.source_to_target.positions)
+
+
 def errors(found, rest, image_rest):
     """Distance at rest of each vertex from its image, over the length of the body."""
     images = np.einsum("kc,kcd->kd", found.barycentric, image_rest[found.corners])

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import MatchError, SurfaceMap, SurfacePoints, TriangleMesh
+from engine import MatchError, MeshError, SurfaceMap, SurfacePoints, TriangleMesh
 from engine.matching.refinement import distortion_after, placed_by_map, point_distortions, refine_map
 from tests.shapes import creature, icosphere, posed
 
@@ -83,6 +83,14 @@ def test_no_landmarks(pair):
 def test_landmarks_that_cannot_be(pair):
     with pytest.raises(MatchError, match="no such vertex"):
         refine_map(*pair, identity(pair[1]), [[0, 10**6]])
+
+
+def test_what_is_no_surface_and_maps_of_other_meshes_are_refused(pair):
+    few, own = identity(TriangleMesh(np.eye(3), [[0, 1, 2]])), identity(pair[1])
+    with pytest.raises(MatchError, match="one of 3 vertices"):
+        refine_map(*pair, own, [[0, 0]], target_to_source=few)
+    with pytest.raises(MeshError, match="target is of the type ndarray"):
+        refine_map(pair[0], pair[1].vertices, own, [[0, 0]])
 
 
 class TestDistortions:

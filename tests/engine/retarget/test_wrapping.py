@@ -164,8 +164,10 @@ def test_the_own_place_is_that_of_least_motion():
 
 def test_maps_of_other_meshes_are_refused(bodies):
     source, target, there, back = bodies
-    with pytest.raises(MatchError, match="other meshes"):
+    with pytest.raises(MatchError, match="the mesh it should lead from has"):
         run(wrap_steps(target, source, there, back))
+    with pytest.raises(MatchError, match=r"places where they belong of the shape \(3, 3\)"):
+        run(wrap_steps(source, target, there, back, np.zeros((3, 3))))
     doubted = SurfaceMap(there.points, np.zeros(len(there)), target.vertex_count)
     with pytest.raises(MatchError, match="does not hold"):
         run(wrap_steps(source, target, doubted, back))

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from engine import ClosestPoints, KnownShapes, RigError, Shape, Skeleton, SurfaceMap, TriangleMesh, fit_rig
+from engine import ClosestPoints, KnownShapes, MatchError, RigError, Shape, Skeleton, SurfaceMap, TriangleMesh, fit_rig
 from engine.mesh.reflection import reflected_map, reflected_mesh
 from engine.retarget.rig.bone_fit import skinned
 from engine.runtime.progress import run
@@ -204,6 +204,13 @@ def test_weights_that_are_none_are_refused(pair, change, message):
     weights = csr_array(change(pair.weights.toarray()))
     with pytest.raises(RigError, match=message):
         fit_rig(pair.source, pair.target, *pair.maps, weights=weights, skeleton=pair.skeleton)
+
+
+def test_maps_of_other_meshes_are_refused(pair):
+    few = SurfaceMap.identity(TriangleMesh(np.eye(3), [[0, 1, 2]]))
+    for maps in ((few, pair.maps[1]), (pair.maps[0], few)):
+        with pytest.raises(MatchError, match="one of 3 vertices"):
+            fit_rig(pair.source, pair.target, *maps, weights=csr_array(pair.weights), skeleton=pair.skeleton)
 
 
 def test_across_a_map_to_the_mirror_image_all_is_mirrored(pair):

@@ -4,7 +4,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import RigError, Skeleton, SurfaceMap, TriangleMesh, carry_standing_rig, moved_into, standing_share
+from engine import (
+    MatchError,
+    RigError,
+    Skeleton,
+    SurfaceMap,
+    TriangleMesh,
+    carry_standing_rig,
+    moved_into,
+    standing_share,
+)
 from engine.mesh.reflection import reflected_mesh
 from tests.people import HANGING, at_rest_in, person
 from tests.shapes import rotation
@@ -104,6 +113,9 @@ def test_wrong_input_is_refused(someone):
         SurfaceMap(each.points, each.confidence, each.image_vertex_count, np.zeros(len(each), bool)) for each in maps
     ]
     skeleton = someone.rig.skeleton
+    few = SurfaceMap.identity(TriangleMesh(np.eye(3), [[0, 1, 2]]))
+    with pytest.raises(MatchError, match="one of 3 vertices"):
+        carry_standing_rig(someone.mesh, someone.mesh, maps[0], few, skeleton=skeleton, normals=across(skeleton))
     with pytest.raises(RigError, match="nothing in common"):
         carry_standing_rig(someone.mesh, someone.mesh, *nothing, skeleton=skeleton, normals=across(skeleton))
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from engine import SurfaceMap, SurfacePoints, TriangleMesh, run
+from engine import MatchError, SurfaceMap, SurfacePoints, TriangleMesh, run
 from engine.retarget.weights.skin_weights import carried, row_differences, row_sums
 from engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
 from tests.engine.retarget.weights.test_weight_rejection import broken
@@ -39,6 +39,18 @@ def test_torn_vertices_are_filled_in_and_told():
     both = csr_array(np.concatenate([np.ones((mesh.vertex_count, 1)), mask.toarray()], axis=1))
     told = run(carry_weights_steps(both, mesh, mesh, surface_map, telling=np.array([True, False])))
     assert not told.torn.any()
+
+
+def test_weights_and_maps_of_other_meshes_are_refused():
+    vertices, triangles, rest = creature(0.0, 5)
+    mesh, few = TriangleMesh(vertices, triangles), TriangleMesh(np.eye(3), [[0, 1, 2]])
+    weights, own = csr_array(creature_weights(rest)), SurfaceMap.identity(mesh)
+    with pytest.raises(MatchError, match="leads to a mesh of"):
+        run(carry_weights_steps(weights, few, mesh, own))
+    with pytest.raises(MatchError, match="one of 3 vertices"):
+        run(carry_weights_steps(weights, mesh, mesh, SurfaceMap.identity(few)))
+    with pytest.raises(MatchError, match="weights of 3 vertices"):
+        run(carry_weights_steps(csr_array(np.ones((3, 1))), mesh, mesh, own))
 
 
 def test_what_has_no_partner_takes_the_weights_around_it_if_wanted():
