@@ -12,12 +12,17 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ..dense.credibility import may_reach
-from ..dense.dense_hypotheses import MapHypothesis, SparseStart, map_hypotheses_steps, unrefined_hypothesis
+from ..dense.dense_hypotheses import (
+    MapHypothesis,
+    SparseStart,
+    map_domains,
+    map_hypotheses_steps,
+    unrefined_hypothesis,
+)
 from ..dense.dense_registration import EIGENPAIRS
 from ..dense.missing_parts import with_partner
 from ..dense.proposers import are_distinct
 from ..dense.registered_hypotheses import Follower
-from ..dense.spectral_domain import MapDomain
 from ..geometry.best_distinct import best_distinct
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
@@ -177,9 +182,9 @@ def covered_parts_steps(
     everything = np.ones(coarse.mesh.vertex_count, bool), first_images, 1
     followed = shared_steps(_refined_steps, fitter, [*starting, everything])
     *refined, unchanged = yield from within(followed, 0.75, 1.0)
-    least = min((fit.score for fit in unchanged), default=np.inf) - _BETTER
+    bound = min((fit.score for fit in unchanged), default=np.inf) - _BETTER
     ranked = sorted([*fits, *chain.from_iterable(refined)], key=lambda fit: fit.score)
-    credible = [fit for fit in ranked if fit.score <= least and fit.score < ranked[0].score + _CONTESTED]
+    credible = [fit for fit in ranked if fit.score <= bound and fit.score < ranked[0].score + _CONTESTED]
     pieces = [(fitter.covered(fit) | fitter.grown(fit), fit) for fit in credible]
     found = best_distinct(pieces, lambda piece, other: fitter.common_part(piece[0], other[0]) < _SAME)
     return [
@@ -341,10 +346,9 @@ class _Fitter:
         places = whole.vertices[self.whole.samples.vertices[images[:_STARTS]]]
         rows = self.whole.samples.rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
         begin = SparseStart(rows, self.part.samples.rows[:_STARTS], "placement")
-        if known:
-            domains = MapDomain(piece, EIGENPAIRS), MapDomain(self.part, EIGENPAIRS)
-            return _Proposal(piece, unrefined_hypothesis(domains, begin), places)
         try:
+            if known:
+                return _Proposal(piece, unrefined_hypothesis(map_domains(piece, self.part), begin), places)
             hypotheses = yield from within(map_hypotheses_steps(piece, self.part, [begin], search=False), 0.5, 1.0)
         except MatchError:  # the largest of several pieces may be too small
             return None

@@ -153,12 +153,14 @@ class Helper:
 
     def _sent_in_parts(self, order: object, *, is_followed: bool = False) -> Iterator[None]:
         """Send an order; if the helper is gone, the task is over."""
-        messages = self._sent.messages(order, is_followed=is_followed)
         try:
-            for message in messages:
+            for message in self._sent.messages(order, is_followed=is_followed):
                 yield from sent_in_parts(self._orders, message)
         except OSError:
             self.end()
+        except BaseException:  # it waits for the rest of what cannot be packed, or is not sent any more
+            self.end()
+            raise
 
     def look(self, seconds: float = 0.0) -> None:
         """Wait for so long at most until there is a reply, and take it."""

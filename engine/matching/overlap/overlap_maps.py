@@ -162,8 +162,8 @@ def overlap_steps(source: TriangleMesh, target: TriangleMesh, scale: float = 1.0
         return None
     best = found[0]
     margin = best.score - found[1].score if len(found) > 1 else _NO_RIVAL
-    placed = [(fit.positions, back) for back, fit in enumerate(best.fits)]
-    fits = yield from within(shared_steps(_fine_fit_steps, pair, placed), 0.86, 1.0)
+    starts = [(fit.positions, back) for back, fit in enumerate(best.fits)]
+    fits = yield from within(shared_steps(_fine_fit_steps, pair, starts), 0.86, 1.0)
     members, agreement = _members_of_both(pair.surfaces, fits)
     if not (members[0].any() and members[1].any()):
         return None
@@ -273,10 +273,10 @@ def _turned_fit_steps(pair: CoarsePair, registered: tuple[Fit, int]) -> Steps[Sc
     return scored_fit(other, coarse, register_parts(other, coarse, positions, TURNED, marks=marks))
 
 
-def _fine_fit_steps(pair: CoarsePair, placed: tuple[Floats, int]) -> Steps[Fit]:
+def _fine_fit_steps(pair: CoarsePair, start: tuple[Floats, int]) -> Steps[Fit]:
     """Register the first surface (0) or the second (1) from where the coarse one that stands for it is."""
     yield Progress(0.0, _LABEL)
-    positions, back = placed
+    positions, back = start
     source, target = pair.surfaces[::-1] if back else pair.surfaces
     coarse = pair.coarse[back]
     weights = np.zeros(source.count)

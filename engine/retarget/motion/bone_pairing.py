@@ -181,9 +181,11 @@ def pair_bones(
             f"{target.vertex_count} vertices and {len(skeleton)} bones need weights of that shape, but got "
             f"{weights.shape}."
         )
-    for bone in [*(other for _, other in fixed), *alone]:
-        if not 0 <= bone < len(skeleton):
-            raise RigError(f"The target has {len(skeleton)} bones, so there is no bone {bone}.")
+    sources, targets = [own for own, _ in fixed], [*(other for _, other in fixed), *alone]
+    for side, bones, count in (("source", sources, len(rig.skeleton)), ("target", targets, len(skeleton))):
+        for bone in bones:
+            if not 0 <= bone < count:
+                raise RigError(f"The {side} has {count} bones, so there is no bone {bone}.")
     if not weights.nnz:
         weights = nearest_bones(target, skeleton)
     placed = place_joints(rig, source, np.zeros_like(rig.skeleton.heads))

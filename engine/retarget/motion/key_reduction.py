@@ -32,10 +32,12 @@ def reduced_keys(times: Floats, values: Floats, tolerance: float) -> Ints:
     Raises
     ------
     RigError
-        If there is not one row of finite values for each time.
+        If there is not one row of finite values for each time, or times do not increase.
     """
     if values.ndim != 2 or len(values) != len(times) or not np.isfinite(values).all() or tolerance < 0:
         raise RigError("To reduce keys there should be one row of finite values for each time, and a tolerance.")
+    if (np.diff(times) <= 0).any():
+        raise RigError("To reduce keys each should come after the one before.")
     if len(times) <= 1 or np.abs(values - values[0]).max(initial=0.0) <= tolerance:
         return np.arange(min(len(times), 1))
     slopes = slopes_of(times, values)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from ...runtime.arrays import Bools, Floats, Ints, marked
+from ...runtime.arrays import Bools, Floats, Ints, marked, unit_vectors
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, at_once
@@ -134,14 +134,17 @@ def transfer_motion_steps(
     Raises
     ------
     RigError
-        If there is no pair, or pairs name bones that there are not.
+        If there is no pair, pairs name bones that there are not, or something does not fit the rigs.
     """
     settings = settings or MotionSettings()
-    _check(motion, pairing, target, settings)
-    ups = np.array([[0.0, 0, 1]] * 2) if ups is None else ups / np.linalg.norm(ups, axis=1, keepdims=True)
+    connected = np.zeros(len(target), bool) if connected is None else np.asarray(connected, bool)
+    _check(motion, pairing, target, settings, connected)
+    ups = np.array([[0.0, 0, 1]] * 2) if ups is None else unit_vectors(np.asarray(ups, np.float64))
+    if not ups.any(axis=1).all():
+        raise RigError("A direction away from the ground has no length.")
     yield Progress(0.0, "Transferring rotations")
     body = _Body(motion, pairing, target, ups)
-    fixed = body.fix(np.zeros(len(target), bool) if connected is None else connected)
+    fixed = body.fix(connected)
     turns = body.turns(motion.turns)
     yield Progress(0.3, "Posing the bones")
     places = _Places(body.paths(motion.heads, turns, settings.stride), body.slides(turns))
@@ -168,11 +171,13 @@ def transfer_motion_steps(
 transfer_motion = at_once(transfer_motion_steps)
 
 
-def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: MotionSettings) -> None:
+def _check(motion: Motion, pairing: BonePairing, target: Skeleton, settings: MotionSettings, connected: Bools) -> None:
     if not len(pairing):
         raise RigError("No bones of the two rigs are paired. Pair them first.")
     if pairing.sources.max() >= len(motion.skeleton) or pairing.targets.max() >= len(target):
         raise RigError("The pairs name bones that the rigs do not have. Pair the bones again.")
+    if connected.shape != (len(target),):
+        raise RigError(f"Which of {len(target)} bones are connected cannot be said by {len(connected)} values.")
     if not settings.rate > 0 or not settings.stride >= 0:
         raise RigError("The frame rate must be larger than zero, and the stride must not be negative.")
 

@@ -50,8 +50,7 @@ def rotation_channels(matrices: Floats, mode: str) -> Floats:
     rotations = Rotation.from_matrix(matrices)
     if mode in {"QUATERNION", "AXIS_ANGLE"}:
         quaternions = rotations.as_quat()[:, [3, 0, 1, 2]]
-        if quaternions[0, 0] < 0:
-            quaternions[0] *= -1
+        quaternions[:1] *= np.where(quaternions[:1, :1] < 0, -1, 1)
         steps = np.sign((quaternions[1:] * quaternions[:-1]).sum(axis=1))
         quaternions[1:] *= np.cumprod(np.where(steps < 0, -1, 1))[:, None]
         return quaternions if mode == "QUATERNION" else _axes_and_angles(quaternions)

@@ -139,11 +139,14 @@ def carry_values_steps(
     if domain == "EDGE":
         return (yield from _edge_steps(array, crossing))
     if domain == "FACE":
-        return CarriedValues(carry_face_values(array, faces, crossing.places))
-    if domain == "CORNER":
-        return CarriedValues(carry_corner_values(array, faces, crossing.places))
-    marked = carry_point_marks(array, crossing.source_to_target) if marks else None
-    return CarriedValues(carry_point_values(array, crossing.target_to_source) if marked is None else marked)
+        carried_values = carry_face_values(array, faces, crossing.places)
+    elif domain == "CORNER":
+        carried_values = carry_corner_values(array, faces, crossing.places)
+    elif marks:
+        carried_values = carry_point_marks(array, crossing.source_to_target)
+    else:
+        carried_values = carry_point_values(array, crossing.target_to_source)
+    return CarriedValues(carried_values.astype(array.dtype, copy=False))
 
 
 def _edge_steps(values: NDArray[Any], crossing: Crossing) -> Steps[CarriedValues]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,7 @@ from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Bools, Floats, marked
 from ...runtime.background import can_go_beside
-from ...runtime.errors import MatchError
+from ...runtime.errors import MatchError, SettingsError
 from ...runtime.progress import Progress, Steps
 from .deformation_gradients import LocalFrames
 
@@ -80,6 +80,8 @@ def carry_offsets_steps(
     ------
     MatchError
         If offsets, frames and maps do not belong to the same two surfaces, or an offset is not a finite number.
+    SettingsError
+        If there is no such scaling.
     """
     array = np.asarray(offsets, np.float64)
     _check(array, frames, target, target_to_source)
@@ -118,6 +120,8 @@ def _check(offsets: Floats, frames: LocalFrames, target: TriangleMesh, target_to
 
 def _factors(frames: LocalFrames, scaling: Scaling) -> Floats:
     """By what to multiply the offset of each vertex, (n_x,)."""
+    if scaling not in get_args(Scaling):
+        raise SettingsError(f'Offsets cannot be scaled by "{scaling}", but by {", ".join(get_args(Scaling))}.')
     if scaling == "local":
         return frames.scales
     if scaling == "none":

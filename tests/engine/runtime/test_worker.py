@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from pickle import PicklingError
 
 import numpy as np
 import pytest
@@ -111,6 +112,13 @@ def test_what_is_kept_may_refer_to_more_that_is(helper):
     assert helper.has(inner)
     assert helper.has(outer)
     assert not helper.has(Kept(1))
+
+
+def test_what_cannot_be_sent_ends_the_helper_which_is_replaced(helper):
+    with pytest.raises((AttributeError, TypeError, PicklingError)):
+        helper.start(shared_work.value_of, Kept(1), lambda: None)
+    assert not helper.is_busy
+    assert helper.is_over
 
 
 @pytest.mark.usefixtures("helper")

@@ -183,6 +183,9 @@ def test_what_does_not_fit_together_is_refused(someone, paired):
         paired(someone, type(rig)(rig.names, rig.skeleton, csr_array((3, 3)), rig.origins))
     with pytest.raises(RigError, match="there is no bone 99"):
         paired(someone, rig, alone=[99])
+    for bones in ((99, 0), (-1, 0)):
+        with pytest.raises(RigError, match=f"The source has .* there is no bone {bones[0]}"):
+            paired(someone, rig, fixed=[bones])
     with pytest.raises(RigError, match="need scores of the shape"):
         BonePairing(*np.zeros((2, 1), int), np.zeros(2), np.zeros((1, 3, 3)), np.zeros((1, 3)), np.eye(3))
 

@@ -47,3 +47,6 @@ def test_what_is_no_motion_is_refused():
     for values in (np.zeros(3), np.zeros((2, 1)), np.full((3, 1), np.nan)):
         with pytest.raises(RigError, match="one row of finite values"):
             reduced_keys(np.arange(3.0), values, 0.1)
+    for times in ([0.0, 1, 1], [0.0, 2, 1]):
+        with pytest.raises(RigError, match="after the one before"):
+            reduced_keys(np.array(times), np.eye(3), 0.1)

@@ -226,6 +226,10 @@ def test_what_makes_no_motion_is_refused(someone, wild):
         transfer_motion(wild, pairing, Skeleton(tree.parents[:3], tree.heads[:3], tree.tails[:3]))
     with pytest.raises(RigError, match="frame rate"):
         transfer_motion(wild, pairing, tree, MotionSettings(rate=0))
+    with pytest.raises(RigError, match="away from the ground has no length"):
+        transfer_motion(wild, pairing, tree, ups=np.zeros((2, 3)))
+    with pytest.raises(RigError, match="cannot be said by 2 values"):
+        transfer_motion(wild, pairing, tree, connected=np.ones(2, bool))
 
 
 def four_legged(chest=1.0, heels=0.0, bend=0.08):

@@ -40,6 +40,11 @@ def test_rest_is_no_rotation_about_some_axis():
     assert np.allclose(rotation_channels(np.eye(3)[None], "AXIS_ANGLE"), [[0, 0, 1, 0]])
 
 
+@pytest.mark.parametrize("mode", ["QUATERNION", "AXIS_ANGLE", "XYZ"])
+def test_no_frames_have_no_channels(mode):
+    assert rotation_channels(np.zeros((0, 3, 3)), mode).shape == (0, 3 if mode == "XYZ" else 4)
+
+
 def test_unknown_modes_are_refused():
     with pytest.raises(RigError, match="cannot be kept in 3 channels"):
         rotation_matrices(np.zeros((1, 3)), "XXZ")

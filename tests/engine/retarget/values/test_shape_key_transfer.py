@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from engine import ClosestPoints, MatchError, SurfaceMap, TriangleMesh, run
+from engine import ClosestPoints, MatchError, SettingsError, SurfaceMap, TriangleMesh, run
 from engine.retarget.values.deformation_gradients import LocalFrames, surface_frames
 from engine.retarget.values.shape_key_transfer import carry_offsets_steps
 from tests.shapes import creature, cut_open, icosphere, rotation
@@ -117,3 +117,5 @@ def test_what_does_not_belong_together_is_refused(mesh, offsets):
     ):
         with pytest.raises(MatchError, match=words):
             run(carry_offsets_steps(*arguments))
+    with pytest.raises(SettingsError, match='cannot be scaled by "twice", but by auto'):
+        run(carry_offsets_steps(offsets, frames, mesh, identity, scaling="twice"))
